@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from platformdirs import user_log_path
 
+from groundstation.cli.mavproxy_words import describe_action, describe_word
 from groundstation.cli.options import build_parser, given_settings
 from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.unknown_options import describe_unknown
@@ -47,14 +48,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     stdio.ensure_open()
     arguments = sys.argv[1:] if arguments is None else arguments
     verb = arguments[0] if arguments else ""
+    if hint := describe_action(arguments):
+        print(f"groundstation: {hint}", file=sys.stderr)
+        return 2
     if verb in VERB_HELP:
         from groundstation.verbs.main import run as run_verb  # loads the dialect, which the screen does without
 
         return run_verb(arguments)
     if verb in LOCAL_HELP:
-        from groundstation.cli.config_verb import run as run_config
-
-        return run_config(arguments[1:])
+        return _run_local(verb, arguments[1:])
     parser, names = build_parser()
     options, unknown = parser.parse_known_args(parser.reject_empty(arguments))
     if unknown:
@@ -64,8 +66,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ConfigError as error:
         print(*(f"groundstation: {problem}" for problem in error.problems), sep="\n", file=sys.stderr)
     except (UsageError, EndpointError, KeymapError, StationError) as error:
-        print(f"groundstation: {error}", file=sys.stderr)
+        is_word = isinstance(error, EndpointError) and repr(verb) in str(error)
+        hint = describe_word(verb, RESERVED) if is_word else None
+        print(f"groundstation: {hint or error}", file=sys.stderr)
     return 2
+
+
+def _run_local(verb: str, arguments: Sequence[str]) -> int:
+    """Run a verb without a vehicle."""
+    if verb == "config":
+        from groundstation.cli.config_verb import run as run_config
+
+        return run_config(arguments)
+    if verb == "keys":
+        from groundstation.cli.keys_verb import run as run_keys  # loads a part of the screen
+
+        return run_keys(arguments)
+    from groundstation.verbs.main import run_completion
+
+    return run_completion(arguments, {**VERB_HELP, **LOCAL_HELP})
 
 
 def _run(options: argparse.Namespace, names: Sequence[str]) -> int:

@@ -14,9 +14,12 @@ from typing import Any, TypeVar
 from groundstation.snapshot import LogLine
 from groundstation.ui.colours import AMBER, GREEN
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.map.copies import PlanCopies
+from groundstation.ui.map.pane import build_pane
 from groundstation.ui.widgets.chart import SPAN, Chart, ChartValue, Series
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.ui.widgets.log import LogPanel
+from groundstation.ui.widgets.plan_map import PlanMap, PlanMapValue
 from groundstation.ui.widgets.rates import RatesPanel
 from groundstation.ui.widgets.track import TrackMap, TrackValue
 from groundstation.views.base import View, ViewRequest
@@ -41,6 +44,8 @@ class PaneInput:
     views: Mapping[type[View], View] = field(default_factory=dict)
     """The newest view of each kind."""
     zoom: int = 0
+    plans: PlanCopies | None = None
+    """Plans of the vehicle, for a pane that wants them."""
 
     def view(self, kind: type[Kind]) -> Kind | None:
         """Return the newest view of a kind."""
@@ -62,6 +67,8 @@ class Pane:
     """s between updates."""
     zooms: tuple[int, int] = (0, 0)
     """Least and largest zoom; 0 is the usual one."""
+    wants_plans: bool = False
+    """It draws PaneInput.plans, whose views are requested while it is shown."""
 
 
 def _pane(
@@ -71,15 +78,23 @@ def _pane(
     *requests: ViewRequest,
     period: float = SLOW,
     zooms: tuple[int, int] = (0, 0),
+    wants_plans: bool = False,
 ) -> Pane:
     """Return a row whose value has the type that its widget shows, which mypy checks here."""
-    return Pane(id, build, value, requests, period, zooms)
+    return Pane(id, build, value, requests, period, zooms, wants_plans)
 
 
 def _track(given: PaneInput) -> TrackValue:
     vehicle, track = given.now.snapshot.vehicle, given.view(TrackView)
     points = track.points if track is not None and vehicle is not None and track.system == vehicle.system else ()
     return TrackValue.from_vehicle(vehicle, points, ascii=given.now.ascii, zoom=given.zoom)
+
+
+def _map(given: PaneInput) -> PlanMapValue:
+    vehicle = given.now.snapshot.vehicle
+    if given.plans is None or vehicle is None:
+        return PlanMapValue("no vehicle yet")
+    return build_pane(given.plans, vehicle, ascii=given.now.ascii)
 
 
 def speed_samples(given: PaneInput) -> ChartValue:
@@ -101,6 +116,7 @@ SPEED_CHART = partial(
 
 PANES: tuple[Pane, ...] = (
     _pane("track", TrackMap, _track, TrackRequest(), period=FAST, zooms=(-3, 5)),
+    _pane("map", PlanMap, _map, wants_plans=True),
     _pane("charts", SPEED_CHART, speed_samples, SpeedRequest(), zooms=(0, 3)),
     _pane("messages", RatesPanel, lambda given: given.view(MessagesPage), MessagesRequest(count=ROWS)),
     _pane("log", LogPanel, _log),

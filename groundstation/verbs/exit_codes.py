@@ -22,8 +22,10 @@ class ExitCode(IntEnum):
     """The vehicle refused; its reason was printed."""
     NO_ANSWER = 5
     """No answer after all tries."""
+    NOT_IN_CONTROL = 6
+    """Refused, because another ground station is in control."""
     DIFFERS = 7
-    """Something differs, is not ready, or there is no such thing."""
+    """Something differs, is not so, is not ready, or there is no such thing."""
     PARTLY = 8
     """Partly done; the rest was printed."""
 

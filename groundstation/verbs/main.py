@@ -24,6 +24,10 @@ from groundstation.config.effective import (
 from groundstation.config.settings import DEFAULT_ENDPOINT
 from groundstation.formats.errors import FileFormatError
 from groundstation.recent.recent_file import RecentFile
+from groundstation.verbs.arguments import seconds, system_id
+from groundstation.verbs.completion import SHELLS, build_script
+from groundstation.verbs.core import COMPONENT, WATCHER
+from groundstation.verbs.demand_guard import DemandGuard
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession, run_session
@@ -40,7 +44,7 @@ SYSTEM = 254
 
 EPILOG = f"""\
 exit codes: 0 done and confirmed; 1 this program failed; 2 wrong arguments; 3 no vehicle within --wait; 4 refused;
-5 no answer; 7 differs, not ready, or no such thing; 8 partly done
+5 no answer; 6 not in control; 7 differs, is not so, or no such thing; 8 partly done; 128 + n after signal n
 
 A port that a running ground station listens on is taken: connect the verb by another link of the vehicle, or by
 `bridge`. Endpoints, or names of the config file, come from -e, else from {ENDPOINT_VARIABLE} (separated by spaces),
@@ -55,9 +59,13 @@ def run(arguments: Sequence[str]) -> int:
     output = Output(f"{arguments[0]} {options.action}".strip(), as_json=options.json, quiet=options.quiet)
     logging.basicConfig(handlers=[logging.NullHandler()])  # what is worth knowing is printed
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a transfer ends in order, and can be resumed
+    caught: list[int] = []
     try:
         use_dialect(options.dialect)
-        code = run_loop(_run(VERBS[arguments[0]][options.action], options, output))
+        action = VERBS[arguments[0]][options.action]
+        if action.check is not None:
+            action.check(options)
+        code = run_loop(_run(action, options, output, caught))
         sys.stdout.flush()
     except ConfigError as error:
         for problem in error.problems:
@@ -66,8 +74,8 @@ def run(arguments: Sequence[str]) -> int:
     except (VerbError, FileFormatError, DialectError, EndpointError, LinkError) as error:
         output.error(str(error))
         return int(error.code if isinstance(error, VerbError) else ExitCode.USAGE)
-    except KeyboardInterrupt:
-        return 128 + signal.SIGINT
+    except (KeyboardInterrupt, asyncio.CancelledError):
+        return 128 + (caught[0] if caught else signal.SIGINT)
     except OSError as error:  # of the output: full, or closed by its reader
         stdio.discard_output()
         output.error(f"output: {error.strerror or error}")
@@ -75,15 +83,19 @@ def run(arguments: Sequence[str]) -> int:
     return code
 
 
-async def _run(action: VerbAction, options: argparse.Namespace, output: Output) -> int:
+async def _run(action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int]) -> int:
+    """Run the action. A signal cancels it, so that it ends in order, and is noted in `caught`."""
     recent = RecentFile()
     endpoints = choose_endpoints(options.endpoints, options.config, os.environ, recent)
     if recent.warning:
         output.note(recent.warning)
+    _cancel_on_signals(caught)
+    ids = (options.system, WATCHER if action.watches else COMPONENT)
+    guard = DemandGuard(ids) if action.guarded(options) else None  # before the links are open
 
     async def script(session: VerbSession) -> int:
-        await session.find_vehicle(options.wait, options.vehicle, " ".join(endpoints))
-        if options.endpoints:
+        await _prepare(session, action, options, " ".join(endpoints))
+        if action.finds and options.endpoints:
             recent.update(lambda known: known.add_all(endpoints, time.time(), session.vehicle.name))
         return await action.run(session, options, output)
 
@@ -91,12 +103,38 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output) 
         return await action.run(session, options, output)
 
     try:
-        async with asyncio.timeout(options.timeout):
+        async with asyncio.timeout(None if action.own_timeout else options.timeout):
             if action.station:
                 return await run_station(endpoints, options.system, getattr(options, "station", 0), alone)
-            return await run_session(endpoints, options.system, options.vehicle, script, output.progress)
+            return await run_session(endpoints, ids, options.vehicle, script, output.progress, guard)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
+    finally:
+        if guard is not None:
+            guard.close()
+
+
+async def _prepare(session: VerbSession, action: VerbAction, options: argparse.Namespace, where: str) -> None:
+    """Do what the action needs before it runs."""
+    if action.finds:
+        await session.find_vehicle(options.wait, options.vehicle, where)
+    if action.takes_part:
+        await session.take_part()
+    if action.shows_neutral:
+        await session.show_neutral()
+
+
+def _cancel_on_signals(caught: list[int]) -> None:
+    """Let SIGTERM and SIGHUP cancel this task, as asyncio does with SIGINT."""
+    task = asyncio.current_task()
+    assert task is not None
+
+    def cancel(number: int) -> None:
+        caught.append(number)
+        task.cancel()
+
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        asyncio.get_running_loop().add_signal_handler(number, cancel, number)
 
 
 def choose_endpoints(
@@ -150,26 +188,30 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
         help="where the vehicle is; more than once for several links",
     )
     add("--config", metavar="FILE", help="config file with names of endpoints")
-    add("-v", "--vehicle", type=_system_id, metavar="ID", help="its system id (default: the only vehicle)")
-    add("--wait", type=_seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
-    add("--timeout", type=_seconds, metavar="S", help="end after this time in any case")
-    add("--system", type=_system_id, default=SYSTEM, metavar="ID", help=f"our system id (default: {SYSTEM})")
+    add("-v", "--vehicle", type=system_id, metavar="ID", help="its system id (default: the only vehicle)")
+    add("--wait", type=seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
+    add("--timeout", type=seconds, metavar="S", help="end after this time in any case")
+    add("--system", type=system_id, default=SYSTEM, metavar="ID", help=f"our system id (default: {SYSTEM})")
     add("--dialect", metavar="FILE.xml", help="definitions of a vehicle that sends messages of its own")
     add("--json", action="store_true", help="print one JSON object a line")
     add("-q", "--quiet", action="store_true", help="print no progress and no notes")  # fmt: skip
 
 
-def _system_id(text: str) -> int:
-    if not (text.isascii() and text.isdecimal() and len(text) <= 3 and 1 <= int(text) <= 255):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255")
-    return int(text)
-
-
-def _seconds(text: str) -> float:
+def run_completion(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
+    """Print the script for a shell; return the exit code."""
+    parser = CommandLineParser(
+        prog="groundstation completion",
+        description="Print a script that completes verbs, options and names in a shell.",
+        epilog='bash: eval "$(groundstation completion bash)" in ~/.bashrc; zsh likewise; '
+        "fish: groundstation completion fish | source",
+    )
+    parser.add_argument("shell", choices=SHELLS)
+    options = parser.parse_args(parser.reject_empty(arguments))
     try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 < value <= 86_400:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds above 0")
-    return value
+        sys.stdout.write(build_script(options.shell, helps))
+        sys.stdout.flush()
+    except OSError as error:
+        stdio.discard_output()
+        sys.stderr.write(f"groundstation: output: {error.strerror or error}\n")
+        return int(ExitCode.BROKEN)
+    return int(ExitCode.DONE)

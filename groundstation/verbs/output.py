@@ -38,6 +38,10 @@ class Output:
             self._clear_progress()
             sys.stdout.write(json.dumps(_finite(fields)) + "\n")
 
+    def flush(self) -> None:
+        """Pass on what was printed: somebody watches."""
+        sys.stdout.flush()
+
     def result(self, ok: bool, vehicle: int | None, **fields: Any) -> None:
         """Print how the verb ended, with --json."""
         took = round(time.monotonic() - self._began, 3)

@@ -13,12 +13,39 @@ from typing import Any
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import calibrate, doctor, ftp, log, mode, motor, param, plan, reboot
+from groundstation.verbs import (
+    arm,
+    calibrate,
+    command,
+    control,
+    doctor,
+    ftp,
+    go_to,
+    log,
+    messages,
+    mode,
+    motor,
+    param,
+    ping,
+    plan,
+    reboot,
+    send,
+    status,
+    stops,
+)
+from groundstation.verbs.arguments import (
+    Argument,
+    count,
+    finite,
+    float32,
+    metres_per_second,
+    number,
+    rate,
+    rate_or_none,
+    seconds,
+    system_id,
+)
 from groundstation.verbs.output import Output
-from link.services.param.float32 import is_float32
-
-Argument = tuple[str, dict[str, Any]]
-"""Name and settings for argparse."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,17 +58,20 @@ class VerbAction:
     arguments: tuple[Argument, ...] = field(default=())
     station: bool = False
     """`run` gets a StationSession: a whole ground station without a screen. It finds its vehicle itself."""
-
-
-def number(text: str) -> float:
-    """Parse a value that a parameter can have. Raises ArgumentTypeError."""
-    try:
-        value = float(int(text, 16)) if text.lower().startswith("0x") else float(text)
-    except (ValueError, OverflowError):
-        value = float("nan")
-    if not is_float32(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number that a parameter can have")
-    return value
+    finds: bool = True
+    """Waits for the vehicle before it runs."""
+    watches: bool = False
+    """Only looks, and so has ids that are never those of a driver."""
+    takes_part: bool = False
+    """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
+    shows_neutral: bool = False
+    """Shows neutral then, because it can make the vehicle move."""
+    check: Callable[[argparse.Namespace], None] | None = None
+    """Raises VerbError for arguments that cannot be right, before any link is opened."""
+    own_timeout: bool = False
+    """Ends by itself after --timeout, with a code of its own."""
+    guarded: Callable[[argparse.Namespace], bool] = lambda _: False
+    """Whether it sends demands, so that a watchdog must outlive it."""
 
 
 _PATTERNS = ("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"})
@@ -56,20 +86,100 @@ ONLY = ""
 """Name of the action of a verb that has only one, and takes no name for it."""
 
 
+def _listen(default: float) -> Argument:
+    return ("--for", {"dest": "seconds", "type": seconds, "default": default, "metavar": "S",
+                      "help": f"how long to listen ({default:g})"})  # fmt: skip
+
+
 def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
     name = kind.name.lower()
     return {
-        "show": VerbAction(f"print the {name}", plan.show(kind)),
+        "show": VerbAction(f"print the {name}", plan.show(kind), watches=True),
         "get": VerbAction(f"download the {name} into a file: .plan, or .waypoints for a mission", plan.get(kind),
-                          (_FILE, _YES)),
+                          (_FILE, _YES), watches=True),
         "put": VerbAction(f"upload the {name} of a file", plan.put(kind), (_FILE,)),
         "clear": VerbAction(f"clear the {name} on the vehicle", plan.clear(kind)),
     }  # fmt: skip
 
 
 VERBS: dict[str, dict[str, VerbAction]] = {
+    "status": {ONLY: VerbAction(
+        "print the state of the vehicle", status.status,
+        (("--watch", {"action": "store_true", "help": "print a line each second"}),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"})),
+        watches=True)},
+    "vehicles": {ONLY: VerbAction("print the vehicles that are heard", status.vehicles, (_listen(1.3),), watches=True)},
+    "links": {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False,
+                               watches=True)},
+    "arm": {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
+                             takes_part=True)},
+    "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm,
+                                own_timeout=True)},
+    "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop,
+                              own_timeout=True)},
+    "estop": {ONLY: VerbAction(
+        "stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
+        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True)},
+    "control": {
+        "show": VerbAction("print who is in control", control.show, watches=True),
+        "request": VerbAction(
+            "take control, or ask the driver for it", control.request,
+            (("--takeover", {"action": "store_true", "help": "others may take control without asking"}),),
+            takes_part=True),
+        "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, takes_part=True),
+        "give": VerbAction(
+            "release control once another ground station asks for it, within --wait", control.give,
+            (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), takes_part=True),
+    },
+    "goto": {ONLY: VerbAction(
+        "drive to a place by itself; done when the heartbeat reports such a mode", go_to.go_to,
+        (("latitude", {"nargs": "?", "type": finite, "metavar": "LAT", "help": "degrees"}),
+         ("longitude", {"nargs": "?", "type": finite, "metavar": "LON", "help": "degrees"}),
+         ("--by", {"nargs": 2, "type": finite, "metavar": ("NORTH", "EAST"), "help": "m from where it is"})),
+        takes_part=True, shows_neutral=True, check=go_to.check_place)},
+    "home": {ONLY: VerbAction("drive home by itself; done when the heartbeat reports RTL", go_to.home,
+                              takes_part=True, shows_neutral=True)},
+    "speed": {ONLY: VerbAction(
+        "set the speed of modes that drive by themselves", go_to.speed,
+        (("speed", {"type": metres_per_second, "metavar": "M/S"}),), takes_part=True, shows_neutral=True)},
+    "messages": {ONLY: VerbAction(
+        "print which messages arrive, and their rates", messages.messages,
+        (("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"}),
+         _listen(5.0)), watches=True)},
+    "watch": {ONLY: VerbAction(
+        "print each message of a kind, until a condition holds or --timeout is over", messages.watch,
+        (("what", {"metavar": "MESSAGE[.FIELD]", "help": "e.g. VFR_HUD.groundspeed"}),
+         ("--until", {"metavar": "EXPR", "help": "end when it holds: '>0.5' for a field, else 'field>0.5'"}),
+         ("--csv", {"action": "store_true", "help": "print comma-separated values"})),
+        watches=True, check=messages.check_watch, own_timeout=True)},
+    "send": {ONLY: VerbAction(
+        "send a message; what is not given is 0, and what can move the vehicle needs --yes", send.run,
+        (("name", {"metavar": "MESSAGE"}), ("fields", {"nargs": "*", "metavar": "FIELD=VALUE"}),
+         ("--rate", {"type": rate, "metavar": "HZ", "help": "repeat it, with --for"}),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "how long to repeat it"}),
+         ("--yes", {"action": "store_true", "help": "send what can move the vehicle"})),
+        check=send.check, guarded=send.is_demand)},
+    "command": {ONLY: VerbAction(
+        "send a MAV_CMD; done when the vehicle has accepted", command.command,
+        (("name", {"metavar": "MAV_CMD_X", "help": "its name, with or without MAV_CMD_, or its number"}),
+         ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"})),
+        takes_part=True, shows_neutral=True, check=command.check_command)},
+    "request": {ONLY: VerbAction(
+        "request one message and print it", command.request,
+        (("name", {"metavar": "MESSAGE"}),
+         ("params", {"nargs": "*", "type": finite, "metavar": "P", "help": "parameters 2 and up, e.g. an index"})),
+        watches=True, check=command.check_message)},
+    "rate": {ONLY: VerbAction(
+        "set how often a message comes on this link", command.rate,
+        (("name", {"metavar": "MESSAGE"}), ("rate", {"type": rate_or_none, "metavar": "HZ", "help": "0: never"})),
+        watches=True, check=command.check_message)},
+    "ping": {ONLY: VerbAction(
+        "measure round trips to the vehicle", ping.ping,
+        (("--count", {"type": count, "default": 4, "metavar": "N", "help": "how many (4)"}),
+         ("--interval", {"type": seconds, "default": 1.0, "metavar": "S", "help": "s between two (1)"})),
+        watches=True)},
     "param": {
-        "get": VerbAction("print parameters", param.get, (_PATTERNS,)),
+        "get": VerbAction("print parameters", param.get, (_PATTERNS,), watches=True),
         "set": VerbAction(
             "set one parameter", param.set_value,
             (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})),
@@ -77,21 +187,22 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "save": VerbAction(
             "write parameters to a file", param.save,
             (_FILE, _PATTERNS, ("--changed", {"action": "store_true", "help": "only those not at the default"}),
-             _FORMAT, _YES),
+             _FORMAT, _YES), watches=True,
         ),
         "load": VerbAction(
             "set what differs from a file; stop at the first refusal", param.load,
             (_FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
         ),
-        "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,)),
+        "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,), watches=True),
         "store": VerbAction("have the vehicle store all parameters", param.store),
         "reset": VerbAction("have the vehicle reset all parameters to their defaults", param.reset,
                             (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),)),
     },
     **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
-    "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes)},
+    "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes,
+                               watches=True)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
-                              (("name", {"metavar": "MODE"}),))},
+                              (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True)},
     "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run)},
     "doctor": {ONLY: VerbAction(
         "print why the vehicle cannot be driven, and what to do", doctor.run,
@@ -122,10 +233,10 @@ VERBS: dict[str, dict[str, VerbAction]] = {
                           (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}))),
     },
     "log": {
-        "list": VerbAction("print the logs on the vehicle", log.list_logs),
+        "list": VerbAction("print the logs on the vehicle", log.list_logs, watches=True),
         "get": VerbAction("download a log, or resume", log.get,
                           (("log", {"metavar": "ID", "help": "number of the log, or latest"}),
-                           ("file", {"nargs": "?", "metavar": "FILE"}), _YES)),
+                           ("file", {"nargs": "?", "metavar": "FILE"}), _YES), watches=True),
     },
 }  # fmt: skip
 """Verb -> its actions."""

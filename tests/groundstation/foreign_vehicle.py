@@ -53,7 +53,7 @@ class Missions:
 class ForeignVehicle:
     """Answers in a thread from `with` on. `loss`: share of what it sends that is lost, but for heartbeats."""
 
-    def __init__(self, autopilot: int = ARDUPILOT, *, loss: float = 0.0, ftp: bool = True) -> None:
+    def __init__(self, autopilot: int = ARDUPILOT, *, loss: float = 0.0, ftp: bool = True, system: int = 1) -> None:
         self.autopilot = autopilot
         self.loss = loss
         self.params: dict[str, ForeignParam] = {}
@@ -66,14 +66,22 @@ class ForeignVehicle:
         """Name, custom_mode and properties of AVAILABLE_MODES."""
         self.mode = 0
         """custom_mode of its HEARTBEAT."""
+        self.armed = False
         self.obeys = True
-        """Takes the modes that it accepts."""
+        """Does what it accepts: modes, arming."""
+        self.telemetry: dict[int, Any] = {}
+        """Message id -> what it sends on request."""
+        self.on_command: dict[int, Callable[[], None]] = {}
+        """Command -> what it does beside the acknowledgement."""
+        self.answers_timesync = False
         self.acks: dict[int, tuple[int, str]] = {}
         """Command -> MAV_RESULT, and STATUSTEXT before it."""
         self.received: list[Any] = []
+        self._beat_due = 0.0
         self._arrived = threading.Condition()
         self._dice = random.Random(3)
-        self._link = mav.MAVLink(None, srcSystem=1, srcComponent=1)
+        self.system = system
+        self._link = mav.MAVLink(None, srcSystem=system, srcComponent=1)
         self._link.robust_parsing = True
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
@@ -112,7 +120,6 @@ class ForeignVehicle:
     # ---- the loop ----
 
     def _run(self) -> None:
-        beat = 0.0
         while self._running:
             try:
                 data, self._peer = self._socket.recvfrom(65536)
@@ -124,9 +131,10 @@ class ForeignVehicle:
                     self.received.append(message)
                     self._arrived.notify_all()
                 self._answer(message)
-            if self._peer and time.monotonic() >= beat:
-                beat = time.monotonic() + 1.0
-                self.send(mav.MAVLink_heartbeat_message(10, self.autopilot, 81, self.mode, 3, 3), certain=True)
+            if self._peer and time.monotonic() >= self._beat_due:
+                self._beat_due = time.monotonic() + 1.0
+                flags, state = (209, 4) if self.armed else (81, 3)
+                self.send(mav.MAVLink_heartbeat_message(10, self.autopilot, flags, self.mode, state, 3), certain=True)
 
     def send(self, message: Any, *, certain: bool = False) -> None:
         """Send a message of pymavlink."""
@@ -138,8 +146,12 @@ class ForeignVehicle:
         """Send a message that pymavlink's dialect lacks."""
         if self._peer:
             payload = codec.encode_payload(message)
-            self._socket.sendto(codec.frame(type(message).id, payload, self._link.seq, 1, 1), self._peer)
+            self._socket.sendto(codec.frame(type(message).id, payload, self._link.seq, self.system, 1), self._peer)
             self._link.seq = (self._link.seq + 1) % 256
+
+    def change_mode(self, mode: int, *, armed: bool = True) -> None:
+        """Change the mode; the next heartbeat follows at once."""
+        self.mode, self.armed, self._beat_due = mode, armed, 0.0
 
     def say(self, text: str, severity: int = 4) -> None:
         """Send a STATUSTEXT."""
@@ -148,7 +160,11 @@ class ForeignVehicle:
     def _answer(self, message: Any) -> None:
         self._sender = message.get_srcSystem(), message.get_srcComponent()
         answer = _ANSWERS.get(message.get_type())
-        if answer is not None and message.get_msgId() not in self.silent and message.target_system in (0, 1):
+        if (
+            answer is not None
+            and message.get_msgId() not in self.silent
+            and getattr(message, "target_system", 0) in (0, self.system)
+        ):
             answer(self, message)
 
     # ---- commands ----
@@ -158,13 +174,24 @@ class ForeignVehicle:
         if text:
             self.say(text)
         self.send(mav.MAVLink_command_ack_message(message.command, result, 0, 0, *self._sender))
-        if message.command == 176 and result == 0 and self.obeys:
-            main, sub = int(message.param2), int(message.param3)
-            self.mode = sub << 24 | main << 16 if self.autopilot == PX4 else main
+        self.on_command.get(message.command, lambda: None)()
+        if message.command in (176, 400) and result == 0 and self.obeys:
+            self._obey(message)
         if message.command == 512 and result == 0:
             self._requested(int(message.param1), int(message.param2))
 
+    def _obey(self, message: Any) -> None:
+        """Take a mode, or arm; the next heartbeat follows at once."""
+        self._beat_due = 0.0
+        main, sub = int(message.param2), int(message.param3)
+        if message.command == 400:
+            self.armed = message.param1 == 1
+        else:
+            self.mode = sub << 24 | main << 16 if self.autopilot == PX4 else main
+
     def _requested(self, number: int, index: int) -> None:
+        if number in self.telemetry:
+            self.send(self.telemetry[number])
         if number == 148:
             capabilities = 2 | 8 | (0 if self.autopilot == ARDUPILOT else 16) | (32 if self.files else 0)
             none = [0] * 8
@@ -173,6 +200,10 @@ class ForeignVehicle:
             chosen = enumerate(self.modes, 1) if index == 0 else [(index, self.modes[index - 1])]
             for at, (name, custom, properties) in chosen:
                 self.send_ours(m.AvailableModes(len(self.modes), at, 0, custom, properties, name.encode()))
+
+    def _timesync(self, message: Any) -> None:
+        if self.answers_timesync and message.tc1 == 0:
+            self.send(mav.MAVLink_timesync_message(time.monotonic_ns(), message.ts1))
 
     # ---- parameters ----
 
@@ -317,6 +348,7 @@ class ForeignVehicle:
 _ANSWERS: dict[str, Callable[[ForeignVehicle, Any], None]] = {
     "COMMAND_LONG": ForeignVehicle._command,
     "COMMAND_INT": ForeignVehicle._command,
+    "TIMESYNC": ForeignVehicle._timesync,
     "PARAM_REQUEST_LIST": ForeignVehicle._list,
     "PARAM_REQUEST_READ": ForeignVehicle._read,
     "PARAM_SET": ForeignVehicle._set,

@@ -18,6 +18,7 @@ from groundstation.ui.display_state import DisplayState
 from groundstation.ui.drive_layout import CLASSES, CONSOLE_SIZE, MIN_STRIP_SIZE, is_smaller, layout_classes
 from groundstation.ui.instruments import INSTRUMENTS
 from groundstation.ui.key_parser import KeyRepeat
+from groundstation.ui.map.copies import PlanCopies
 from groundstation.ui.panes import SECOND, SPEED_CHART, PaneInput, speed_samples
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.chart import ChartValue
@@ -45,7 +46,11 @@ class DriveScreen(ConsoleScreen):
         self._slow_at = -SLOW
         self._too_small_text = ""
         self._strip = DrivingStrip(StripValue.from_state(self._state), id="strip")
-        self._panes = (PaneFrame(0, self._state, id="pane"), PaneFrame(SECOND, self._state, id="pane2"))
+        self._plans = PlanCopies()
+        self._panes = (
+            PaneFrame(0, self._state, self._plans, id="pane"),
+            PaneFrame(SECOND, self._state, self._plans, id="pane2"),
+        )
         self._chart = SPEED_CHART(ChartValue(), id="speeds")
         self._views: dict[type[View], View] = {}
 
@@ -143,6 +148,7 @@ class DriveScreen(ConsoleScreen):
 
     def show_view(self, view: View) -> None:
         """Show what the station sent for a pane or the chart."""
+        self._plans.show_view(view)
         first = type(view) not in self._views
         self._views[type(view)] = view
         if isinstance(view, SpeedView):

@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.map.copies import PlanCopies
 from groundstation.ui.panes import PANES, Pane, PaneInput
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.views.base import View, ViewRequest
@@ -20,10 +21,11 @@ CLOSER, WIDER = 1, -1
 class PaneFrame(Vertical, can_focus=False):
     """Shows the pane of one index. The zoom of each pane is kept while another one is shown."""
 
-    def __init__(self, index: int, now: DisplayState, *, id: str) -> None:  # noqa: A002
+    def __init__(self, index: int, now: DisplayState, plans: PlanCopies, *, id: str) -> None:  # noqa: A002
         super().__init__(id=id)
         self._index = index
-        self._given = PaneInput(now)
+        self._plans = plans
+        self._given = PaneInput(now, plans=plans)
         self._zooms = dict.fromkeys((pane.id for pane in PANES), 0)
         self._built: dict[str, Instrument[Any]] = {}
         self._due = 0.0
@@ -46,7 +48,7 @@ class PaneFrame(Vertical, can_focus=False):
     @property
     def requests(self) -> tuple[ViewRequest, ...]:
         """Views that it needs."""
-        return self.pane.requests
+        return (*self.pane.requests, *(self._plans.requests if self.pane.wants_plans else ()))
 
     def turn_on(self) -> None:
         """Show the pane after this one."""

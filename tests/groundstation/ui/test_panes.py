@@ -15,6 +15,8 @@ from groundstation.ui.widgets.pane import PaneFrame
 from groundstation.views.base import ViewRequest
 from groundstation.views.drive import SpeedRequest, TrackRequest
 from groundstation.views.messages import MessagesRequest
+from groundstation.views.plan import PlanRequest
+from tests.groundstation.ui.example_map import VIEWS
 from tests.groundstation.ui.examples import MESSAGES_PAGE, SPEEDS, TRACK, snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
@@ -37,17 +39,17 @@ async def test_the_key_shows_the_next_pane_and_each_requests_what_it_needs() -> 
         for _ in range(len(PANES) + 1):
             await screen.show(snapshot())
             frame = screen.app.drive.query_one("#pane", PaneFrame)
-            expected = frame.pane.requests
+            expected = frame.requests
             await until(partial(requests_are, screen, expected))
             shown.append(frame.pane.id)
             await screen.press("v")
-        assert shown == ["track", "charts", "messages", "log", "track"]
+        assert shown == ["track", "map", "charts", "messages", "log", "track"]
 
 
 async def test_a_pane_draws_the_view_that_arrives() -> None:
     async with console() as screen:
         assert "nothing yet" not in screen.text
-        await screen.press("v", "v")
+        await screen.press("v", "v", "v")
         assert "nothing yet" in screen.text
         screen.station.offer_view(MESSAGES_PAGE)
         await screen.show(snapshot())
@@ -88,7 +90,7 @@ async def test_zoom_is_kept_for_each_pane() -> None:
         whole = screen.text
         await screen.press("pageup")
         assert screen.text != whole
-        await screen.press("v", "pageup", "pageup")
+        await screen.press("v", "v", "pageup", "pageup")
         assert "15 s" in screen.text
         await screen.press("pageup", "pageup", "pageup")
         assert "7.5 s" in screen.text, "closer it does not go"
@@ -125,3 +127,15 @@ def test_views_of_another_vehicle_are_not_shown() -> None:
     track, charts = PANES[0].value(given), next(pane for pane in PANES if pane.id == "charts").value(given)
     assert track.track == ()
     assert charts.samples == ()
+
+
+async def test_the_map_pane_shows_the_plans_of_the_vehicle() -> None:
+    async with console((140, 45)) as screen:
+        await screen.press("v")
+        assert screen.app.drive.query_one("#pane", PaneFrame).pane.id == "map"
+        assert PlanRequest() in watched(screen)
+        for view in VIEWS["map"]:
+            screen.station.offer_view(view)
+        await screen.show(snapshot())
+        await screen.show(snapshot())
+        assert "no position" not in screen.text

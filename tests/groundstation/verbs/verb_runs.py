@@ -1,14 +1,19 @@
-"""Runs a verb in this process, and returns its exit code and what it printed."""
+"""Runs a verb in this process, and returns its exit code and what it printed; waits for conditions."""
 
 from __future__ import annotations
 
 import json
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import pytest
 
 from groundstation.cli.main import main
+
+PATIENCE = 30.0
+"""s for what takes one or two on an idle machine: the machine is shared."""
 
 
 @dataclass(frozen=True)
@@ -35,3 +40,12 @@ def run_verb(capsys: pytest.CaptureFixture[str], *arguments: str) -> VerbRun:
     captured = capsys.readouterr()
     assert "Traceback" not in captured.err
     return VerbRun(code, captured.out, captured.err)
+
+
+def wait_until(condition: Callable[[], bool], what: str) -> float:
+    """Wait for a condition; return when it held (monotonic)."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, what
+        time.sleep(0.005)
+    return time.monotonic()

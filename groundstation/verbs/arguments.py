@@ -1,0 +1,101 @@
+"""Arguments of verbs: what argparse turns words into. A mistake is one line."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+from link.services.param.float32 import is_float32
+
+Argument = tuple[str, dict[str, Any]]
+"""Name and settings for argparse."""
+LONGEST = 86_400.0
+"""s; a day."""
+SLOWEST, FASTEST = 0.001, 200
+"""Hz; our vehicle takes 200 demands a second, and an interval has 31 bits of us."""
+
+FASTEST_SPEED = 100.0
+"""m/s; our vehicle takes no more."""
+
+
+def number(text: str) -> float:
+    """Parse a value that a parameter can have. Raises ArgumentTypeError."""
+    try:
+        value = float(int(text, 16)) if text.lower().startswith("0x") else float(text)
+    except (ValueError, OverflowError):
+        value = math.nan
+    if not is_float32(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number that a parameter can have")
+    return value
+
+
+def finite(text: str) -> float:
+    """Parse a number. Raises ArgumentTypeError for NaN and infinity."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
+
+
+def seconds(text: str) -> float:
+    """Parse a duration in s. Raises ArgumentTypeError."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 < value <= LONGEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds above 0")
+    return value
+
+
+def system_id(text: str) -> int:
+    """Parse a MAVLink system id. Raises ArgumentTypeError."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= 3 and 1 <= int(text) <= 255):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255")
+    return int(text)
+
+
+def float32(text: str) -> float:
+    """Parse a parameter of a command; NaN means "not used". Raises ArgumentTypeError."""
+    try:
+        value = float(int(text, 16)) if text.lower().startswith("0x") else float(text)
+    except (ValueError, OverflowError):
+        value = math.inf
+    if not (math.isnan(value) or is_float32(value)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
+
+
+def rate(text: str) -> float:
+    """Parse a rate in Hz. Raises ArgumentTypeError."""
+    value = rate_or_none(text)
+    if value == 0:
+        raise argparse.ArgumentTypeError("a rate of 0 sends nothing")
+    return value
+
+
+def rate_or_none(text: str) -> float:
+    """Parse a rate in Hz, or 0. Raises ArgumentTypeError."""
+    value = finite(text)
+    if value and not SLOWEST <= value <= FASTEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a rate from {SLOWEST} to {FASTEST} Hz")
+    return value
+
+
+def metres_per_second(text: str) -> float:
+    """Parse a speed. Raises ArgumentTypeError."""
+    value = finite(text)
+    if not 0 < value <= FASTEST_SPEED:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a speed above 0 and up to {FASTEST_SPEED:g} m/s")
+    return value
+
+
+def count(text: str) -> int:
+    """Parse how often. Raises ArgumentTypeError."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= 6 and int(text) >= 1):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 999999")
+    return int(text)

@@ -1,0 +1,111 @@
+"""One vehicle that a verb hears: its state, its services, and this program as its operator. Time is an argument."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from dialects import messages as m
+from dialects.enums import Command
+from groundstation.station.driven import DrivenVehicle
+from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.requests import RequestBook
+from groundstation.vehicles.services import VehicleServices
+from groundstation.vehicles.vehicle_details import VehicleDetails
+from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.verbs.operator import VerbOperator
+from link.core import Outgoing, Received
+from link.services.command.client import CommandClient, CommandOutcome
+
+
+class Job(Protocol):
+    """A request of several steps, or one that is repeated until the vehicle has done it; it ends in the book."""
+
+    number: int
+
+    def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
+        """Take what is due."""
+
+    def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:
+        """Take how a command ended."""
+
+
+class VehicleContact:
+    """The vehicle with the ids `target`. `ids` are ours, `session` is the random number of this run."""
+
+    def __init__(self, ids: tuple[int, int], session: int, target: tuple[int, int]) -> None:
+        self.ids = ids
+        self.session = session
+        self.state = VehicleState(*target)
+        self.details = VehicleDetails(target[1])
+        self.services = VehicleServices(*ids, target)
+        self.operator = VerbOperator(self.state, ids, session)
+        self.client = CommandClient(*ids)
+        """For jobs and for the operator's queries."""
+        self._jobs: list[Job] = []
+        self._texts = MessageLog()
+
+    @property
+    def in_control(self) -> bool:
+        """This program is in control, as the vehicle reports it."""
+        state = self.state
+        return bool(state.driver) and state.control.is_program(self.ids, self.session, accepted=False)
+
+    @property
+    def other_driver(self) -> int | None:
+        """System id of another program in control; None if there is none, or the vehicle does not tell."""
+        return self.state.driver if self.state.driver and not self.in_control else None
+
+    @property
+    def follows(self) -> bool:
+        """The driver is a program with our ids that has not been silent for long enough yet to be succeeded."""
+        return self.state.driver == self.ids[0] and not self.in_control and not self.state.control.silent
+
+    @property
+    def driven(self) -> DrivenVehicle:
+        """What the watchdog must know."""
+        return DrivenVehicle.of(self.state, self.session)
+
+    def start(self, job: Job, now: float) -> None:
+        """Begin a job."""
+        self._jobs.append(job)
+        job.tick(self.client, self.services.book, now)
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle a message of the vehicle."""
+        self.state.receive(received, now)
+        self.details.receive(received, now)
+        self.services.autopilot, self.services.kind = self.state.autopilot, self.state.kind
+        if isinstance(received.message, m.StatusText):
+            self._handle_text(received.message, received.system, now)
+        self.services.receive(received, now)
+        self.client.receive(received, now)
+        self._advance(now)
+
+    def tick(self, now: float) -> None:
+        """Repeat what is overdue."""
+        self.client.tick(now)
+        self._advance(now)
+        self.operator.tick(self.client, now, may_query=not self.services.commands.is_waiting(Command.REQUEST_MESSAGE))
+        self.services.tick(now, may_query=not self.client.is_waiting(Command.REQUEST_MESSAGE, self.state.system))
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them; the proof goes before the command that needs it."""
+        operator = self.operator.messages_to_send()
+        return operator + self.client.messages_to_send() + self.services.messages_to_send()
+
+    def _advance(self, now: float) -> None:
+        book = self.services.book
+        for outcome in self.client.outcomes():
+            self.operator.handle_outcome(outcome, now)
+            for job in self._jobs:
+                job.handle_outcome(outcome, self.client, book, now)
+        for job in self._jobs:
+            job.tick(self.client, book, now)
+        running = {report.number for report in book.running}
+        self._jobs = [job for job in self._jobs if job.number in running]
+
+    def _handle_text(self, message: m.StatusText, system: int, now: float) -> None:
+        text = self._texts.handle_statustext(message, system, now)
+        if text is not None:
+            self.state.handle_text(text)
+            self.services.handle_text(text, message.severity, now)

@@ -1,0 +1,102 @@
+"""The core of a verb: the vehicles that are heard, and the messages to them. Time is an argument."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Callable, Sequence
+
+from dialects import messages as m
+from groundstation.station.driven import DrivenVehicle
+from groundstation.station.heartbeat_sender import HeartbeatSender
+from groundstation.vehicles.fleet import MAX_VEHICLES, is_vehicle
+from groundstation.verbs.contact import VehicleContact
+from groundstation.verbs.demand_guard import DemandGuard
+from link.core import LinkReport, Outgoing, Received
+
+COMPONENT = 190
+"""MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
+WATCHER = 25
+"""MAV_COMP_ID_USER1: of verbs that only look. With the ids of a silent driver, as of the verb before, any command would
+count as its successor, and our vehicle would leave an autonomous mode (docs/safety.md, "Who the driver is")."""
+
+Tap = Callable[[Received, float], None]
+"""Takes each message that arrives, and the time."""
+
+
+class VerbCore:
+    """A core (link/core.py) with the vehicles that are heard. It talks to `wanted`, or to the first.
+
+    `ids` are our system and component id.
+    """
+
+    def __init__(self, ids: tuple[int, int], wanted: int | None) -> None:
+        self.contacts: dict[int, VehicleContact] = {}
+        """All vehicles heard, by system id; at most MAX_VEHICLES."""
+        self.chosen: VehicleContact | None = None
+        self.reports: tuple[LinkReport, ...] = ()
+        """The newest of each link."""
+        self.taps: list[Tap] = []
+        """Called with each message that arrives."""
+        self.guard: DemandGuard | None = None
+        """The watchdog of a verb that sends demands."""
+        self.outbox: list[m.Message] = []
+        """Messages of a verb, to all or to their target."""
+        self._ids = ids
+        self._wanted = wanted
+        self._session = secrets.randbits(32)
+        self._heartbeat = HeartbeatSender(0.0)
+        self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle one message; the HEARTBEAT of a vehicle begins the conversation."""
+        if is_vehicle(received.message):
+            self._heartbeat.greet(received.peer, now)
+            self._add(received)
+        contact = self.contacts.get(received.system)
+        if contact is not None:
+            contact.receive(received, now)
+        for tap in self.taps:
+            tap(received, now)
+        self._look()
+
+    def tick(self, now: float) -> None:
+        """Send heartbeats, repeat what is overdue."""
+        demanding = self.chosen is not None and self.chosen.operator.demanding
+        self.outbox += [each.message for each in self._heartbeat.tick(now, driving=demanding)]
+        for contact in self.contacts.values():
+            contact.tick(now)
+        self._look()
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Keep the reports of the links."""
+        self.reports = tuple(reports)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them."""
+        outbox, self.outbox = self.outbox, []
+        found = [Outgoing(message) for message in outbox]
+        return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
+
+    def driven(self) -> tuple[DrivenVehicle, ...]:
+        """Return what the watchdog must know."""
+        return () if self.chosen is None else (self.chosen.driven,)
+
+    def add_look(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
+        """Return a future that is done once `condition` holds, checked after each message and tick."""
+        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._looks.append((condition, found))
+        return found
+
+    def _add(self, received: Received) -> None:
+        if received.system not in self.contacts and len(self.contacts) < MAX_VEHICLES:
+            target = (received.system, received.component)
+            self.contacts[received.system] = VehicleContact(self._ids, self._session, target)
+        if self.chosen is None and self._wanted in (None, received.system):
+            self.chosen = self.contacts.get(received.system)
+
+    def _look(self) -> None:
+        for condition, found in self._looks:
+            if not found.done() and condition():
+                found.set_result(None)
+        self._looks = [each for each in self._looks if not each[1].done()]

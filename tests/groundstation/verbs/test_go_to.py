@@ -1,0 +1,92 @@
+"""`groundstation goto`, `home` and `speed` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mav
+
+from groundstation.verbs.exit_codes import ExitCode
+from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+
+Capture = pytest.CaptureFixture[str]
+REPOSITION, RETURN, SPEED = 192, 20, 178
+GUIDED = {ARDUPILOT: 15, PX4: 3 << 24 | 4 << 16}
+RTL = {ARDUPILOT: 11, PX4: 5 << 24 | 4 << 16}
+
+
+def verb(capsys: Capture, vehicle: ForeignVehicle, *words: str) -> VerbRun:
+    return run_verb(capsys, *words, "-e", vehicle.endpoint, "-v", "1")
+
+
+def armed(autopilot: int = ARDUPILOT) -> ForeignVehicle:
+    """An armed vehicle that changes its mode when it is sent somewhere."""
+    vehicle = ForeignVehicle(autopilot)
+    vehicle.armed = True
+    vehicle.on_command[REPOSITION] = lambda: vehicle.change_mode(GUIDED[autopilot])
+    vehicle.on_command[RETURN] = lambda: vehicle.change_mode(RTL[autopilot])
+    return vehicle
+
+
+@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+def test_goto_a_place(capsys: Capture, autopilot: int) -> None:
+    with armed(autopilot) as vehicle:
+        sent = verb(capsys, vehicle, "goto", "-35.36287", "149.16599", "--json")
+        assert sent.code == 0, sent.err
+        assert "drives by itself" in sent.err
+        [command] = vehicle.of("COMMAND_INT")
+        assert (command.command, command.frame, command.x, command.y) == (REPOSITION, 6, -353628700, 1491659900)
+        assert (command.param1, command.param2, math.isnan(command.param4)) == (-1, 1, True)
+
+
+def test_goto_by_metres_from_where_it_is(capsys: Capture) -> None:
+    with armed() as vehicle:
+        assert verb(capsys, vehicle, "goto", "--by", "10", "-5").code == ExitCode.DIFFERS  # no position
+        vehicle.telemetry[33] = mav.MAVLink_global_position_int_message(0, 600000000, 100000000, 0, 0, 0, 0, 0, 0)
+        assert verb(capsys, vehicle, "goto", "--by", "10", "-5").code == 0
+        [command] = vehicle.of("COMMAND_INT")
+        north, east = (command.x - 600000000) / 1e7 * 111319.5, (command.y - 100000000) / 1e7 * 111319.5 / 2
+        assert (north, east) == (pytest.approx(10, abs=0.02), pytest.approx(-5, abs=0.02))
+
+
+@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+def test_home_and_speed(capsys: Capture, autopilot: int) -> None:
+    with armed(autopilot) as vehicle:
+        assert verb(capsys, vehicle, "home").code == 0
+        assert verb(capsys, vehicle, "speed", "0.6").code == 0
+        [speed] = [each for each in vehicle.of("COMMAND_LONG") if each.command == SPEED]
+        assert (speed.param1, speed.param2, speed.param3) == (1, pytest.approx(0.6), -1)
+
+
+def test_an_answer_without_the_mode_is_no_start(capsys: Capture) -> None:
+    with armed() as vehicle:
+        vehicle.on_command.clear()
+        refused = verb(capsys, vehicle, "home")
+        assert refused.code == ExitCode.REFUSED
+        assert "accepted, but its heartbeat reports MANUAL, armed" in refused.err
+
+
+def test_refusals(capsys: Capture) -> None:
+    with armed() as vehicle:
+        vehicle.acks[REPOSITION] = (4, "Outside fence")
+        refused = verb(capsys, vehicle, "goto", "1", "2")
+        assert (refused.code, "Outside fence" in refused.err) == (ExitCode.REFUSED, True)
+        vehicle.change_mode(0, armed=False)
+        disarmed = verb(capsys, vehicle, "goto", "1", "2")
+        assert (disarmed.code, "is disarmed" in disarmed.err) == (ExitCode.REFUSED, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("goto", "write LAT LON in degrees, or --by"), ("goto 5", "write LAT LON"), ("goto 0 0", "is no latitude"),
+        ("goto 91 0", "91 0 is no latitude"), ("goto nan 0", "'nan' is not a number"), ("goto --by 1", "expected 2"),
+        ("goto 1 2 --by 1 2", "not both"), ("goto --by 1e9 0", "m at most"), ("speed 0", "not a speed"),
+        ("speed inf", "is not a number"), ("speed -1", "not a speed"),
+    ],
+)  # fmt: skip
+def test_mistakes(capsys: Capture, words: str, said: str) -> None:
+    run = run_verb(capsys, *words.split(), "-e", "udpin:127.0.0.1:1")
+    assert (run.code, len(run.err.splitlines()), said in run.err) == (ExitCode.USAGE, 1, True), run.err

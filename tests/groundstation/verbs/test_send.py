@@ -1,0 +1,97 @@
+"""`groundstation send`: what arrives, and that no demand is left when the process is interrupted, killed or stopped."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
+from tests.groundstation.foreign_vehicle import PX4, ForeignVehicle
+from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb, wait_until
+from tests.ports import free_port
+
+Capture = pytest.CaptureFixture[str]
+DRIVE = ("send", "MANUAL_CONTROL", "z=400", "--rate", "20", "--for", "30", "--yes")
+
+
+@contextmanager
+def driving() -> Iterator[tuple[FakeArduPilot, subprocess.Popen[str]]]:
+    """An armed vehicle that holds a demand for 3 s as ArduPilot does, driven by the real program."""
+    core = FakeArduPilot(station=254)
+    core.armed = True
+    endpoint = f"udpin:127.0.0.1:{free_port()}"
+    words = [sys.executable, "-m", "groundstation", *DRIVE, "-e", endpoint]
+    with UdpVehicle(endpoint, core), subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            wait_until(lambda: core.moves, "the wheels do not turn")
+            yield core, process
+        finally:
+            process.kill()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_a_process_that_a_signal_ends_leaves_no_demand(number: signal.Signals) -> None:
+    with driving() as (core, process):
+        process.send_signal(number)
+        at = time.monotonic()
+        wait_until(lambda: not core.moves, "the wheels turn on")
+        assert core.stopped_at - at < LATCH / 2
+        code = process.wait(PATIENCE)
+        assert code == (-9 if number == signal.SIGKILL else 128 + number)
+        assert "Traceback" not in (process.stderr.read() if process.stderr else "")
+
+
+def test_a_process_that_stands_still_leaves_no_demand_and_does_not_drive_on() -> None:
+    with driving() as (core, process):
+        process.send_signal(signal.SIGSTOP)
+        at = time.monotonic()
+        wait_until(lambda: not core.moves, "the wheels turn on")
+        assert core.stopped_at - at < LATCH / 2
+        changes = len(core.turning)
+        process.send_signal(signal.SIGCONT)
+        assert process.wait(PATIENCE) == 1
+        assert len(core.turning) == changes, core.turning
+        assert process.stderr is not None
+        assert "stood still" in process.stderr.read()
+
+
+def test_a_demand_begins_and_ends_with_neutral_in_the_axes_of_the_vehicle() -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        vehicle.armed = True
+        words = ["send", "MANUAL_CONTROL", "z=700", "--rate", "20", "--for", "0.3", "--yes", "-v", "1"]
+        command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
+        assert subprocess.run(command, timeout=PATIENCE).returncode == 0
+        throttles = [each.z for each in vehicle.of("MANUAL_CONTROL")]
+        assert throttles[:3] == [500] * 3
+        assert throttles[-5:] == [500] * 5
+        assert set(throttles) == {500, 700}
+
+
+def test_overridden_channels_are_centred_and_given_back() -> None:
+    with ForeignVehicle() as vehicle:
+        words = ["send", "RC_CHANNELS_OVERRIDE", "chan3_raw=1600", "--yes", "-v", "1"]
+        command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
+        assert subprocess.run(command, timeout=PATIENCE).returncode == 0
+        sent = [(each.chan3_raw, each.chan1_raw) for each in vehicle.of("RC_CHANNELS_OVERRIDE")]
+        assert sorted(set(sent), key=sent.index) == [(1500, 65535), (1600, 65535), (0, 65535)]
+
+
+def test_other_messages_are_sent_as_written(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        words = ("-e", vehicle.endpoint, "-v", "1")
+        assert run_verb(capsys, "send", "STATUSTEXT", "severity=INFO", "text=hello", *words).code == 0
+        assert run_verb(capsys, "send", "PARAM_REQUEST_READ", "param_index=3", *words).code == 0
+        many = run_verb(capsys, "send", "DEBUG", "value=1.5", "--rate", "50", "--for", "0.2", "--json", *words)
+        assert many.records[0]["count"] in (10, 11)
+        vehicle.wait_for("DEBUG", 9)
+        [text] = vehicle.of("STATUSTEXT")
+        [read] = vehicle.of("PARAM_REQUEST_READ")
+        assert (text.severity, text.text) == (6, "hello")
+        assert (read.target_system, read.target_component, read.param_index, read.param_id) == (1, 1, 3, "")

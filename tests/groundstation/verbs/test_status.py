@@ -1,0 +1,56 @@
+"""`groundstation status`, `vehicles` and `links` with vehicles as ArduPilot behaves, on real sockets."""
+
+from __future__ import annotations
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mav
+
+from groundstation.verbs.exit_codes import ExitCode
+from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.groundstation.verbs.verb_runs import run_verb
+from tests.ports import free_port
+
+Capture = pytest.CaptureFixture[str]
+PREARM = 0x10000000
+
+
+def test_status_requests_what_the_vehicle_does_not_send_by_itself(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.armed, vehicle.mode = True, 15
+        vehicle.telemetry = {
+            1: mav.MAVLink_sys_status_message(PREARM, PREARM, 0, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0),
+            24: mav.MAVLink_gps_raw_int_message(0, 4, 0, 0, 0, 0, 0, 0, 0, 11),
+            33: mav.MAVLink_global_position_int_message(0, -353632620, 1491652370, 0, 0, 0, 0, 0, 0),
+        }
+        shown = run_verb(capsys, "status", "-e", vehicle.endpoint)
+        assert shown.code == 0, shown.err
+        assert shown.out.splitlines()[:5] == [
+            "vehicle   ArduPilot rover 1", "mode      GUIDED", "state     ARMED, active", "control   --",
+            "pre-arm   not ready to arm",
+        ]  # fmt: skip
+        assert "battery   11.8 V 73 %" in shown.out
+        assert "gps       3D fix, 11 satellites" in shown.out
+        [record] = run_verb(capsys, "status", "--json", "-e", vehicle.endpoint).records
+        assert (record["mode"], record["armed"], record["voltage"], record["prearm"]) == ("GUIDED", True, 11.8, False)
+        assert (record["lat"], record["lon"], record["groundspeed"]) == (-35.363262, 149.165237, None)
+        watched = run_verb(capsys, "status", "--watch", "--for", "0.2", "--json", "-e", vehicle.endpoint).records
+        assert [each["armed"] for each in watched] == [True]
+        assert watched[0]["time"].endswith("Z")
+
+
+def test_vehicles_lists_every_vehicle_on_all_links(capsys: Capture) -> None:
+    with ForeignVehicle() as one, ForeignVehicle(system=7) as other:
+        listed = run_verb(capsys, "vehicles", "-e", one.endpoint, "-e", other.endpoint)
+        assert [line.split()[0] for line in listed.out.splitlines()] == ["id", "1", "7"]
+        records = run_verb(capsys, "vehicles", "--json", "-e", one.endpoint, "-e", other.endpoint).records
+        assert [each["vehicle"] for each in records] == [1, 7]
+
+
+def test_links_show_what_arrives_with_and_without_a_vehicle(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        silent = f"udpin:127.0.0.1:{free_port()}"
+        both = run_verb(capsys, "links", "--for", "1.1", "-e", vehicle.endpoint, "-e", silent)
+        states = [line.split("  ")[-1] for line in both.out.splitlines()[1:]]
+        assert (both.code, states) == (0, [" MAVLink".strip(), "nothing heard"])
+        alone = run_verb(capsys, "links", "--for", "1.1", "--wait", "0.1", "--json", "-e", silent)
+        assert (alone.code, alone.records[0]["frames"]) == (ExitCode.NO_VEHICLE, 0)

@@ -1,0 +1,132 @@
+"""Verbs that need control, one after the other as a script runs them, with our real simulated vehicle over UDP."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from groundstation.verbs.exit_codes import ExitCode
+from tests.e2e.programs import Vehicle
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
+from tests.ports import free_port
+
+pytestmark = pytest.mark.xdist_group("verbs with our vehicle")
+Capture = pytest.CaptureFixture[str]
+OTHER = ("--system", "100")
+PORT = free_port()
+
+
+class Verb:
+    """Runs `groundstation words -e vehicle -v 1`."""
+
+    def __init__(self, capsys: Capture, endpoint: str) -> None:
+        self._capsys = capsys
+        self.endpoint = endpoint
+
+    def __call__(self, *words: str) -> VerbRun:
+        return run_verb(self._capsys, *words, "-e", self.endpoint, "-v", "1")
+
+    def status(self, field: str) -> object:
+        """Return a field of `status`."""
+        return self("status", "--json").records[0][field]
+
+
+@pytest.fixture(scope="module")
+def vehicle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Vehicle]:
+    """A vehicle process; all tests share it, and leave it disarmed and without a driver."""
+    endpoint = f"udpin:127.0.0.1:{PORT}"
+    process = Vehicle(tmp_path_factory.mktemp("vehicle"), endpoint, "--param", "FS_TIMEOUT=10")
+    wait_until(lambda: "ready" in process.errors.read_text(), "the vehicle does not start")
+    yield process
+    process.end()
+
+
+@pytest.fixture
+def verb(capsys: Capture, vehicle: Vehicle) -> Iterator[Verb]:
+    """Runs a verb with the vehicle, which is free again afterwards."""
+    run = Verb(capsys, f"udpout:127.0.0.1:{PORT}")
+    yield run
+    run("disarm")
+    run("estop", "--clear")
+    run("control", "release")
+
+
+def test_arm_stop_and_disarm(verb: Verb) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    assert (verb.status("armed"), verb.status("gcs_main")) == (True, 254)
+    refused = verb("arm", *OTHER)
+    assert refused.code == 0
+    assert "armed already" in refused.err
+    assert verb("stop").code == 0
+    assert (verb.status("mode"), verb.status("armed")) == ("HOLD", True)
+    assert verb("disarm", *OTHER).code == 0  # of anybody
+    assert verb.status("armed") is False
+
+
+def test_an_emergency_stop_locks_and_its_release_unlocks(verb: Verb) -> None:
+    assert verb("estop").code == 0
+    assert verb.status("emergency_stop") is True
+    refused = verb("arm")
+    assert refused.code == ExitCode.REFUSED
+    assert "estop --clear" in refused.err
+    assert verb("estop", "--clear").code == 0
+    assert verb.status("emergency_stop") is False
+
+
+def test_control_is_taken_kept_and_released(verb: Verb) -> None:
+    assert verb("control", "show").out == "Rover 1: nobody is in control\n"
+    assert verb("control", "request").code == 0
+    assert verb("control", "show", "--json").records[0]["gcs_main"] == 254
+    armed = verb("arm", *OTHER)
+    assert armed.code == ExitCode.NOT_IN_CONTROL
+    assert "GCS 254 is in control" in armed.err
+    assert verb("control", "release").code == 0
+    assert verb("control", "show").out == "Rover 1: nobody is in control\n"
+
+
+def test_control_is_given_to_who_asks(verb: Verb) -> None:
+    assert verb("control", "give", "100", "--wait", "1.5").code == ExitCode.DIFFERS
+    words = ["control", "request", *OTHER, "-v", "1", "-e", verb.endpoint]
+    with subprocess.Popen([sys.executable, "-m", "groundstation", *words], stderr=subprocess.DEVNULL) as other:
+        given = verb("control", "give", "100", "--wait", "20")
+    assert (given.code, other.returncode) == (0, 0), given.err
+    assert verb("control", "release", *OTHER).code == 0
+
+
+def test_a_killed_process_leaves_no_demand(verb: Verb, vehicle: Vehicle) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    words = ["send", "MANUAL_CONTROL", "x=500", "--rate", "20", "--for", "30", "--yes", "-e", verb.endpoint, "-v", "1"]
+    with subprocess.Popen([sys.executable, "-m", "groundstation", *words]) as process:
+        wait_until(vehicle.turning, "the wheels do not turn")
+        process.send_signal(signal.SIGKILL)
+        at = time.monotonic()
+        wait_until(vehicle.stands, "the wheels turn on")
+    assert vehicle.falls_and_stops_after(at)[1] < 1.5  # 1 s by docs/safety.md; the machine is shared
+    assert not vehicle.moved_since(at + 1.5)
+
+
+def test_a_demand_in_hold_moves_nothing_and_says_so(verb: Verb, vehicle: Vehicle) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    assert verb("stop").code == 0
+    at = time.monotonic()
+    words = ["send", "MANUAL_CONTROL", "x=500", "--rate", "20", "--for", "0.3", "--yes", "-e", verb.endpoint, "-v", "1"]
+    sent = subprocess.run([sys.executable, "-m", "groundstation", *words], capture_output=True, text=True, timeout=60)
+    assert sent.returncode == 0
+    assert "ignores demands in HOLD" in sent.stderr
+    assert not vehicle.moved_since(at)
+
+
+def test_it_drives_itself_until_it_is_stopped(verb: Verb, vehicle: Vehicle) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    assert verb("speed", "1.5").code == 0
+    sent = verb("goto", "--by", "30", "0")
+    assert sent.code == 0, sent.err
+    wait_until(vehicle.turning, "the wheels do not turn")
+    assert verb("stop").code == 0
+    wait_until(vehicle.stands, "the wheels turn on")
+    assert verb.status("mode") == "HOLD"
