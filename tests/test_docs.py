@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli import config_verb
+from groundstation.cli import config_verb, keys_verb
 from groundstation.cli import options as station_options
 from groundstation.cli.verb_help import LOCAL_HELP
 from groundstation.verbs import main as verbs_main
@@ -74,6 +74,12 @@ def commands(text: str) -> list[tuple[str, list[str]]]:
     return [(match[1], shlex.split(match[2].replace("$word", "reboot"))) for match in found]
 
 
+LOCAL_PARSERS = {
+    "config": config_verb.build_parser,
+    "keys": keys_verb.build_parser,
+    "completion": verbs_main.build_completion_parser,
+}
+
 SHOWN = [(doc.name, program, words) for doc in DOCS for program, words in commands(doc.read_text())]
 
 
@@ -86,7 +92,7 @@ def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, w
     elif program == "groundstation" and words and words[0] in VERBS:
         verbs_main.build_parser(words[0]).parse_args(words[1:])
     elif program == "groundstation" and words and words[0] in LOCAL_HELP:
-        config_verb.build_parser().parse_args(words[1:])
+        LOCAL_PARSERS[words[0]]().parse_args(words[1:])
     elif program == "groundstation":
         station_options.build_parser()[0].parse_args(words)
     else:

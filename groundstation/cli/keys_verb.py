@@ -61,12 +61,17 @@ class KeyPrinter:
         self.names.append("mouse")
 
 
-def run(arguments: Sequence[str]) -> int:
-    """Show keys until `q`; return the exit code."""
-    parser = CommandLineParser(
+def build_parser() -> CommandLineParser:
+    """Return the parser of the command line."""
+    return CommandLineParser(
         prog="groundstation keys",
         description="Show what this terminal sends for each key: bytes, and how they are read. q ends it.",
     )
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Show keys until `q`; return the exit code."""
+    parser = build_parser()
     parser.parse_args(parser.reject_empty(arguments))
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         sys.stderr.write("groundstation: this is not a terminal: run `groundstation keys` in one, without a pipe\n")

@@ -197,8 +197,8 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     add("-q", "--quiet", action="store_true", help="print no progress and no notes")  # fmt: skip
 
 
-def run_completion(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
-    """Print the script for a shell; return the exit code."""
+def build_completion_parser() -> CommandLineParser:
+    """Return the parser of `completion`."""
     parser = CommandLineParser(
         prog="groundstation completion",
         description="Print a script that completes verbs, options and names in a shell.",
@@ -206,6 +206,12 @@ def run_completion(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
         "fish: groundstation completion fish | source",
     )
     parser.add_argument("shell", choices=SHELLS)
+    return parser
+
+
+def run_completion(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
+    """Print the script for a shell; return the exit code."""
+    parser = build_completion_parser()
     options = parser.parse_args(parser.reject_empty(arguments))
     try:
         sys.stdout.write(build_script(options.shell, helps))
