@@ -7,8 +7,9 @@ import io
 from collections import deque
 from typing import Any
 
-from dialects.messages import Message, StatusText, decode_text, printable
+from dialects.messages import Message, printable
 from groundstation.station.charts.fields import array_length
+from groundstation.station.message_fields import field_value
 from groundstation.station.message_traffic import MessageTraffic, Place
 from groundstation.views.messages import CapturePage, CaptureRequest
 
@@ -85,7 +86,7 @@ def _titles(kind: type[Message]) -> list[str]:
 def _values(message: Message) -> list[Any]:
     values: list[Any] = []
     for name in type(message).fieldnames:
-        value = decode_text(message) if isinstance(message, StatusText) and name == "text" else getattr(message, name)
+        value = field_value(message, name)
         if isinstance(value, (list, tuple)):
             values += value
         else:

@@ -38,7 +38,7 @@ def build_fields(message: Message) -> tuple[MessageField, ...]:
 
 def _build(message: Message, name: str) -> MessageField:
     kind = type(message)
-    value = _value(message, name)
+    value = field_value(message, name)
     unit = kind.fieldunits_by_name.get(name, "")
     enum = kind.fieldenums_by_name.get(name, "")
     if isinstance(message, SysStatus) and name == HEALTH:
@@ -52,7 +52,8 @@ def _build(message: Message, name: str) -> MessageField:
     return MessageField(name, _text(value), unit, _in_usual_unit(value, unit))
 
 
-def _value(message: Message, name: str) -> Any:
+def field_value(message: Message, name: str) -> Any:
+    """Return the value of a field of any message, also of one of a user's dialect."""
     if isinstance(message, ExtraMessage):
         return message.values[name]
     return decode_text(message) if isinstance(message, StatusText) and name == "text" else getattr(message, name)

@@ -149,7 +149,7 @@ def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None
     ("words", "names"),
     [
         ("--fly", ["--fly"]),
-        ("--speed 9", ["'9'", "0.1 to 1.0"]),
+        ("--speed 9", ["'9'", "0.1 to 1"]),
         ("--speed nan", ["'nan'"]),
         ("--system 0", ["'0'", "1 to 255"]),
         ("--system 300", ["'300'", "1 to 255"]),

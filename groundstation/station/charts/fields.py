@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dialects.enum_names import enum_names
 from dialects.messages import Message
 from groundstation.station.fuzzy import match_score
-from groundstation.station.message_fields import UNITS
+from groundstation.station.message_fields import UNITS, field_value
 from groundstation.views.charts import FieldId, FieldInfo
 
 Reader = Callable[[Message], float | None]
@@ -47,7 +47,7 @@ def make_reader(kind: type[Message], field: str, index: int) -> Reader | None:
     factor = _scale(kind, field)[0]
 
     def read(message: Message) -> float | None:
-        value = getattr(message, field)
+        value = field_value(message, field)
         if index >= 0:
             value = value[index]
         if value == unknown or not math.isfinite(value):

@@ -8,7 +8,7 @@ from textual.strip import Strip
 
 from groundstation.drive_views import KeyToMotor, Timing
 from groundstation.snapshot import Snapshot, VehicleView
-from groundstation.ui.colours import AMBER, DIM, FAINT, GREEN, LINE, RED, TEXT, style
+from groundstation.ui.colours import AMBER, DIM, GREEN, LINE, RED, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 NAME, FIGURES, P99, LIMIT = 14, 6, 9, 5
@@ -110,7 +110,7 @@ class WayPanel(Instrument[WayValue]):
         colour = DIM if share is None else GREEN if share < OLD else AMBER if share < STALE else RED
         room = max(0, width - NAME - FIGURES - LIMIT - 2)
         full = 0 if share is None else min(room, round(share * room))
-        line: list[Part] = [("━" * full, style(colour)), ("·" * (room - full), style(FAINT if limit else LINE))]
+        line: list[Part] = [("━" * full, style(colour)), ("·" * (room - full), style(DIM if limit else LINE))]
         end = f"┤{_ms(limit)}" if limit else " --"
         return strip(
             (f"{'command age':<{NAME}}", style(TEXT)), (f"{text:>{FIGURES}} ", style(colour, bold=True)), *line,

@@ -18,7 +18,7 @@ async def test_an_action_of_the_palette_is_done() -> None:
         for letter in "disarm":
             await screen.press(letter)
         await until(lambda: "Disarm" in screen.text)
-        await screen.press("down", "enter")
+        await screen.press("enter")
         await until(lambda: screen.station.of(Disarm))
 
 

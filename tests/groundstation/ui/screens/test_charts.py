@@ -12,7 +12,7 @@ from groundstation.ui.key_gate import OTHER_SCREEN
 from groundstation.ui.screens.charts import ChartsScreen
 from groundstation.views.charts import FieldsRequest, SeriesPage, SeriesRequest
 from tests.groundstation.ui.example_charts import DEMAND, NOW, SPEED, TURN, drive, fields_page, points
-from tests.groundstation.ui.examples import NOON, snapshot, waiting
+from tests.groundstation.ui.examples import DRIVE_WATCH, NOON, snapshot, waiting
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.groundstation.ui.ptys import until
 
@@ -78,7 +78,7 @@ async def test_each_page_is_followed_by_a_request_for_what_is_new() -> None:
         await screen.show(snapshot())
         assert "groundspeed 0.33" in screen.text
         await screen.press("escape")
-        await until(lambda: screen.station.of(Watch)[-1].requests == ())
+        await until(lambda: screen.station.of(Watch)[-1] == DRIVE_WATCH)
 
 
 async def test_a_paused_picture_stays_while_data_go_on() -> None:
