@@ -111,7 +111,7 @@ README_COMMAND = ".venv/bin/pytest -n auto --dist loadgroup -m 'not slow'"
 def test_ci_runs_the_test_command_of_the_readme_and_the_slow_tests() -> None:
     assert README_COMMAND in (ROOT / "README.md").read_text()
     [command] = [line for line in (ROOT / ".ci/run").read_text().splitlines() if ".venv/bin/pytest" in line]
-    assert command.endswith(".venv/bin/pytest -n 4 --dist loadgroup")
+    assert command.endswith(".venv/bin/pytest -n 6 --dist loadgroup")
 
 
 def test_make_runs_the_test_command_of_the_readme() -> None:
