@@ -72,6 +72,11 @@ class Program:
         """Return its latest output, without control sequences."""
         return _CONTROL.sub(b"", bytes(self._output)).decode("utf-8", "replace")
 
+    def text_since(self, received: int) -> str:
+        """Return the output after so many bytes, without control sequences."""
+        new = self.received - received
+        return _CONTROL.sub(b"", bytes(self._output[-new:] if new else b"")).decode("utf-8", "replace")
+
     def type(self, keys: bytes) -> int:
         """Write keys to its terminal; return the time just before, CLOCK_MONOTONIC ns."""
         stamp = time.monotonic_ns()
