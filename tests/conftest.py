@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Sequence
-from typing import TypeVar
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -15,10 +13,6 @@ from dialects.fingerprint import fault
 LONG_TIMEOUT = 300
 """s for a test that starts programs or simulates many minutes; a busy machine takes ten times as long."""
 LONG_MARKERS = ("slow", "e2e", "interop")
-LONG_UNTIL = 0.85
-"""Share of the other tests before the last long one begins, so that none is left alone at the end."""
-
-Kind = TypeVar("Kind")
 
 settings.register_profile(
     "mavhelm",
@@ -49,25 +43,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give LONG_TIMEOUT to the tests with one of LONG_MARKERS, unless they have a timeout of their own.
-
-    With several workers, also spread these tests over the others: they wait more than they compute.
-    """
+    """Give LONG_TIMEOUT to the tests with one of LONG_MARKERS, unless they have a timeout of their own."""
     for item in items:
-        if item.get_closest_marker("timeout") is None and _is_long(item):
+        if item.get_closest_marker("timeout") is None and any(map(item.get_closest_marker, LONG_MARKERS)):
             item.add_marker(pytest.mark.timeout(LONG_TIMEOUT))
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        items[:] = spread(items, _is_long)
-
-
-def _is_long(item: pytest.Item) -> bool:
-    return any(map(item.get_closest_marker, LONG_MARKERS))
-
-
-def spread(items: Sequence[Kind], is_long: Callable[[Kind], bool]) -> list[Kind]:
-    """Return the items with the long ones evenly over the first LONG_UNTIL of the others; else in their order."""
-    longs = [item for item in items if is_long(item)]
-    others = [item for item in items if not is_long(item)]
-    step = LONG_UNTIL * len(others) / max(1, len(longs))
-    places = [*((number * step, item) for number, item in enumerate(longs)), *enumerate(others)]
-    return [item for _, item in sorted(places, key=lambda place: place[0])]
