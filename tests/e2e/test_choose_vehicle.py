@@ -76,8 +76,12 @@ def test_the_other_vehicle_is_chosen_and_driven_and_the_first_one_stands(
     terminal.until(lambda screen: f"ENTER chooses Rover {other}; Rover {first} gets neutral first" in screen, PATIENCE)
     chosen = time.monotonic()
     terminal.press("Enter")
-    listed = terminal.until(lambda screen: row(screen, f"Rover {other}").startswith("│›●"), PATIENCE)
-    assert f"also armed: {first}" in listed.splitlines()[0]
+    listed = terminal.until(
+        lambda screen: (
+            row(screen, f"Rover {other}").startswith("│›●") and f"also armed: {first}" in screen.splitlines()[0]
+        ),
+        PATIENCE,
+    )
     assert f" Rover {other} " in listed.splitlines()[0]
     terminal.until(lambda screen: "firmware 0.1.0" in screen, PATIENCE)
 

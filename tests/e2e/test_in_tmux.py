@@ -19,8 +19,6 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.screens import SCREENS
-from tests.benchmarks.screens import TITLES
 from tests.e2e.programs import LET_GO
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.wheel import modes, notch
@@ -146,24 +144,6 @@ def test_a_key_held_over_the_log_screen_does_not_drive(tmux: Callable[..., Tmux]
         terminal.until(lambda screen: not speed_shown(screen), PATIENCE, holding="i")
     select.select([], [], [], LET_GO)
     terminal.press("1")
-    terminal.until(speed_shown, PATIENCE, holding="i")
-
-
-def test_every_screen_while_driving(tmux: Callable[..., Tmux]) -> None:
-    """A key that is held over all screens drives on none of them, and drives again on Drive."""
-    terminal = tmux(140, 45, "--sitl")
-    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
-    terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
-    terminal.until(speed_shown, PATIENCE, holding="i")
-    for row in SCREENS:
-        if row.in_tabs and row.id != "drive":
-            terminal.press("C-g", row.digit)
-            terminal.until(lambda screen: "neutral" in screen and TITLES[row.id] in screen, PATIENCE, holding="i")  # noqa: B023
-            assert "ARMED" in terminal.screen()
-    terminal.press("F1")
-    for _ in range(10):
-        terminal.until(lambda screen: "╭─ drive" in screen and not speed_shown(screen), PATIENCE, holding="i")
-    select.select([], [], [], LET_GO)
     terminal.until(speed_shown, PATIENCE, holding="i")
 
 

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.config.settings import ThemeName
+from groundstation.ui.colours import use_theme
 from tests.groundstation.ui.programs import Program
 
 
@@ -19,6 +21,7 @@ def _utc(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
         patch.delenv("NO_COLOR", raising=False)
         patch.setenv("COLORTERM", "truecolor")
         time.tzset()
+        use_theme(ThemeName.DARK)  # one for the whole process: another test may have chosen another one
         yield
     time.tzset()
 
