@@ -101,8 +101,9 @@ def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[
     """
     unused = axis_map.unused
     message = ManualControl(target, unused, unused, unused, unused, 0)
-    throttle = round(_clamp(axes.throttle) * axis_map.throttle_span)
-    steering = round(_clamp(axes.steering) * FULL_DEFLECTION)
+    throttle, steering = axes.throttle, axes.steering
+    throttle = round((throttle if -1.0 <= throttle <= 1.0 else _clamp(throttle)) * axis_map.throttle_span)
+    steering = round((steering if -1.0 <= steering <= 1.0 else _clamp(steering)) * FULL_DEFLECTION)
     setattr(message, axis_map.throttle, axis_map.throttle_neutral + throttle)
     setattr(message, axis_map.steering, -steering if axis_map.reverse_flips_steering and throttle < 0 else steering)
     return message

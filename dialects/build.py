@@ -4,7 +4,8 @@ rover.xml includes the definitions of the installed pymavlink; extension fields 
 
 dialects/rover.py is the module that pymavlink's mavgen writes, without what the project does not read at run time,
 followed by code from this file: two flat functions per message (payload bytes <-> fields) and MAVLink 1's payload
-lengths. mavgen's own decode() interprets the definitions at run time, five times slower.
+lengths. mavgen's own decode() interprets the definitions at run time, five times slower. What mavgen's constructors
+store in each message (a header, its name, ten values more) is stored once in its class: a message costs half.
 """
 
 from __future__ import annotations
@@ -35,6 +36,25 @@ TEXTS = ("description", "param", "field")
 """Elements whose text is only documentation."""
 NAMED = ("MAV_CMD", "MAV_RESULT")
 """Enums whose names are kept; of the others only the numbers are."""
+_STORED_IN_CLASS = re.compile(
+    r"        (MAVLink_message\.__init__\(self, MAVLink_\w+\.id, MAVLink_\w+\.msgname\)"
+    r"|self\.(_fieldnames|_instance_field|_instance_offset) = MAVLink_\w+_message\.\w+)"
+)
+"""Lines of a message's constructor that are the same for all messages of a class."""
+_CLASS_ATTRIBUTES = """
+class _NewHeader:
+    def __get__(self, message, owner):
+        return MAVLink_header(owner.id)
+
+
+MAVLink_message._header = _NewHeader()
+MAVLink_message._payload = MAVLink_message._crc = MAVLink_message._link_id = MAVLink_message._instances = None
+MAVLink_message._signed, MAVLink_message._msgbuf = False, b""
+for _each in mavlink_map.values():
+    _each._type, _each._fieldnames = _each.msgname, _each.fieldnames
+    _each._instance_field, _each._instance_offset = _each.instance_field, _each.instance_offset
+"""
+"""A message that was neither sent nor received has a header with its id alone, made when pymavlink asks for it."""
 
 
 def generate(target: Path = MODULE) -> Path:
@@ -43,17 +63,9 @@ def generate(target: Path = MODULE) -> Path:
     The byte code is validated by the source's hash and not its time, so that it stays valid inside a wheel. Without
     it a read-only installation would compile 2 MB of Python at each start (0.5 s and 70 MB more).
     """
-    installed = Path(pymavlink.__file__).parent / "dialects" / "v20"
-    with tempfile.TemporaryDirectory() as scratch:
-        for name in INCLUDES:
-            shutil.copy(installed / name, scratch)
-        add_fields(ADDITIONS, [Path(scratch) / name for name in INCLUDES])
-        xml = Path(shutil.copy(XML, scratch))
-        drop_texts([xml, *(Path(scratch) / name for name in INCLUDES)])
-        module = Path(scratch) / target.name
-        with _quiet():
-            _mavgen(xml, module)
-            messages = _messages(Path(scratch))
+    with tempfile.TemporaryDirectory() as scratch, _quiet():
+        module = generate_plain(Path(scratch))
+        messages = _messages(Path(scratch))
         made_from = runpy.run_path(str(HERE / "fingerprint.py"))["line"]()
         code = "\n".join([strip_unused(module.read_text("utf-8")), *_codec(messages), made_from]) + "\n"
     whole = target.with_suffix(".new")
@@ -61,6 +73,20 @@ def generate(target: Path = MODULE) -> Path:
     whole.replace(target)  # a program that starts meanwhile reads the old module or the new one, never a part
     checked = py_compile.PycInvalidationMode.CHECKED_HASH
     return Path(str(py_compile.compile(str(target), doraise=True, invalidation_mode=checked)))
+
+
+def generate_plain(folder: Path) -> Path:
+    """Write the module as mavgen makes it, and the definitions that it is made of, to `folder`; return its path."""
+    installed = Path(pymavlink.__file__).parent / "dialects" / "v20"
+    definitions = [folder / name for name in INCLUDES]
+    for each in definitions:
+        shutil.copy(installed / each.name, each)
+    add_fields(ADDITIONS, definitions)
+    xml = Path(shutil.copy(XML, folder))
+    drop_texts([xml, *definitions])
+    module = folder / MODULE.name
+    _mavgen(xml, module)
+    return module
 
 
 def add_fields(additions: Path, definitions: Sequence[Path]) -> None:
@@ -104,7 +130,7 @@ def strip_unused(code: str) -> str:
     """Return mavgen's module without enum tables (except names of NAMED) and two methods of each message.
 
     The methods build and send a message through mavgen's MAVLink class. With them and the documentation texts, each
-    process that imports the module takes 1.6 MiB more.
+    process that imports the module takes 1.6 MiB more. Of the constructors the lines of _STORED_IN_CLASS are left out.
     """
     named = re.compile(rf'enums\["({"|".join(NAMED)})"\](\[\d+\])? = ')
     method = re.compile(r"    def \w+_(encode|send)\(self, ")
@@ -114,7 +140,9 @@ def strip_unused(code: str) -> str:
     for line in code.splitlines():
         if line.strip() and not line.startswith("     "):  # not a method's body
             inside = method.match(line) is not None
-        if not inside and (not line.startswith("enums[") or named.match(line)):
+        if inside or _STORED_IN_CLASS.fullmatch(line):
+            continue
+        if not line.startswith("enums[") or named.match(line):
             kept.append(line)
     return "\n".join(kept)
 
@@ -150,6 +178,7 @@ def _messages(folder: Path) -> list[Any]:
 def _codec(messages: list[Any]) -> Iterator[str]:
     """Yield source lines: _decode_N and _encode_N for each message id N, and the tables of them."""
     yield "\n# ---- written by dialects/build.py ----\n"
+    yield _CLASS_ATTRIBUTES
     yield "_new = object.__new__"
     for message in messages:
         yield from _decoder(message)
@@ -171,8 +200,6 @@ def _decoder(message: Any) -> Iterator[str]:
         yield f"    return {cls}(" + ", ".join(f"{name}={value}" for name, value in _slices(fields)) + ")"
         return
     yield f"    m = _new({cls})"
-    yield f"    m._type = {message.name!r}"
-    yield f"    m._fieldnames = {cls}.fieldnames"
     if any(field.array_length for field in fields) or len(fields) == 1:
         yield "    v = _unpack(payload)"
         yield from (f"    m.{name} = {value}" for name, value in _slices(fields))

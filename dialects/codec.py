@@ -28,14 +28,17 @@ CRC_EXTRA: dict[int, bytes] = {number: bytes([message.crc_extra]) for number, me
 BASE_SIZE: dict[int, int] = rover.BASE_SIZES
 """Payload length without extensions: the exact payload length of a MAVLink 1 frame."""
 
-_ZEROS = bytes(255)
-_SIZES = {number: message.unpacker.size for number, message in MESSAGES.items()}
-_DECODERS: dict[int, Any] = rover.DECODERS
+_DECODERS: dict[int, tuple[int, Callable[[bytes], Message]]] = {
+    number: (message.unpacker.size, rover.DECODERS[number]) for number, message in MESSAGES.items()
+}
+"""Message id -> length of the whole payload, and the function that takes it."""
 _ENCODERS: dict[int, Any] = rover.ENCODERS
+_CHECKED = {number: (number.to_bytes(3, "little"), CRC_EXTRA[number]) for number in MESSAGES}
+"""Message id -> its bytes in a header, and the last byte of its checksum."""
 _MAGIC = bytes([MAGIC_V2])
-_HEADER = struct.Struct("<B2xBBBHB")
-"""Header behind the start byte: length, flags (all 0), sequence, system, component, id in two parts."""
-_CRC = struct.Struct("<H")
+_pack_header = struct.Struct("<BBxBBB3s").pack
+"""Header behind the start byte: length, incompatibility flags, sequence, system, component, id."""
+_pack_crc = struct.Struct("<H").pack
 
 
 class EncodeError(ValueError):
@@ -47,14 +50,22 @@ def decode(message_id: int, payload: bytes) -> Message:
 
     Truncated zeros are restored, bytes of unknown extensions are dropped. Raises KeyError for an unknown id.
     """
-    size = _SIZES[message_id]
+    size, decoder = _DECODERS[message_id]
     length = len(payload)
-    if length < size:
-        payload += _ZEROS[: size - length]
-    elif length > size:
-        payload = payload[:size]
-    message: Message = _DECODERS[message_id](payload)
-    return message
+    if length != size:
+        payload = payload.ljust(size, b"\0") if length < size else payload[:size]
+    return decoder(payload)
+
+
+def decode_frame(message_id: int, raw: bytes) -> Message:
+    """Return the message of a whole verified frame, as decode() does. Received frames take this way."""
+    size, decoder = _DECODERS[message_id]
+    length = raw[1]
+    start = HEADER_V2 if raw[0] == MAGIC_V2 else HEADER_V1
+    payload = raw[start : start + length]
+    if length != size:
+        payload = payload.ljust(size, b"\0") if length < size else payload[:size]
+    return decoder(payload)
 
 
 def encode_payload(message: Message) -> bytes:
@@ -66,10 +77,16 @@ def encode_payload(message: Message) -> bytes:
     return payload.rstrip(b"\0") or b"\0"
 
 
-def frame(message_id: int, payload: bytes, sequence: int, system: int, component: int) -> bytes:
-    """Return an unsigned MAVLink 2 frame. `sequence`, `system` and `component` are 0..255."""
-    body = _HEADER.pack(len(payload), sequence, system, component, message_id & 0xFFFF, message_id >> 16) + payload
-    return _MAGIC + body + _CRC.pack(mcrf4xx(body + CRC_EXTRA[message_id]))
+def frame(message_id: int, payload: bytes, sequence: int, system: int, component: int, flags: int = 0) -> bytes:
+    """Return a MAVLink 2 frame without signature. `sequence`, `system` and `component` are 0..255."""
+    number, extra = _CHECKED[message_id]
+    body = _pack_header(len(payload), flags, sequence, system, component, number) + payload
+    return _MAGIC + body + _pack_crc(mcrf4xx(body + extra))
+
+
+def frame_to_sign(message_id: int, payload: bytes, sequence: int, system: int, component: int) -> bytes:
+    """Return a MAVLink 2 frame with the flag for signed frames; link id, timestamp and signature must follow it."""
+    return frame(message_id, payload, sequence, system, component, INCOMPAT_SIGNED)
 
 
 def register(
@@ -83,6 +100,6 @@ def register(
     MESSAGES[number] = message
     CRC_EXTRA[number] = bytes([message.crc_extra])
     BASE_SIZE[number] = base_size
-    _SIZES[number] = message.unpacker.size
-    _DECODERS[number] = decoder
+    _CHECKED[number] = number.to_bytes(3, "little"), CRC_EXTRA[number]
+    _DECODERS[number] = message.unpacker.size, decoder
     _ENCODERS[number] = encoder

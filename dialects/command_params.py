@@ -1,6 +1,6 @@
 """Writes the table of what mission commands need, from the definition of MAV_CMD.
 
-    python -m dialects.command_params > groundstation/mission_commands.py
+    python -m dialects.command_params > groundstation/ui/map/mission_commands.py
 
 The screen's process does not load the dialect, so that the table is a module of its own there. A test compares it with
 the installed definitions.
@@ -27,33 +27,7 @@ Written by dialects/command_params.py from the definition of MAV_CMD (common.xml
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class CommandParam:
-    """One parameter, 1 to 7."""
-
-    number: int
-    label: str
-    unit: str = ""
-    low: float | None = None
-    high: float | None = None
-    step: float | None = None
-    """1.0: whole numbers."""
-
-
-@dataclass(frozen=True, slots=True)
-class MissionCommand:
-    """One MAV_CMD."""
-
-    name: str
-    """Without MAV_CMD_."""
-    has_location: bool
-    """Parameters 5 to 7 are a position."""
-    params: tuple[CommandParam, ...] = ()
-    """Those in use, without a position."""
-
+from groundstation.ui.map.mission_command import CommandParam, MissionCommand
 
 _P = CommandParam
 
@@ -65,7 +39,7 @@ _TAIL = '''}  # fmt: skip
 
 
 def write_module(definition: Path = DEFINITION) -> str:
-    """Return the text of groundstation/mission_commands.py."""
+    """Return the text of groundstation/ui/map/mission_commands.py."""
     commands = next(each for each in ET.parse(definition).iter("enum") if each.get("name") == "MAV_CMD")
     rows = sorted((int(entry.get("value", "0")), entry) for entry in commands.iter("entry") if _is_item(entry))
     return _HEAD + "".join(line for number, entry in rows for line in _row(number, entry)) + _TAIL

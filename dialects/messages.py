@@ -76,6 +76,7 @@ LogEntry = rover.MAVLink_log_entry_message
 LogRequestData = rover.MAVLink_log_request_data_message
 LogData = rover.MAVLink_log_data_message
 LogErase = rover.MAVLink_log_erase_message
+MagCalProgress = rover.MAVLink_mag_cal_progress_message
 MagCalReport = rover.MAVLink_mag_cal_report_message
 LogRequestEnd = rover.MAVLink_log_request_end_message
 ComponentMetadata = rover.MAVLink_component_metadata_message
@@ -93,6 +94,8 @@ ActuatorOutputStatus = rover.MAVLink_actuator_output_status_message
 RelayStatus = rover.MAVLink_relay_status_message
 RcChannels = rover.MAVLink_rc_channels_message
 AttitudeQuaternion = rover.MAVLink_attitude_quaternion_message
+RawImu = rover.MAVLink_raw_imu_message
+ScaledImu = rover.MAVLink_scaled_imu_message
 HighresImu = rover.MAVLink_highres_imu_message
 Odometry = rover.MAVLink_odometry_message
 Altitude = rover.MAVLink_altitude_message
@@ -119,6 +122,9 @@ RoverLinkStatus = rover.MAVLink_rover_link_status_message
 RoverDriveInfo = rover.MAVLink_rover_drive_info_message
 RoverControl = rover.MAVLink_rover_control_message
 
+# Written to logs only
+RoverStationEvent = rover.MAVLink_rover_station_event_message
+
 MESSAGES: dict[int, type[Message]] = rover.mavlink_map
 """Every message of the dialect by id."""
 
@@ -144,7 +150,7 @@ MISSION_PAUSED = rover.MISSION_STATE_PAUSED
 """`mission_state` of MISSION_CURRENT."""
 
 
-def decode_text(message: StatusText) -> str:
+def decode_text(message: StatusText | RoverStationEvent) -> str:
     """Return the text as UTF-8 (the generated decoder knows only ASCII), with control characters replaced.
 
     The text goes to a terminal: an escape sequence in it must not reach the screen as one.
@@ -153,6 +159,20 @@ def decode_text(message: StatusText) -> str:
     return printable(raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
 
 
+def encode_text(text: str, size: int) -> bytes:
+    """Return `text` as UTF-8 of at most `size` bytes, cut between two characters."""
+    return text.encode("utf-8", "replace")[:size].decode("utf-8", "ignore").encode()
+
+
+def hide_key(message: Message) -> Message:
+    """Return the message, but SETUP_SIGNING without its key: for all that shows messages or keeps them."""
+    if type(message) is not SetupSigning:
+        return message
+    return SetupSigning(message.target_system, message.target_component, bytes(32), 0)
+
+
 def printable(text: str) -> str:
     """Return `text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
+    if text.isprintable():
+        return text
     return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)

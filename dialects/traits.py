@@ -33,10 +33,12 @@ class Trait(Flag):
     """Our own are left out of telemetry logs: a log that is read while it is written would grow by what is read."""
     SECRET = auto()
     """Holds a key: left out of every log, whoever sent it."""
+    LOG_ONLY = auto()
+    """A note of the program that writes a log. It is on no link: one that arrives is neither obeyed nor recorded."""
 
 
 _STATE, _ACKED, _URGENT, _DEMAND, _COMMAND = Trait.STATE, Trait.ACKED, Trait.URGENT, Trait.DEMAND, Trait.COMMAND
-_LOCAL, _UNLOGGED, _SECRET = Trait.LOCAL, Trait.UNLOGGED, Trait.SECRET
+_LOCAL, _UNLOGGED, _SECRET, _LOG_ONLY = Trait.LOCAL, Trait.UNLOGGED, Trait.SECRET, Trait.LOG_ONLY
 
 TRAITS: dict[type[m.Message], Trait] = {
     # Demands and what keeps them valid
@@ -88,6 +90,8 @@ TRAITS: dict[type[m.Message], Trait] = {
     # Of one link
     m.RadioStatus: _STATE | _LOCAL,
     m.SetupSigning: _STATE | _LOCAL | _UNLOGGED | _SECRET,
+    # Of logs only
+    m.RoverStationEvent: _ACKED | _LOCAL | _LOG_ONLY,
 }
 """Message -> its traits. A message that is not listed has STATE."""
 
@@ -105,6 +109,7 @@ COMMANDS = ids_with(Trait.COMMAND)
 LOCAL = ids_with(Trait.LOCAL)
 UNLOGGED = ids_with(Trait.UNLOGGED)
 SECRET = ids_with(Trait.SECRET)
+LOG_ONLY = ids_with(Trait.LOG_ONLY)
 
 
 _STOPS_AT_ZERO = (
@@ -126,6 +131,23 @@ def is_stop(message: m.Message) -> bool:
     if message.command == rover.MAV_CMD_DO_SET_MODE:
         return _holds(message.param1, message.param2, message.param3)
     return message.command in _STOPS_AT_ZERO and bool(message.param1 == 0)
+
+
+_ASKS = (
+    rover.MAV_CMD_REQUEST_MESSAGE,
+    rover.MAV_CMD_SET_MESSAGE_INTERVAL,
+    rover.MAV_CMD_GET_MESSAGE_INTERVAL,
+    rover.MAV_CMD_REQUEST_PROTOCOL_VERSION,
+    rover.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+    rover.MAV_CMD_GET_HOME_POSITION,
+    rover.MAV_CMD_RUN_PREARM_CHECKS,
+)
+"""Commands that ask for messages, rates and checks."""
+
+
+def only_asks(message: m.Message) -> bool:
+    """Return whether this is a command that changes nothing but what is sent to its sender."""
+    return isinstance(message, m.CommandLong | m.CommandInt) and message.command in _ASKS
 
 
 def _holds(base: float, custom: float, sub: float) -> bool:

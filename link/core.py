@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from dialects.messages import Message
+from link.signing.role import Role
 
 
 class Peer(NamedTuple):
@@ -48,6 +49,10 @@ class Received(NamedTuple):
     """Another program counts in the same run, with the same ids and at the same peer."""
     digest: int = 0
     """Equal for frames that are equal byte for byte; 0: not known."""
+    role: Role = Role.SET_UP
+    """What the sender may do: the role of the key that signed the frame, or what the link grants unsigned frames."""
+    signed: bool = False
+    """The frame carried a signature, and it was verified."""
 
     @property
     def may_ask(self) -> bool:
@@ -70,6 +75,34 @@ class SourceCount:
 
     received: int
     lost: int
+
+
+@dataclass(frozen=True, slots=True)
+class SigningCounts:
+    """Frames that were refused for want of a good signature; the counters run since the link opened."""
+
+    bad: int = 0
+    """Made with no known key, or changed on the way."""
+    replayed: int = 0
+    """Not newer than those before them."""
+    unsigned: int = 0
+    """Without a signature where one is required."""
+    too_old: int = 0
+    """The first of their stream, and more than a minute behind our clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class GuardReport:
+    """What is known of signing on a link that verifies."""
+
+    key: str
+    """Name and fingerprint of the key that signs what goes to everybody; empty without a key."""
+    refused: Mapping[int, SigningCounts] = field(default_factory=dict)
+    """System id that a refused frame names -> how many. It may be anybody's: nothing of these frames is proven."""
+    behind: Mapping[int, float] = field(default_factory=dict)
+    """System id -> s by which the clock of its newest late frame was behind ours. The frame was genuine."""
+    ahead: Mapping[int, float] = field(default_factory=dict)
+    """System id -> s by which its signing clock is ahead of ours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +129,12 @@ class LinkReport:
     """Names of messages that arrive complete but with the checksum of another definition."""
     signing: frozenset[int] = frozenset()
     """System ids whose newest frame was signed."""
+    verified: frozenset[int] = frozenset()
+    """Those of them whose signature was verified with a key of ours."""
+    refused: SigningCounts | None = None
+    """None: this link verifies no signatures."""
+    guard: GuardReport | None = None
+    """The same."""
     own_id: bool = False
     """Another program sends with our system and component id."""
     down: str | None = None
@@ -140,12 +179,33 @@ class Core(Protocol):
 
 
 @runtime_checkable
+class EarlyActor(Protocol):
+    """A core that may have something to do before its next tick, and too soon for a tick of everything."""
+
+    @property
+    def due_at(self) -> float | None:
+        """When `act` is to be called; None: not before the next tick, after which it is asked again."""
+
+    def act(self, now: float) -> None:
+        """Do it; the messages are sent as after a tick."""
+
+
+@runtime_checkable
 class PlaceKeeper(Protocol):
     """A core that is controlled by one peer, for which each link keeps places."""
 
     @property
     def reserved_ids(self) -> tuple[int, int] | None:
         """System and component id of the ground station in control, or None."""
+
+
+@runtime_checkable
+class RestingCore(Protocol):
+    """A core that has nothing to do for some time."""
+
+    @property
+    def may_rest(self) -> bool:
+        """Whether ticks every 0.1 s are enough until the next message arrives."""
 
 
 @runtime_checkable

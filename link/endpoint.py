@@ -10,10 +10,18 @@ import difflib
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
 
 
 class EndpointError(ValueError):
     """An endpoint cannot be parsed; the message is one line with the endpoint, the error and the remedy."""
+
+
+class Side(Enum):
+    """Which end of a link a program is, where both ends write the same endpoint."""
+
+    VEHICLE = auto()
+    GROUND_STATION = auto()
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +38,19 @@ class Endpoint:
     """Of a serial port."""
     baud: int = 0
     """bit/s, for serial ports."""
+    locator: str = ""
+    """Of a Zenoh router, as "tls/HOST:PORT", or the path of a Zenoh configuration file."""
+    fleet: str = ""
+    vehicle: str = ""
+    """Its name in the fleet; empty for all of them."""
+    side: Side | None = None
+    """Given by the program that opens the endpoint; None: what the endpoint names."""
+
+
+SERIAL = "serial"
+"""The scheme of serial and USB ports."""
+ZENOH = "zenoh"
+"""The scheme of fleets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +63,9 @@ class Scheme:
     """Takes the scheme and what follows its colon."""
     factory: str
     """`module:function` of a TransportFactory (link/transport/transport.py), imported when the first one is opened."""
+    private: str | None = None
+    """`module:function` that takes an endpoint and returns whether strangers cannot send to it; None: its address says
+    so (link/transport/reach.py)."""
 
 
 MIN_BAUD, MAX_BAUD = 300, 12_000_000
@@ -104,6 +128,35 @@ def _parse_path_baud(scheme: str, rest: str) -> Endpoint:
     return Endpoint(text, scheme, path=path, baud=int(baud))
 
 
+FLEET_NAME = r"[A-Za-z0-9][A-Za-z0-9._-]{0,23}"
+FLEET_NAME_RULE = "1 to 24 letters, digits, dots, hyphens or underscores, beginning with a letter or digit"
+_LOCATOR = re.compile(r"(?P<host>(?:tcp|udp|tls|quic)/(?:\[[0-9a-fA-F:]+\]|[^][:/?]+)):(?P<port>[0-9]+)(?:\?[\w=;]+)?")
+_CONFIG = re.compile(r"(?P<path>.+?\.json5?)(?:/(?P<names>.*))?")
+_ZENOH_EXAMPLE = "for example zenoh:alice.json5/farm or zenoh:tcp/192.168.1.2:7447/farm/rover1"
+
+
+def _parse_zenoh(scheme: str, rest: str) -> Endpoint:
+    text = f"{scheme}:{rest}"
+    protocol, _, behind = rest.partition("/")
+    if protocol in ("tcp", "udp", "tls", "quic"):
+        address, _, names = behind.partition("/")
+        locator = f"{protocol}/{address}"
+        found = _LOCATOR.fullmatch(locator)
+        if not found or not _is_within(found["port"], 1, 65535):
+            raise EndpointError(f"endpoint {text!r}: {locator!r} is no address of a router; {_ZENOH_EXAMPLE}")
+    elif config := _CONFIG.fullmatch(rest):
+        locator, names = config["path"], config["names"] or ""
+    else:
+        raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].syntax}, {_ZENOH_EXAMPLE}")
+    fleet, *vehicle = names.split("/")
+    if not fleet or len(vehicle) > 1:
+        raise EndpointError(f"endpoint {text!r}: name the fleet behind {locator}, and one vehicle at most")
+    for name in (fleet, *vehicle):
+        if not re.fullmatch(FLEET_NAME, name):
+            raise EndpointError(f"endpoint {text!r}: {name!r} is no name; it has {FLEET_NAME_RULE}")
+    return Endpoint(text, scheme, locator=locator, fleet=fleet, vehicle="".join(vehicle))
+
+
 SCHEMES: dict[str, Scheme] = {
     "udpin": Scheme(
         "udpin:HOST:PORT",
@@ -123,11 +176,18 @@ SCHEMES: dict[str, Scheme] = {
         _parse_destination,
         "link.transport.tcp:open_tcpout",
     ),
-    "serial": Scheme(
+    SERIAL: Scheme(
         "serial:PATH:BAUD",
         "serial port or USB radio; reopened after it was unplugged",
         _parse_path_baud,
         "link.transport.serial:open_serial",
+    ),
+    ZENOH: Scheme(
+        "zenoh:FILE_OR_ROUTER/FLEET[/VEHICLE]",
+        "over a router on the internet, see docs/fleet.md; FILE.json5 is made by `bridge fleet`",
+        _parse_zenoh,
+        "link.fleet.transport:open_fleet",
+        private="link.fleet.config:is_private",
     ),
 }
 """Scheme -> its link type."""
@@ -162,9 +222,10 @@ def parse_endpoints(texts: Sequence[str]) -> list[Endpoint]:
     return endpoints
 
 
-def _end(endpoint: Endpoint) -> tuple[str, str, int, str]:
+def _end(endpoint: Endpoint) -> tuple[str | int, ...]:
     host = "127.0.0.1" if endpoint.host == "localhost" else endpoint.host
-    return endpoint.scheme, host, endpoint.port, endpoint.path
+    names = (endpoint.locator, endpoint.fleet, endpoint.vehicle)
+    return endpoint.scheme, host, endpoint.port, endpoint.path, *names
 
 
 def _listens_for_both(one: Endpoint, other: Endpoint) -> bool:

@@ -11,18 +11,32 @@ from functools import partial
 from dialects.codec import EncodeError, encode_payload
 from dialects.enums import Severity
 from dialects.messages import Message
-from link.core import Core, LinkReport, Outgoing, PlaceKeeper, Received, SendGuard, SendListener
+from link.core import (
+    Core,
+    EarlyActor,
+    LinkReport,
+    Outgoing,
+    PlaceKeeper,
+    Received,
+    RestingCore,
+    SendGuard,
+    SendListener,
+)
+from link.endpoint import Side
 from link.protocol.channel import Channel
 from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
 from link.protocol.peer_table import MAX_PEERS
 from link.protocol.sent_frames import SentFrames
 from link.routing.router import Delivery, Router
+from link.signing_keeper import SigningKeeper
 from link.transport.transport import Link, Transport
 from link.transport.transports import open_transports
 
 log = logging.getLogger(__name__)
 
+REST_PERIOD = 0.1
+"""s between two ticks of a core that rests."""
 REPORT_PERIOD = 1.0
 """s between two calls of core.observe()."""
 
@@ -39,13 +53,22 @@ def open_links(
     wanted: frozenset[int] | None = None,
     sent: SentFrames | None = None,
     places: int = MAX_PEERS,
+    side: Side | None = None,
 ) -> list[Link]:
-    """Open all endpoints, or none. Raises EndpointError or LinkError. `wanted`, `sent`, `places`: see Channel."""
-    sent = sent or SentFrames()
-    return [
-        build_link(transport, index, system=system, component=component, wanted=wanted, sent=sent, places=places)
-        for index, transport in enumerate(open_transports(endpoints))
-    ]
+    """Open all endpoints, or none. Raises EndpointError or LinkError.
+
+    `wanted`, `sent`, `places`: see Channel. `side`: which end this program is; a ground station downloads files.
+    """
+    build = partial(
+        build_link,
+        system=system,
+        component=component,
+        wanted=wanted,
+        sent=sent or SentFrames(),
+        places=places,
+        downloads=side is Side.GROUND_STATION,
+    )
+    return [build(transport, index) for index, transport in enumerate(open_transports(endpoints, side))]
 
 
 def build_link(
@@ -58,6 +81,7 @@ def build_link(
     sent: SentFrames | None = None,
     watch_only: bool = False,
     places: int = MAX_PEERS,
+    downloads: bool = False,
 ) -> Link:
     """Return a link over an open transport. `index` is unique among the links of a runner."""
     channel = Channel(
@@ -71,6 +95,7 @@ def build_link(
         capacity=transport.capacity,
         sent=sent,
         places=places,
+        downloads=downloads,
     )
     return Link(transport, channel, watch_only)
 
@@ -95,11 +120,13 @@ class Runner:
         broken: Callable[[Exception], None] | None = None,
         log_tap: LogTap | None = None,
         sent: SentCallback | None = None,
+        signing: SigningKeeper | None = None,
     ) -> None:
         """`log_tap` records what all links receive and what the core sends, even without any peer.
 
-        `sent` is called for each frame of the core.
+        `sent` is called for each frame of the core. `signing` guards all links.
         """
+        self._signing = signing
         self._core = core
         self._broken = broken
         self._links = {link.channel.index: link for link in links}
@@ -110,6 +137,9 @@ class Runner:
         self._may_send = core.may_send if isinstance(core, SendGuard) else None
         self._on_sent = sent
         self._keeper = core if isinstance(core, PlaceKeeper) else None
+        self._resting = core if isinstance(core, RestingCore) else None
+        self._early = core if isinstance(core, EarlyActor) else None
+        self._early_timer: asyncio.TimerHandle | None = None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
         self._events = LinkEvents()
@@ -120,7 +150,7 @@ class Runner:
         """Ids of messages whose encoding has failed and was logged: a message may be asked for 100 times a second."""
         self._update_router()
         for link in links:
-            link.channel.log_tap = log_tap
+            self._prepare(link)
 
     @property
     def links(self) -> tuple[Link, ...]:
@@ -130,11 +160,16 @@ class Runner:
     def add(self, link: Link) -> None:
         """Add an open link while run() runs; the others go on."""
         self._links[link.channel.index] = link
-        link.channel.log_tap = self._log_tap
+        self._prepare(link)
         if self._router:
             self._router.table.add_link(link.channel.index, *_way(link))
         self._update_router()
         self._start(link)
+
+    def _prepare(self, link: Link) -> None:
+        link.channel.log_tap = self._log_tap
+        if self._signing is not None:
+            link.channel.guard = self._signing.guard(link.channel.index)
 
     def remove(self, index: int) -> None:
         """Close a link and forget it while run() runs; the others go on. An unknown index changes nothing."""
@@ -167,11 +202,14 @@ class Runner:
             self._tick()
             await self._ended
         finally:
-            if self._timer:
-                self._timer.cancel()
+            for timer in (self._timer, self._early_timer):
+                if timer:
+                    timer.cancel()
             self._send_remaining()
             for link in self.links:
                 link.close()
+            if self._signing is not None:
+                self._signing.close(loop.time())
 
     def _start(self, link: Link) -> None:
         index = link.channel.index
@@ -200,11 +238,30 @@ class Runner:
             return
         try:
             step()
+            self._plan_early()
         except Exception as error:
             if self._broken is None:
                 self._ended.set_exception(error)
             else:
                 self._broken(error)
+
+    def _plan_early(self) -> None:
+        """Set the timer for what the core has to do before the next tick."""
+        due = self._early.due_at if self._early is not None else None
+        if self._early_timer is not None and self._early_timer.when() != due:
+            self._early_timer.cancel()
+            self._early_timer = None
+        if due is not None and self._early_timer is None:
+            self._early_timer = asyncio.get_running_loop().call_at(due, self._act_early)
+
+    def _act_early(self) -> None:
+        self._early_timer = None
+        self._guard(self._run_early)
+
+    def _run_early(self) -> None:
+        assert self._early is not None
+        self._early.act(asyncio.get_running_loop().time())
+        self._flush()
 
     def _deliver(self, index: int, received: Sequence[tuple[bytes, Hashable]]) -> None:
         self._guard(lambda: self._receive(index, received))
@@ -217,14 +274,17 @@ class Runner:
             self._router.table.handle_disconnect(index, address)
 
     def _receive(self, index: int, received: Sequence[tuple[bytes, Hashable]]) -> None:
-        now = asyncio.get_running_loop().time()
+        loop = asyncio.get_running_loop()
         if index not in self._links:
             return
         for data, address in received:
+            now = (
+                loop.time()
+            )  # of each, so that a change behind a repeat moves the ramps in this call, not a cycle later
             self._hand_over(self._links[index].channel.receive(data, address, now), now)
         self._flush()
         if self._router:  # after our own replies, which go first
-            self._forward(self._router.receive(index, received, now))
+            self._forward(self._router.receive(index, received, loop.time()))
 
     def _forward(self, deliveries: Sequence[Delivery]) -> None:
         for index, address, frames in deliveries:
@@ -239,7 +299,8 @@ class Runner:
         self._guard(self._run_tick)
         loop = asyncio.get_running_loop()
         # Absolute deadlines do not drift. After a pause missed ticks are skipped.
-        self._tick_due = max(self._tick_due + self._period, loop.time())
+        rests = self._resting is not None and self._resting.may_rest
+        self._tick_due = max(self._tick_due + (REST_PERIOD if rests else self._period), loop.time())
         self._timer = loop.call_at(self._tick_due, self._tick)
 
     def _run_tick(self) -> None:
@@ -255,6 +316,8 @@ class Runner:
         self._flush()
 
     def _observe(self, now: float) -> None:
+        if self._signing is not None:
+            self._signing.update(now)
         for link in self.links:
             link.channel.expire_peers(now)
             if self._keeper is not None:
@@ -285,20 +348,22 @@ class Runner:
             log.error("a message could not be encoded and was not sent: %s", error)
 
     def _send(self, outgoing: Outgoing) -> None:
-        payload = encode_payload(outgoing.message)
+        payload, taken = encode_payload(outgoing.message), False
         for link in self._links.values():
             if link.watch_only:
                 continue
-            for data, address, sequence in link.channel.send(outgoing, payload):
+            now = asyncio.get_running_loop().time()
+            for data, address, sequence in link.channel.send(outgoing, payload, now):
                 now = asyncio.get_running_loop().time()
                 if self._may_send and not self._may_send(outgoing.message, now):
                     return
                 link.send(data, address)
+                taken = True
                 if self._sent:
                     self._sent(outgoing.message, sequence, now)
                 if self._on_sent:
                     self._on_sent(link, address, outgoing.message, sequence, now)
-        if self._log_tap:
+        if self._log_tap and (taken or self._log_tap.unsent):
             self._log_tap.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
 
 

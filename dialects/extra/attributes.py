@@ -6,7 +6,7 @@ import difflib
 import re
 from collections.abc import Mapping
 
-from dialects.extra.definitions import TYPES, Entry, Field, Place
+from dialects.extra.definitions import TYPES, Entry, Field, FilePosition
 from dialects.extra.errors import DialectError
 
 Attributes = Mapping[str, str]
@@ -30,14 +30,14 @@ _VERSION_TYPE = "uint8_t_mavlink_version"
 """Type of the version in HEARTBEAT."""
 
 
-def required(attributes: Attributes, key: str, element: str, place: Place) -> str:
+def required(attributes: Attributes, key: str, element: str, place: FilePosition) -> str:
     """Return an attribute that the element must have."""
     if key not in attributes:
         raise DialectError(f'{place}: <{element}> has no {key}: add {key}="..."')
     return attributes[key]
 
 
-def read_name(attributes: Attributes, element: str, place: Place) -> str:
+def read_name(attributes: Attributes, element: str, place: FilePosition) -> str:
     """Return the name of an element: an identifier, so that it may stand on the screen and in a filter."""
     name = required(attributes, "name", element, place)
     if not _NAME.fullmatch(name):
@@ -46,7 +46,7 @@ def read_name(attributes: Attributes, element: str, place: Place) -> str:
     return name
 
 
-def read_id(attributes: Attributes, place: Place) -> int:
+def read_id(attributes: Attributes, place: FilePosition) -> int:
     """Return the id of a message."""
     text = required(attributes, "id", "message", place)
     if not _NUMBER.fullmatch(text) or int(text) > HIGHEST_ID:
@@ -54,7 +54,7 @@ def read_id(attributes: Attributes, place: Place) -> int:
     return int(text)
 
 
-def read_field(attributes: Attributes, place: Place) -> Field:
+def read_field(attributes: Attributes, place: FilePosition) -> Field:
     """Return a field of a message."""
     name = read_name(attributes, "field", place)
     kind, length = _read_type(required(attributes, "type", "field", place), name, place)
@@ -64,7 +64,7 @@ def read_field(attributes: Attributes, place: Place) -> Field:
     )  # fmt: skip
 
 
-def read_entry(attributes: Attributes, highest: int, place: Place) -> Entry:
+def read_entry(attributes: Attributes, highest: int, place: FilePosition) -> Entry:
     """Return an entry of an enum; without a value it gets the one above the `highest`."""
     name = read_name(attributes, "entry", place)
     if "value" not in attributes:
@@ -72,7 +72,7 @@ def read_entry(attributes: Attributes, highest: int, place: Place) -> Entry:
     return Entry(name, _read_value(attributes["value"], name, place), False, place)
 
 
-def _read_type(text: str, name: str, place: Place) -> tuple[str, int]:
+def _read_type(text: str, name: str, place: FilePosition) -> tuple[str, int]:
     """Return the type without its array, and the length of the array."""
     match = _TYPE.fullmatch(text)
     kind = match["type"].replace(_VERSION_TYPE, "uint8_t") if match else ""
@@ -86,13 +86,13 @@ def _read_type(text: str, name: str, place: Place) -> tuple[str, int]:
     return kind, length
 
 
-def _read_units(text: str, name: str, place: Place) -> str:
+def _read_units(text: str, name: str, place: FilePosition) -> str:
     if len(text) > UNITS_MAX or not text.isprintable():
         raise DialectError(f"{place}: field {name}: units {_shown(text)}: use at most {UNITS_MAX} printable characters")
     return text
 
 
-def _read_value(text: str, name: str, place: Place) -> int:
+def _read_value(text: str, name: str, place: FilePosition) -> int:
     match = _VALUE.fullmatch(text)
     value = _number(match) if match else None
     if value is None or not -(1 << 63) <= value < 1 << 64:

@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from dialects.extra.attributes import Attributes, read_entry, read_field, read_id, read_name
-from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, Field, MessageDefinition, Place
+from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, Field, FilePosition, MessageDefinition
 from dialects.extra.errors import DialectError
 from dialects.messages import printable
 
@@ -58,10 +58,10 @@ class _Parser:
         self._open: list[str] = [_ROOT]
         self._text: list[str] = []
         """Of the include that is open."""
-        self._includes: list[tuple[str, Place]] = []
+        self._includes: list[tuple[str, FilePosition]] = []
         self._messages: list[MessageDefinition] = []
         self._enums: list[EnumDefinition] = []
-        self._head: tuple[str, int, bool, Place] = ("", 0, False, Place(name, 0))
+        self._head: tuple[str, int, bool, FilePosition] = ("", 0, False, FilePosition(name, 0))
         """Of the message or enum that is open: name, id, whether it is a bitmask, place."""
         self._fields: list[Field] = []
         self._base_fields: int | None = None
@@ -73,7 +73,7 @@ class _Parser:
         self._xml.StartElementHandler = self._start
         self._xml.EndElementHandler = self._end
         self._xml.StartDoctypeDeclHandler = self._refuse_doctype
-        self._begin: dict[str, Callable[[Attributes, Place], None]] = {
+        self._begin: dict[str, Callable[[Attributes, FilePosition], None]] = {
             "include": self._begin_include,
             "enum": self._begin_enum,
             "entry": self._add_entry,
@@ -97,8 +97,8 @@ class _Parser:
         return DefinitionFile(tuple(self._includes), tuple(self._messages), tuple(self._enums))
 
     @property
-    def _place(self) -> Place:
-        return Place(self._name, self._xml.CurrentLineNumber)
+    def _place(self) -> FilePosition:
+        return FilePosition(self._name, self._xml.CurrentLineNumber)
 
     # ---- expat's handlers ----
 
@@ -123,7 +123,7 @@ class _Parser:
 
     # ---- elements ----
 
-    def _begin_include(self, _: Attributes, place: Place) -> None:
+    def _begin_include(self, _: Attributes, place: FilePosition) -> None:
         self._text = []
         self._xml.CharacterDataHandler = self._text.append
         self._head = ("", 0, False, place)
@@ -132,11 +132,11 @@ class _Parser:
         self._xml.CharacterDataHandler = None
         self._includes.append(("".join(self._text).strip(), self._head[3]))
 
-    def _begin_enum(self, attributes: Attributes, place: Place) -> None:
+    def _begin_enum(self, attributes: Attributes, place: FilePosition) -> None:
         self._head = (read_name(attributes, "enum", place), 0, attributes.get("bitmask") == "true", place)
         self._entries, self._highest = [], 0
 
-    def _add_entry(self, attributes: Attributes, place: Place) -> None:
+    def _add_entry(self, attributes: Attributes, place: FilePosition) -> None:
         entry = read_entry(attributes, self._highest, place)
         self._highest = max(self._highest, entry.value)
         self._entries.append(entry)
@@ -145,16 +145,16 @@ class _Parser:
         name, _, bitmask, place = self._head
         self._enums.append(EnumDefinition(name, bitmask, tuple(self._entries), place))
 
-    def _begin_message(self, attributes: Attributes, place: Place) -> None:
+    def _begin_message(self, attributes: Attributes, place: FilePosition) -> None:
         self._head = (read_name(attributes, "message", place), read_id(attributes, place), False, place)
         self._fields, self._base_fields = [], None
 
-    def _begin_extensions(self, _: Attributes, place: Place) -> None:
+    def _begin_extensions(self, _: Attributes, place: FilePosition) -> None:
         if self._base_fields is not None:
             raise DialectError(f"{place}: {self._head[0]} has <extensions> twice: keep the first")
         self._base_fields = len(self._fields)
 
-    def _add_field(self, attributes: Attributes, place: Place) -> None:
+    def _add_field(self, attributes: Attributes, place: FilePosition) -> None:
         field = read_field(attributes, place)
         if any(each.name == field.name for each in self._fields):
             raise DialectError(f"{place}: {self._head[0]} has a field {field.name} already: rename one of them")

@@ -22,7 +22,7 @@ SIZES: dict[str, int] = {name: struct.calcsize("<" + code) for name, code in TYP
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class FilePosition:
     """Where in a definition file something stands."""
 
     file: str
@@ -46,7 +46,7 @@ class Field:
     enum: str
     bitmask: bool
     """The field itself says that its bits are flags; its enum may say so as well."""
-    place: Place
+    place: FilePosition
 
     @property
     def size(self) -> int:
@@ -69,7 +69,7 @@ class MessageDefinition:
     name: str
     fields: tuple[Field, ...]
     extensions: tuple[Field, ...]
-    place: Place
+    place: FilePosition
 
     @property
     def wire_order(self) -> tuple[Field, ...]:
@@ -108,7 +108,7 @@ class Entry:
     value: int
     automatic: bool
     """The file names no value: it is the one above the highest."""
-    place: Place
+    place: FilePosition
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,13 +118,13 @@ class EnumDefinition:
     name: str
     bitmask: bool
     entries: tuple[Entry, ...]
-    place: Place
+    place: FilePosition
 
 
 @dataclass(frozen=True, slots=True)
 class DefinitionFile:
     """The content of one file."""
 
-    includes: tuple[tuple[str, Place], ...]
+    includes: tuple[tuple[str, FilePosition], ...]
     messages: tuple[MessageDefinition, ...]
     enums: tuple[EnumDefinition, ...]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pymavlink
 
 from dialects.extra.definition_file import read_definitions
-from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, MessageDefinition, Place
+from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, FilePosition, MessageDefinition
 from dialects.extra.errors import DialectError
 from dialects.messages import printable
 
@@ -61,7 +61,7 @@ class _Files:
     _open: list[Path] = field(default_factory=list)
     """The files that include each other, down to the one that is read."""
 
-    def read(self, text: str, place: Place | None) -> None:
+    def read(self, text: str, place: FilePosition | None) -> None:
         """Read a file, unless it was read, and those that it includes. `place`: the include, None for the first."""
         path, name = self._find(text, place)
         if path in self._open:
@@ -78,21 +78,21 @@ class _Files:
             self.read(include, where)
         self._open.pop()
 
-    def _find(self, text: str, place: Place | None) -> tuple[Path, str]:
+    def _find(self, text: str, place: FilePosition | None) -> tuple[Path, str]:
         """Return the path of a file, and its name for error messages."""
         for folder in self._folders(place):
             if text and os.path.exists(folder / text):  # Path.exists raises for a long name
                 return (folder / text).resolve(), printable(text if place is None else str(folder / text))
         raise DialectError(_missing(text, place))
 
-    def _folders(self, place: Place | None) -> tuple[Path, ...]:
+    def _folders(self, place: FilePosition | None) -> tuple[Path, ...]:
         if place is None:
             return (Path(), SHIPPED)
         beside = self._open[-1].parent
         return (self.home, SHIPPED) if beside == SHIPPED else (beside, self.home, SHIPPED)
 
 
-def _missing(text: str, place: Place | None) -> str:
+def _missing(text: str, place: FilePosition | None) -> str:
     if place is None:
         shipped = bool(text) and os.path.exists(SHIPPED / f"{text}.xml")
         what = f"did you mean {text}.xml?" if shipped else "name the XML file of the dialect"

@@ -10,6 +10,7 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,8 @@ examples:
   bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550        an autopilot, for any number of ground stations
   bridge serial:/dev/ttyACM0:921600 udpout:192.168.1.20:14550 udpin:127.0.0.1:14551
   bridge udpin:0.0.0.0:14550 tcpin:0.0.0.0:5760 --json --tlog logs
+  bridge doctor serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550  what arrives there, and where it would go; sends nothing
+  bridge fleet --help, bridge router --help                    vehicles and ground stations over the internet
 
 endpoints (two or more):
 {endpoints}
@@ -41,6 +44,12 @@ endpoints (two or more):
 exit codes: 0 stopped by a signal (SIGTERM, Ctrl-C, SIGHUP), 2 usage error.
 """
 
+SUBCOMMANDS = {
+    "doctor": "link.bridge.doctor.command",
+    "router": "link.bridge.fleet.router_command",
+    "fleet": "link.bridge.fleet.fleet_command",
+}
+"""First argument that does something else than join endpoints -> the module with its `run`."""
 SWITCH_INTERVAL = 0.0005
 """s that the table's thread may hold up the loop at a time; Python's default of 5 ms would show in the latency."""
 
@@ -58,8 +67,12 @@ class _Version(argparse.Action):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the bridge; return the exit code."""
     stdio.ensure_open()
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if arguments[:1] and arguments[0] in SUBCOMMANDS:
+        run: Callable[[Sequence[str]], int] = import_module(SUBCOMMANDS[arguments[0]]).run
+        return run(arguments[1:])
     parser = _parser()
-    options = parser.parse_args(parser.reject_empty(sys.argv[1:] if argv is None else argv))
+    options = parser.parse_args(parser.reject_empty(arguments))
     _check(options.endpoints, parser)
     logging.basicConfig(level=logging.INFO, format="bridge: %(message)s", stream=sys.stderr)
     try:

@@ -6,7 +6,8 @@ import datetime
 import os
 from pathlib import Path
 
-from link.tlog.recorder import RawFile, Recorder
+from link.tlog.raw_file import RawFile
+from link.tlog.recorder import Recorder
 
 
 class RecorderError(Exception):

@@ -8,28 +8,32 @@ all places are taken, and can be answered.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Sequence
 
 from dialects import codec
-from dialects.messages import MESSAGES, Heartbeat, Message, RadioStatus
+from dialects.messages import FileTransferProtocol, Heartbeat, Message, RadioStatus
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.flow_control import FlowControl
-from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
+from link.protocol.frame import Frame, find_mismatches, noise_hint, sum_counts
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
 from link.protocol.peer import PeerState, count_sources, find_signing
 from link.protocol.peer_table import MAX_PEERS, PeerTable
 from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
+from link.protocol.signing_guard import Passed, SigningGuard, SigningWay
 from link.protocol.stops import find_stops
-
-MISMATCH_AFTER = 3
-"""Complete frames with a foreign checksum that prove another dialect; a single one may be an accident."""
+from link.signing.role import Role
 
 _RADIO_STATUS: int = RadioStatus.id
 _RATE_CLASS = {**dict.fromkeys(DEMANDS, "demand"), **dict.fromkeys(COMMANDS, "command")}
 """Message id -> the token bucket that limits it; all other messages share one."""
+_RATE_CLASS_OF_STATIONS = {**_RATE_CLASS, FileTransferProtocol.id: "file"}
+
+
+_TRUSTED = Passed((0, 0, 0, 0, b""), Role.SET_UP, None)
+"""What is made of a frame on a link that verifies nothing."""
 
 
 class Channel:
@@ -38,7 +42,8 @@ class Channel:
     `system` and `component` (1..255) are ours. `stream`: bytes have no datagram boundaries. `wanted`: message ids that
     the core handles (None: all); others are counted and not decoded. `target`: the address that the user named, for
     links that send first. `capacity`: bytes/s that the link carries, where known. `sent`: shared by all channels.
-    `places`: peers at once.
+    `downloads`: files may come faster than other messages; a vehicle serves them and expects requests only.
+    `places`: peers at once. `guard`: verifies and signs; None: frames are neither verified nor signed.
     """
 
     def __init__(
@@ -54,6 +59,8 @@ class Channel:
         capacity: float | None = None,
         sent: SentFrames | None = None,
         places: int = MAX_PEERS,
+        downloads: bool = False,
+        guard: SigningGuard | None = None,
     ) -> None:
         self.name = name
         self.index = index
@@ -62,9 +69,12 @@ class Channel:
         """Records every frame that arrives."""
         self._capacity = capacity
         self._sent = sent or SentFrames()
+        self.guard = guard
+        """May be replaced while the link is open: the first key may come later."""
         self._flow = FlowControl()
         self._stream = stream
         self._wanted = wanted
+        self._rate_class = _RATE_CLASS_OF_STATIONS if downloads else _RATE_CLASS
         self._new_peer_framer = Framer(stream=False)
         self._peers = PeerTable(index, stream=stream, places=places)
         self._bytes_received = 0
@@ -79,6 +89,8 @@ class Channel:
         """Return the messages in `data` from `address`; a new connection comes with empty `data`."""
         self._bytes_received += len(data)
         state = self._peers.get(address)
+        if self.guard is not None:
+            return self._receive_guarded(self.guard, state, data, address, now)
         if state is not None:
             return self._accept(state, state.framer.feed(data, now), now)
         frames = self._new_peer_framer.feed(data, now)
@@ -95,7 +107,11 @@ class Channel:
             return []
         found: list[Received] = []
         for state in self._peers:
-            found += self._accept(state, state.framer.expire(now), now)
+            frames = state.framer.expire(now)
+            if self.guard is None:
+                found += self._accept(state, frames, now)
+            elif frames:
+                found += self._judge(self.guard, state, frames, state.peer.address, now)
         return found
 
     def handle_disconnect(self, address: Hashable) -> None:
@@ -109,11 +125,46 @@ class Channel:
         """Keep places for the system and component id of the ground station in control; None: for nobody."""
         self._peers.reserved_ids = ids
 
-    def _accept(self, state: PeerState, frames: list[Frame], now: float) -> list[Received]:
+    def _receive_guarded(
+        self, guard: SigningGuard, state: PeerState | None, data: bytes, address: Hashable, now: float
+    ) -> list[Received]:
+        if state is None and self._stream:
+            state = self._peers.admit(address, (), now)
+        framer = self._new_peer_framer if state is None else state.framer
+        return self._judge(guard, state, framer.feed(data, now), address, now)
+
+    def _judge(
+        self, guard: SigningGuard, state: PeerState | None, frames: list[Frame], address: Hashable, now: float
+    ) -> list[Received]:
+        """Return the messages of the frames that are signed well or need not be, and stops if they are open to all."""
+        judged = guard.judge(frames, now)
+        for frame in judged.radio:
+            self._flow.handle_frame(frame[4], now)
+        for frame in judged.late:
+            self._greet(frame, address, now)
+        accepted = self._accept_stops(judged.refused, address, now) if guard.policy.open_stops else []
+        passed = [each.frame for each in judged.passed]
+        state = state or (self._peers.admit(address, passed, now) if passed else None)
+        if state is None:
+            return accepted + self._accept_stops(passed, address, now)
+        guard.note_sender(state, judged.passed, now)
+        return accepted + self._accept(state, passed, now, judged.passed)
+
+    def _greet(self, frame: Frame, address: Hashable, now: float) -> None:
+        """Send to a system whose HEARTBEAT is genuine but late, and handle nothing of it."""
+        state = self._peers.get(address) or self._peers.admit(address, (frame,), now)
+        if state is not None:
+            state.last_seen, state.silent = now, False
+            state.systems.add(frame[1])
+
+    def _accept(
+        self, state: PeerState, frames: list[Frame], now: float, judged: Sequence[Passed] | None = None
+    ) -> list[Received]:
+        """Return the messages of frames. `judged`: what signing says of each; None: nothing is verified."""
         accepted: list[Received] = []
         if self.log_tap is not None and frames:
-            self.log_tap.record_received(frames, now)
-        for frame in frames:
+            self.log_tap.record_received(frames, self.index, now)
+        for index, frame in enumerate(frames):
             number, system, component, sequence, raw = frame
             sender = (system, component)
             if not system or sender == self.ids:  # component 0 is valid: pymavlink sends it by default
@@ -131,12 +182,11 @@ class Channel:
             if message is None:
                 continue
             numbering, clash = (source.numbering.index, source.clash) if source else (0, False)
-            known = system in state.systems
-            accepted.append(
-                Received(
-                    message, system, component, sequence, state.peer, known, state.is_expected, numbering, clash, digest
-                )
-            )
+            introduced, named = system in state.systems, state.is_expected
+            one = _TRUSTED if judged is None else judged[index]
+            received = Received(message, system, component, sequence, state.peer, introduced, named, numbering, clash,
+                                digest, one.role, one.verified is not None)  # fmt: skip
+            accepted.append(received)
         return accepted
 
     def _accept_stops(self, frames: list[Frame], address: Hashable, now: float) -> list[Received]:
@@ -145,7 +195,7 @@ class Channel:
         for frame, message in find_stops(frames, self.ids, self._wanted):
             _, system, component, sequence, _ = frame
             if self.log_tap is not None:
-                self.log_tap.record_received([frame], now)
+                self.log_tap.record_received([frame], self.index, now)
             peer = self._peers.admit_transient(address, now).peer
             accepted.append(Received(message, system, component, sequence, peer, introduced=False))
         return accepted
@@ -158,7 +208,7 @@ class Channel:
         number, _, _, _, raw = frame
         if order is FrameOrder.DUPLICATE:
             self._duplicates += 1
-            return number not in COMMANDS or not is_stop(codec.decode(number, payload_of(raw)))
+            return number not in COMMANDS or not is_stop(codec.decode_frame(number, raw))
         self._late += 1
         return number not in ACKED
 
@@ -168,12 +218,12 @@ class Channel:
             self._flow.handle_frame(raw, now)
         if self._wanted is not None and number not in self._wanted:
             return None
-        kind = _RATE_CLASS.get(number, "rest")
+        kind = self._rate_class.get(number, "rest")
         room = state.buckets[kind].consume(now)
         if not room and kind != "command":
             self._rate_limited += 1
             return None
-        message = codec.decode(number, payload_of(raw))
+        message = codec.decode_frame(number, raw)
         if not room and not is_stop(message):  # a stop passes whatever else its sender floods us with
             self._rate_limited += 1
             return None
@@ -183,30 +233,32 @@ class Channel:
 
     # ---- sending ----
 
-    def send(self, outgoing: Outgoing, payload: bytes | None = None) -> Iterator[tuple[bytes, Hashable, int]]:
+    def send(
+        self, outgoing: Outgoing, payload: bytes | None = None, now: float = 0.0
+    ) -> Iterator[tuple[bytes, Hashable, int]]:
         """Yield the frames to send: bytes, address, packet sequence.
 
         Each peer has its own sequence, so that a frame for one is no loss to the others. `payload` is the encoded
-        message, where it exists already, as for another link. Raises codec.EncodeError.
+        message, where it exists already, as for another link. `now` counts for signatures only. Raises
+        codec.EncodeError.
         """
         message = outgoing.message
         number = type(message).id
         payload = codec.encode_payload(message) if payload is None else payload
-        for state in self._recipients(outgoing):
+        for state in self._peers.recipients(outgoing):
             sequence = state.sequence
+            if self.guard is None:
+                data = codec.frame(number, payload, sequence, *self.ids)
+            else:
+                data = self.guard.build_frame(number, payload, self.ids, state, now)
             state.sequence = (sequence + 1) & 0xFF
-            data = codec.frame(number, payload, sequence, *self.ids)
             self._sent.add(data)
             yield data, state.peer.address, sequence
 
-    def _recipients(self, outgoing: Outgoing) -> list[PeerState]:
-        message, peer, among = outgoing
-        if peer is not None:
-            return self._peers.known((peer,))
-        if among is not None:
-            return self._peers.known(among)
-        target = getattr(message, "target_system", getattr(message, "target", 0))
-        return [state for state in self._peers if state.accepts_target(target)]
+    def signing_way(self, address: Hashable) -> SigningWay | None:
+        """Return how frames to an address are signed; None if they are not."""
+        state = self._peers.get(address)
+        return None if self.guard is None or state is None else self.guard.way_to(state)
 
     # ---- reporting ----
 
@@ -216,13 +268,11 @@ class Channel:
 
     def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
         """Return the counters of this channel. `down` and `dropped` come from the transport."""
-        counts = FramerCounts()
-        for each in (
-            self._peers.past_counts,
-            self._new_peer_framer.counts,
-            *(state.framer.counts for state in self._peers),
-        ):
-            counts.add(each)
+        counts = sum_counts(
+            [self._peers.past_counts, self._new_peer_framer.counts, *(state.framer.counts for state in self._peers)]
+        )
+        frames, noisy = counts.frames + counts.unknown, self._capacity is not None
+        hint = noise_hint(self.name, self._bytes_received, frames) if noisy else None
         return LinkReport(
             name=self.name,
             index=self.index,
@@ -237,20 +287,16 @@ class Channel:
             late=self._late,
             rate_limited=self._rate_limited,
             refused_peers=self._peers.refused,
-            dialect_mismatch=tuple(
-                sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
-            ),
+            dialect_mismatch=find_mismatches(counts),
             signing=find_signing(self._peers),
+            verified=self.guard.find_verified(self._peers) if self.guard else frozenset(),
+            refused=self.guard.counts() if self.guard else None,
+            guard=self.guard.report(self._peers) if self.guard else None,
             own_id=self._own_id,
-            down=down or self._noise_problem(counts),
+            down=down or hint,
             capacity=self._capacity,
             headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
             dropped=dropped,
             sources=count_sources(self._peers),
             audience=tuple(state.peer for state in self._peers if state.accepts_target(0)),
         )
-
-    def _noise_problem(self, counts: FramerCounts) -> str | None:
-        if self._capacity is None:
-            return None
-        return noise_hint(self.name, self._bytes_received, counts.frames + counts.unknown)

@@ -6,7 +6,6 @@ import math
 
 from dialects import codec
 from dialects.messages import RadioStatus
-from link.protocol.frame import payload_of
 
 DELAY_STEPS: tuple[tuple[int, int, float], ...] = ((0, 19, 0.060), (20, 49, 0.020), (91, 95, -0.020), (96, 100, -0.040))
 """Free buffer in %, from and to -> change in s of the delay between messages, as in ArduPilot's GCS_MAVLINK."""
@@ -27,9 +26,9 @@ class FlowControl:
 
     def handle_frame(self, raw: bytes, now: float) -> None:
         """Take a frame of RADIO_STATUS."""
-        status = codec.decode(RadioStatus.id, payload_of(raw))
-        if isinstance(status, RadioStatus):
-            self.handle_radio_status(status.txbuf, now)
+        status = codec.decode_frame(RadioStatus.id, raw)
+        assert isinstance(status, RadioStatus)
+        self.handle_radio_status(status.txbuf, now)
 
     def handle_radio_status(self, txbuf: int, now: float) -> None:
         """Take a report: the radio's transmit buffer is `txbuf` % free; 255 is "unknown"."""

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from dialects.codec import CRC_SIZE, HEADER_V1, HEADER_V2, INCOMPAT_SIGNED, MAGIC_V1, MAGIC_V2, SIGNATURE_SIZE
+from dialects.messages import MESSAGES
 
+MISMATCH_AFTER = 3
+"""Complete frames with a foreign checksum that prove another dialect; a single one may be an accident."""
 NOISE_HINT_BYTES = 512
 """Bytes without a valid frame after which the user is told. Half a second of telemetry at 57600 baud is more, a boot
 message or ModemManager's "AT" is less."""
@@ -22,11 +26,6 @@ def payload_of(raw: bytes) -> bytes:
     """Return the payload of a whole frame as received, with or without its trailing zeros."""
     start = HEADER_V2 if raw[0] == MAGIC_V2 else HEADER_V1
     return raw[start : start + raw[1]]
-
-
-def is_signed(raw: bytes) -> bool:
-    """Return whether a whole frame, as received, carries a signature (https://mavlink.io/en/guide/message_signing.html)."""
-    return raw[0] == MAGIC_V2 and bool(raw[2] & INCOMPAT_SIGNED)
 
 
 class Header(NamedTuple):
@@ -97,6 +96,19 @@ class FramerCounts:
             self.mismatches[number] = self.mismatches.get(number, 0) + times
         for key, (frames, size) in more.unknown_ids.items():
             self.add_unknown(key, frames, size)
+
+
+def sum_counts(several: Iterable[FramerCounts]) -> FramerCounts:
+    """Return the sum of the counts of several framers."""
+    total = FramerCounts()
+    for each in several:
+        total.add(each)
+    return total
+
+
+def find_mismatches(counts: FramerCounts) -> tuple[str, ...]:
+    """Return the names of the messages that arrive complete but with the checksum of another definition."""
+    return tuple(sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER))
 
 
 def noise_hint(name: str, received: int, frames: int) -> str | None:

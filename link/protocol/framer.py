@@ -24,6 +24,7 @@ from dialects.codec import (
     MAGIC_V2,
     SIGNATURE_SIZE,
 )
+from link.protocol.checksum import START, STEP, TWO_STEPS
 from link.protocol.failed_frame import FailedFrames
 from link.protocol.frame import Frame, FramerCounts, UnknownKey, read_header
 
@@ -32,10 +33,10 @@ PARTIAL_DEADLINE = 0.1
 shorter than the vehicle waits for a demand (0.45 s): a forged header must not hide the frames behind it."""
 
 _SHORTEST = HEADER_V2 + CRC_SIZE
+_TRAILER = CRC_SIZE + SIGNATURE_SIZE
 _MAGIC = re.compile(b"[\xfd\xfe]")
-_HEAD = struct.Struct("<BBBxBBBI")
-"""Start byte, length, incompatibility flags, sequence, system, component, and the id's three bytes with one more."""
-_ID = 0xFFFFFF
+_read_head = struct.Struct("<BBBxBBBHB").unpack_from
+"""Start byte, length, incompatibility flags, sequence, system, component, the lower and the upper part of the id."""
 
 
 class _Missing(Enum):
@@ -66,6 +67,8 @@ class Framer:
         """The buffer starts where a frame may start: no noise before it."""
         self._buffer = b""
         self._waiting_since: float | None = None
+        self._needed = 0
+        """Bytes that the partial frame at the start of the buffer has at least; 0: not known."""
         self._failed = FailedFrames(self.counts)
 
     def feed(self, data: bytes, now: float) -> list[Frame]:
@@ -75,20 +78,19 @@ class Framer:
         """
         if self._stream:
             return self._feed_stream(data, now)
-        if len(data) < _SHORTEST:
-            return self._scan(data, final=True)[0]
-        magic, length, flags, sequence, system, component, number = _HEAD.unpack_from(data)
-        if length + _SHORTEST == len(data) and magic == MAGIC_V2 and not flags:
-            message_id = number & _ID
-            extra = CRC_EXTRA.get(message_id)
-            if extra is None and not self._unknown:  # one frame by its boundaries: not searched for others
-                self.counts.unknown += 1
-                self.counts.add_unknown((system, component, message_id), 1, len(data))
-                return []
-            if extra is not None and mcrf4xx(data[1:-2] + extra) == data[-2] | data[-1] << 8:
-                self.counts.frames += 1
-                return [(message_id, system, component, sequence, data)]
-        return self._scan(data, final=True)[0]
+        size = len(data)
+        if size >= _SHORTEST:
+            magic, length, flags, sequence, system, component, message_id, upper = _read_head(data)
+            if upper:
+                message_id |= upper << 16
+            if length + _SHORTEST == size and magic == MAGIC_V2 and not flags:
+                extra = CRC_EXTRA.get(message_id)
+                if extra is not None:
+                    low, high = data[-2], data[-1]
+                    if mcrf4xx(data, START) == high ^ STEP[low ^ high] ^ TWO_STEPS[low ^ extra[0]]:
+                        self.counts.frames += 1
+                        return [(message_id, system, component, sequence, data)]
+        return self._feed_unusual(data)
 
     def expire(self, now: float) -> list[Frame]:
         """Give up an overdue partial frame and search behind its first byte; call it also in silence."""
@@ -101,11 +103,32 @@ class Framer:
                 self._waiting_since = now - PARTIAL_DEADLINE  # the bytes behind it have waited as long
         return frames
 
+    def _feed_unusual(self, data: bytes) -> list[Frame]:
+        """Take a datagram; one that is a signed frame, or a frame with an unknown id, is not searched for others."""
+        header = read_header(data) if len(data) >= _SHORTEST and data[0] == MAGIC_V2 else None
+        if header is not None and header.size == len(data):
+            message_id, system, component, sequence, size = header
+            extra = CRC_EXTRA.get(message_id)
+            if not data[2] and extra is None and not self._unknown:
+                self.counts.unknown += 1
+                self.counts.add_unknown((system, component, message_id), 1, size)
+                return []
+            if data[2] and extra is not None:  # signed, so that it has the bytes of a trailer
+                claimed = data[-_TRAILER] | data[1 - _TRAILER] << 8
+                if mcrf4xx(data[1:-_TRAILER] + extra) == claimed:
+                    self.counts.frames += 1
+                    return [(message_id, system, component, sequence, data)]
+        return self._scan(data, final=True)[0]
+
     def _feed_stream(self, data: bytes, now: float) -> list[Frame]:
-        frames = self.expire(now)
+        """Take the bytes of one read; most of them only add to a partial frame of which the length is known."""
+        since = self._waiting_since
+        if since is not None and now - since >= PARTIAL_DEADLINE:
+            frames = self.expire(now)
+            self._buffer += data
+            return frames + self._take(now)
         self._buffer += data
-        frames += self._take(now)
-        return frames
+        return self._take(now) if len(self._buffer) >= self._needed else []
 
     def _skip_first_byte(self) -> None:
         self._buffer = self._buffer[1:]
@@ -114,9 +137,11 @@ class Framer:
         self.counts.resync_bytes += 1
 
     def _take(self, now: float) -> list[Frame]:
+        self._needed = 0
         frames, used = self._scan(self._buffer, final=False)
-        self._buffer = self._buffer[used:]
-        self._failed.shift(used)
+        if used:
+            self._buffer = self._buffer[used:]
+            self._failed.shift(used)
         if not self._buffer:
             self._waiting_since = None
         elif used or self._waiting_since is None:
@@ -135,18 +160,27 @@ class Framer:
         border = 0 if self._at_border else -1
         while position < size:
             if position + _SHORTEST <= size:
-                magic, length, flags, sequence, system, component, number = _HEAD.unpack_from(data, position)
-                message_id = number & _ID
+                magic, length, flags, sequence, system, component, message_id, upper = _read_head(data, position)
+                if upper:
+                    message_id |= upper << 16
                 extra = CRC_EXTRA.get(message_id)
-                end = position + length + _SHORTEST
-                if extra is not None and magic == MAGIC_V2 and not flags and end <= size:
-                    raw = data[position:end]
-                    if mcrf4xx(raw[1:-2] + extra) == raw[-2] | raw[-1] << 8:
-                        if failed.newest is not None:
-                            failed.settle(position)
-                        frames.append((message_id, system, component, sequence, raw))
-                        position = border = end
-                        continue
+                if extra is not None and magic == MAGIC_V2 and not flags:
+                    end = position + length + _SHORTEST
+                    if end <= size:
+                        raw = data[position:end]
+                        low, high = raw[-2], raw[-1]
+                        if mcrf4xx(raw, START) == high ^ STEP[low ^ high] ^ TWO_STEPS[low ^ extra[0]]:
+                            if failed.newest is not None:
+                                failed.settle(position)
+                            frames.append((message_id, system, component, sequence, raw))
+                            position = border = end
+                            continue
+                    elif not final:
+                        self._needed = end - position
+                        break
+            elif not final and data[position] == MAGIC_V2:
+                self._needed = _SHORTEST
+                break
             after, border = self._slow(data, position, size, frames, border)
             if after == position:
                 if not final:
@@ -158,7 +192,7 @@ class Framer:
         if not final:
             self._at_border = border == position
             return frames, position
-        self._failed.settle(size)
+        failed.settle(size)
         return frames, position
 
     def _slow(self, data: bytes, position: int, size: int, frames: list[Frame], border: int) -> tuple[int, int]:

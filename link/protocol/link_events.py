@@ -7,8 +7,10 @@ from typing import NamedTuple
 
 from dialects.enums import Severity
 from dialects.messages import MESSAGES, read_by_programs
-from link.core import LinkReport
+from link.core import LinkReport, SigningCounts
 
+PROVEN_AFTER = 3
+"""Refused frames that are no accident."""
 CONNECTING = "connecting"
 """State of a link before its first connection; not reported, because every connection starts so."""
 
@@ -21,6 +23,17 @@ def link_problem(report: LinkReport) -> str | None:
         return "another program sends with our system and component id: change --system of one of them"
     if report.dialect_mismatch:
         return _mismatch(report.dialect_mismatch)
+    return None if report.refused is None or report.verified else _refusals(report.refused)
+
+
+def _refusals(counts: SigningCounts) -> str | None:
+    """Return why nothing signed has come through: no frame of the other end was verified yet."""
+    if counts.bad >= PROVEN_AFTER:
+        return "frames arrive signed with a key that is not here: compare the fingerprints of both ends"
+    if counts.too_old >= PROVEN_AFTER:
+        return "signed frames arrive with an old time: set the clock of the computer that sends them"
+    if counts.unsigned >= PROVEN_AFTER:
+        return "frames without a signature are dropped: give the other end a key, or do not require it here"
     return None
 
 

@@ -6,19 +6,30 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from link.core import Peer, SourceCount
-from link.protocol.frame import Frame, is_signed
+from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 from link.protocol.rate import TokenBucket
 from link.protocol.sequence import SequenceTracker
+from link.signing.keys import SigningKey
+from link.signing.signature import is_signed
 
 MAX_SOURCES = 64
 """Systems and components tracked behind one peer."""
 
 
+FILE_RATE, FILE_BURST = 12_000, 2_000
+"""Frames/s of files that a ground station accepts, and at once; it has requested them."""
+
+
 def _buckets() -> dict[str, TokenBucket]:
     # Demands come at 50 Hz at most. Commands come from people, and from scripts that request the rates of all messages
     # at once; more than these would take a whole control cycle. The rest has room for ArduPilot's 1240 messages/s.
-    return {"demand": TokenBucket(200, 50), "command": TokenBucket(200, 100), "rest": TokenBucket(2500, 1000)}
+    return {
+        "demand": TokenBucket(200, 50),
+        "command": TokenBucket(200, 100),
+        "file": TokenBucket(FILE_RATE, FILE_BURST),
+        "rest": TokenBucket(2500, 1000),
+    }
 
 
 @dataclass(slots=True)
@@ -41,6 +52,10 @@ class PeerState:
     newest: dict[int, bytes] = field(default_factory=dict)
     """Newest frame of each system, as received."""
     buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
+    key: SigningKey | None = None
+    """The key of its newest signed frame, with which ours to it are signed."""
+    lead: int = 0
+    """How far its signing clock is ahead of ours, in timestamps of 10 us."""
 
     @property
     def is_expected(self) -> bool:

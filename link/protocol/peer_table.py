@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable, Iterator
 from itertools import count
 
-from link.core import Peer
+from dialects.traits import LOG_ONLY
+from link.core import Outgoing, Peer
 from link.protocol.frame import Frame, FramerCounts
 from link.protocol.framer import Framer
 from link.protocol.peer import PeerState
@@ -109,6 +110,18 @@ class PeerTable:
                 places = (self._states.get(peer.address), self.transient)
                 found += [state for state in places if state is not None and state.peer == peer]
         return found
+
+    def recipients(self, outgoing: Outgoing) -> list[PeerState]:
+        """Return the peers to which a message goes."""
+        message, peer, among = outgoing
+        if type(message).id in LOG_ONLY:
+            return []
+        if peer is not None:
+            return self.known((peer,))
+        if among is not None:
+            return self.known(among)
+        target = getattr(message, "target_system", getattr(message, "target", 0))
+        return [state for state in self if state.accepts_target(target)]
 
     def _is_reserved(self, frames: Iterable[Frame]) -> bool:
         """Return whether a frame has the ids for which places are kept."""

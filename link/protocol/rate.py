@@ -21,13 +21,15 @@ class TokenBucket:
 
     def consume(self, now: float, cost: float = 1.0) -> bool:
         """Take `cost` tokens and return True, or take none and return False."""
+        tokens = self._tokens
         if self._at is not None:
-            self._tokens = min(self._burst, self._tokens + (now - self._at) * self._rate)
+            tokens += (now - self._at) * self._rate
+            if tokens > self._burst:
+                tokens = self._burst
         self._at = now
-        if self._tokens < cost:
-            return False
-        self._tokens -= cost
-        return True
+        enough = tokens >= cost
+        self._tokens = tokens - cost if enough else tokens
+        return enough
 
 
 class RateMeter:

@@ -85,7 +85,13 @@ class Numbering:
         """Take a frame ahead of all others."""
         self._seen = (self._seen << ((sequence - self.newest) & 0xFF) | 1) & _WINDOW_BITS
         self.newest = sequence
-        self._take(sequence, message_id, digest, now)
+        self._kinds[message_id] = sequence
+        self._digests[sequence % _RING] = digest
+        self.heard_at = now
+        self.received += 1
+        self._window_count += 1
+        if now - self._window_at >= 1.0:
+            self._begin_window(now)
 
     def fill(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder | None:
         """Take a frame behind the newest; None if another frame had its number."""
@@ -97,19 +103,18 @@ class Numbering:
         last = self._kinds.get(message_id)
         if last is not None and (last - sequence) & 0xFF <= LATE_WINDOW:
             return FrameOrder.LATE
-        self._take(sequence, message_id, digest, now)
-        return NEW
-
-    def _take(self, sequence: int, message_id: int, digest: int, now: float) -> None:
         self._kinds[message_id] = sequence
-        self._digests[sequence % _RING] = digest
         self.heard_at = now
         self.received += 1
-        elapsed = now - self._window_at
-        if elapsed >= 1.0:
-            self._rate = max(RATE_MIN, self._window_count / elapsed)
-            self._window_at, self._window_count = now, 0
         self._window_count += 1
+        if now - self._window_at >= 1.0:
+            self._begin_window(now)
+        return NEW
+
+    def _begin_window(self, now: float) -> None:
+        """Measure the rate of the frames before this one, which is the first of the next window."""
+        self._rate = max(RATE_MIN, (self._window_count - 1) / (now - self._window_at))
+        self._window_at, self._window_count = now, 1
 
 
 class SequenceTracker:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dialects import codec
 from dialects.messages import Message
 from dialects.traits import COMMANDS, is_stop
-from link.protocol.frame import Frame, payload_of
+from link.protocol.frame import Frame
 
 
 def find_stops(
@@ -20,6 +20,6 @@ def find_stops(
             continue
         if wanted is not None and number not in wanted:
             continue
-        message = codec.decode(number, payload_of(raw))
+        message = codec.decode_frame(number, raw)
         if is_stop(message):
             yield frame, message

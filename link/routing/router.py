@@ -90,6 +90,15 @@ class Router:
                 del followed[key]
         return self._collect()
 
+    def broadcast_links(self, link: int, key: SourceId) -> set[int]:
+        """Return the links to which a broadcast of a source that was seen on `link` goes now."""
+        return {
+            destination.link
+            for peer in self.table.peers_of(link).values()
+            if key in peer.sources
+            for destination in self._destinations(peer, peer.sources[key], _EVERYBODY)
+        }
+
     # ---- one frame ----
 
     def _receive_from_new_peer(self, link: int, data: bytes, address: Hashable, now: float) -> None:
@@ -99,6 +108,7 @@ class Router:
             return
         peer.bytes_in += len(data)
         frames = peer.framer.feed(data, now)
+        peer.connected = self.table.is_stream(link) and not data
         if self.table.is_stream(link) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
             self.table.add_peer(peer, now)
             self._forward(peer, frames, now)
@@ -199,7 +209,9 @@ class Router:
             found = source.destinations[target] = tuple(
                 peer
                 for peer in (() if target == self._own else self.table.candidates(target))
-                if peer is not origin and source.key not in peer.sources and (peer.sources or peer.fixed)
+                if peer is not origin
+                and source.key not in peer.sources
+                and (peer.sources or peer.fixed or peer.connected)
             )
         return found
 

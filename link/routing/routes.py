@@ -17,8 +17,8 @@ PEER_SILENCE = 30.0
 """s without a frame after which a UDP peer gets nothing more."""
 ROUTE_SILENCE = 300.0
 """s after which a system is forgotten. Long on purpose: a vehicle that cannot be received may still receive a stop."""
-MAX_PEERS = 32
-"""Addresses on one link."""
+MAX_PEERS = 128
+"""Addresses on one link: a hundred ground stations take half a core at 500 messages/s (docs/performance.md)."""
 MAX_SOURCES = 64
 """Systems and components tracked behind one peer; frames of further ones are forwarded but teach no route."""
 LATE = 32
@@ -71,7 +71,8 @@ class RoutedPeer:
     """One address on one link. The router treats each as a link of its own."""
 
     __slots__ = (
-        "address", "bytes_in", "bytes_out", "fixed", "framer", "frames_out", "last_seen", "link", "sources", "waiting",
+        "address", "bytes_in", "bytes_out", "connected", "fixed", "framer", "frames_out", "last_seen", "link",
+        "sources", "waiting",
     )  # fmt: skip
 
     def __init__(self, link: int, address: Hashable, now: float, *, stream: bool, fixed: bool = False) -> None:
@@ -79,6 +80,8 @@ class RoutedPeer:
         self.address = address
         self.fixed = fixed
         """The user named it: it is sent to before its first frame, and is never forgotten."""
+        self.connected = False
+        """It has opened a connection: it is sent to before its first frame, too, or two bridges would wait for ever."""
         self.framer = Framer(stream=stream, unknown=True)
         self.last_seen = now
         self.sources: dict[SourceId, RoutedSource] = {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import inspect
 import textwrap
+from functools import cache
 
 
 def field_docs(kind: type) -> dict[str, str]:
@@ -13,6 +14,7 @@ def field_docs(kind: type) -> dict[str, str]:
     return {name: text for each in kinds for name, text in _own_docs(each).items()}
 
 
+@cache
 def _own_docs(kind: type) -> dict[str, str]:
     body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
     assert isinstance(body, ast.ClassDef)

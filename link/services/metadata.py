@@ -9,8 +9,8 @@ from __future__ import annotations
 import json
 import lzma
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from dialects import messages as m
@@ -45,8 +45,12 @@ class Metadata:
         return m.ComponentMetadata(time_boot_ms, crc32(self.general), _uri(GENERAL_FILE).encode())
 
 
-def build_metadata(table: Sequence[ParamDefinition], *, vendor: str, model: str, version: str) -> Metadata:
-    """Build all files. `version` is that of the vehicle's software: three numbers separated by dots."""
+@lru_cache(maxsize=16)
+def build_metadata(table: tuple[ParamDefinition, ...], *, vendor: str, model: str, version: str) -> Metadata:
+    """Build all files. `version` is that of the vehicle's software: three numbers separated by dots.
+
+    Cached, because compressing takes most of the time that a vehicle needs to start.
+    """
     parameters = _compressed({"version": VERSION, "parameters": [_parameter(setting) for setting in table]})
     general = {
         "version": VERSION,

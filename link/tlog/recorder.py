@@ -1,13 +1,12 @@
 """Writes frames into telemetry logs in a thread, because a slow card must not delay a frame.
 
-Frames are collected for PERIOD and then passed to the thread in one batch: a killed program loses no more than that,
+Frames are collected for a period and then passed to the thread in one batch: a killed program loses no more than that,
 and the file is complete up to there. When the disk is too slow, frames are left out and counted.
 """
 
 from __future__ import annotations
 
 import logging
-import os
 import time
 from collections.abc import Callable, Sequence
 from typing import Protocol
@@ -20,9 +19,9 @@ log = logging.getLogger(__name__)
 PERIOD = 0.5
 """s between two batches: two wake-ups a second cost nothing, and a crash may lose half a second."""
 MAX_BATCH = 256 * 1024
-"""Bytes of frames in one batch."""
+"""Bytes of frames in one batch of PERIOD."""
 PENDING = 32
-"""Batches that may wait for the disk: 16 s, and at most 8 MB."""
+"""Batches of PERIOD that may wait for the disk: 16 s, and at most 8 MB. Shorter ones are smaller, and more may wait."""
 CLOSE_TIMEOUT = 2.0
 """s that the end of the program waits for the last write."""
 SLOW = "the disk is too slow, frames are missing"
@@ -46,50 +45,32 @@ def unix_offset() -> int:
     return time.time_ns() // 1000 - time.monotonic_ns() // 1000
 
 
-class RawFile:
-    """An unbuffered file: written data survives a kill of the program."""
-
-    def __init__(self, descriptor: int) -> None:
-        self._descriptor = descriptor
-
-    def write(self, data: bytes) -> None:
-        """Write all of `data`. Raises OSError; on a full disk a part may be written."""
-        rest = memoryview(data)
-        while rest:
-            rest = rest[os.write(self._descriptor, rest) :]
-
-    def sync(self) -> None:
-        """Write the file's data to the disk, against a power cut. Raises OSError."""
-        os.fdatasync(self._descriptor)
-
-    def is_removed(self) -> bool:
-        """Return whether the file was removed from its directory."""
-        return os.fstat(self._descriptor).st_nlink == 0
-
-    def close(self) -> None:
-        """Close the file. Raises OSError."""
-        os.close(self._descriptor)
-
-
 class Recorder:
-    """Takes frames with their times (monotonic, s).
+    """Takes frames with their times (monotonic, s), and writes them every `period` s.
 
     A file's times are Unix time as known when it was started, and continue evenly from there, even if the clock is set.
     """
 
-    def __init__(self, *, offset: Callable[[], int] = unix_offset) -> None:
+    def __init__(self, *, period: float = PERIOD, offset: Callable[[], int] = unix_offset) -> None:
         self.lost = 0
         """Frames left out because the disk was too slow, since the last start()."""
         self.recording = False
         """A file is open, or will be."""
         self._failure: str | None = None
         self._offset = offset
-        self._since = 0
+        self._since = self._newest = 0
+        self._period = period
+        self._max_batch = int(MAX_BATCH * period / PERIOD)
         self._batch: Batch = []
         self._size = 0
         self._handed_over = float("-inf")
-        self._worker = Worker("recorder", PENDING)
+        self._worker = Worker("recorder", round(PENDING * PERIOD / period))
         self._file: LogFile | None = None
+
+    @property
+    def failure(self) -> str | None:
+        """Why nothing is recorded, in one line."""
+        return self._failure
 
     @property
     def problem(self) -> str | None:
@@ -99,7 +80,7 @@ class Recorder:
     def start(self, open_file: Callable[[], LogFile]) -> None:
         """Start a new file, opened in the thread; it begins with the current batch. Clears errors.
 
-        The file before ends with the same batch: without it, a drive shorter than PERIOD would leave an empty file.
+        The file before ends with the same batch: without it, a drive shorter than a period would leave an empty file.
         """
         batch, size = self._batch, self._size
         self._hand_over()
@@ -121,12 +102,12 @@ class Recorder:
         """Add frames of this moment; costs the hot path no more than a list."""
         self._batch.append((now, frames))
         self._size += sum(map(len, frames))
-        if self._size >= MAX_BATCH:
+        if self._size >= self._max_batch:
             self._hand_over()
 
     def tick(self, now: float) -> None:
-        """Pass what was collected to the thread, every PERIOD s. Call it often."""
-        if now - self._handed_over >= PERIOD:
+        """Pass what was collected to the thread, once in a period. Call it often."""
+        if now - self._handed_over >= self._period:
             self._handed_over = now
             self._hand_over()
 
@@ -148,7 +129,7 @@ class Recorder:
 
     def _open(self, open_file: Callable[[], LogFile]) -> None:
         self._close()
-        self._failure, self._since = None, self._offset()  # errors of the file before are over
+        self._failure, self._since, self._newest = None, self._offset(), 0  # errors of the file before are over
 
         def opening() -> None:
             self._file = open_file()
@@ -158,9 +139,13 @@ class Recorder:
     def _write(self, batch: Batch) -> None:
         file = self._file
         if file is not None:
-            stamped = ((int(now * 1e6) + self._since, frames) for now, frames in batch)
-            data = b"".join(encode_record(at, raw) for at, frames in stamped for raw in frames)
+            data = b"".join(encode_record(self._stamp(now), raw) for now, frames in batch for raw in frames)
             self._try(lambda: file.write(data))
+
+    def _stamp(self, now: float) -> int:
+        """Return the time of a record: never before the one before it, as readers expect."""
+        self._newest = max(self._newest, int(now * 1e6) + self._since)
+        return self._newest
 
     def _close(self) -> None:
         file, self._file = self._file, None

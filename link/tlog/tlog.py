@@ -8,19 +8,21 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
-from typing import NamedTuple
+from itertools import chain
+from typing import BinaryIO, NamedTuple
 
-from dialects.codec import CRC_EXTRA, MAGIC_V1, MAGIC_V2
+from dialects.codec import MAGIC_V2
 from dialects.traits import SECRET
-from link.protocol.frame import read_header
-from link.protocol.framer import Framer
+from link.tlog.scan import BEYOND, CarefulScan, Gap, LogFrame, scan
 
-STAMP = 8
+CHUNK = 1 << 18
+"""Bytes of a file that are read at once."""
+LATEST = (1 << 63) // 1000 - 1
+"""us, in the year 2262: a later time is damaged, and nanoseconds of it would not fit into 64 bits."""
 _STAMP = struct.Struct(">Q")
 _MAGIC_V2 = bytes([MAGIC_V2])
 _SECRET = frozenset(number.to_bytes(3, "little") for number in SECRET)
 """Ids as in a MAVLink 2 header."""
-_LEAST = STAMP + 8  # with the shortest frame
 _DAY = 86_400_000_000
 
 
@@ -41,32 +43,67 @@ def encode_record(microseconds: int, raw: bytes) -> bytes:
 
 def read_records(data: bytes) -> Iterator[Record]:
     """Yield all whole records of a log, in order. Damaged parts are skipped and never raise."""
-    at, last, sure = 0, 0, True
-    while at + _LEAST <= len(data):
-        raw = _frame_at(data, at + STAMP, trust_unknown=sure)
-        if raw is None:
-            at, sure = at + 1, False
-            continue
-        (stamp,) = _STAMP.unpack_from(data, at)
-        if not sure and not last <= stamp <= last + _DAY:
-            stamp = last  # the frame is valid, but the damage reached its time
-        yield Record(stamp, raw)
-        at, last, sure = at + STAMP + len(raw), stamp, True
+    found = _Order().sort(scan(data, 0, len(data), final=True), final=True)
+    return (Record(each.stamp, each.raw) for each in found if isinstance(each, LogFrame))
 
 
-def _frame_at(data: bytes, start: int, *, trust_unknown: bool) -> bytes | None:
-    """Return the frame at `start`, or None.
+def read_log(file: BinaryIO) -> Iterator[list[LogFrame | Gap]]:
+    """Yield the frames and gaps of an open file in lists of about CHUNK bytes: a large log needs little memory.
 
-    A frame with an unknown id counts only right behind a valid record and before another frame.
+    No stamp of a frame is later than LATEST. Raises OSError.
     """
-    if data[start] not in (MAGIC_V1, MAGIC_V2):
-        return None
-    header = read_header(data, start)
-    if header is None or start + header.size > len(data):
-        return None
-    end = start + header.size
-    raw = data[start:end]
-    if header.message_id not in CRC_EXTRA:
-        followed = end + STAMP >= len(data) or data[end + STAMP] in (MAGIC_V1, MAGIC_V2)
-        return raw if trust_unknown and followed else None
-    return raw if Framer(stream=False).feed(raw, 0.0) else None
+    order, block, base, sure = _Order(), b"", 0, True
+    file.seek(0)
+    while True:
+        data = file.read(CHUNK)
+        block += data
+        limit = base + len(block) - (BEYOND if data else 0)
+        if limit > base or not data:
+            part = scan(block, base, limit, final=not data, sure=sure)
+            yield order.sort(part, final=not data)
+            block, base, sure = block[part.end - base :], part.end, part.sure
+        if not data:
+            return
+
+
+class _Order:
+    """Puts the frames and gaps of a scan into the order of the file, block by block, and corrects their times."""
+
+    def __init__(self) -> None:
+        self._last: int | None = None
+        """Time of the newest frame, us."""
+        self._gap: Gap | None = None
+        """A gap that may go on in the next block."""
+
+    def sort(self, part: CarefulScan, *, final: bool) -> list[LogFrame | Gap]:
+        """Return what a scan has found. The last gap of a block follows with the next one, unless it is `final`."""
+        frames, done = part.frames, 0
+        found: list[LogFrame | Gap] = []
+        for gap in chain(part.damage, [Gap(part.end, part.tail)] if part.tail else []):
+            before = next((at for at in range(done, len(frames)) if frames[at].at > gap.offset), len(frames))
+            self._add_frames(found, frames[done:before])
+            joined = self._gap
+            self._gap = gap if joined is None else Gap(joined.offset, joined.size + gap.size)
+            done = before
+        self._add_frames(found, frames[done:])
+        if final:
+            self._end_gap(found)
+        return found
+
+    def _end_gap(self, found: list[LogFrame | Gap]) -> bool:
+        if self._gap is None:
+            return False
+        found.append(self._gap)
+        self._gap = None
+        return True
+
+    def _add_frames(self, found: list[LogFrame | Gap], frames: list[LogFrame]) -> None:
+        """Add frames. One behind damage, which may reach its time, must be within a day of the time before."""
+        resumed, last = bool(frames) and self._end_gap(found), self._last
+        for frame in frames:
+            stamp = frame.stamp
+            if stamp > LATEST or (resumed and last is not None and not last <= stamp <= last + _DAY):
+                frame, stamp = frame._replace(stamp=last or 0), last or 0
+            found.append(frame)
+            last, resumed = stamp, False
+        self._last = last

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from serial.tools import list_ports
 
-PROC = Path("/proc")
+from link.transport.processes import PROC, describe_process, open_files, other_processes, program_name
+
 TTY_CLASS = Path("/sys/class/tty")
 LOGINS = ("getty", "agetty")
 """Programs that wait for a login on a port: the arguments name it. They belong to root, who hides their descriptors."""
@@ -62,42 +62,20 @@ def find_holders(paths: list[str], proc: Path = PROC) -> dict[str, str]:
     found: dict[str, str] = {}
     if not real:
         return found
-    for process in _processes(proc):
-        opened = {os.path.realpath(target) for target in _open_files(process)}
+    for process in other_processes(proc):
+        opened = {os.path.realpath(target) for target in open_files(process, "/dev/")}
         for path in [real[each] for each in opened & real.keys()] + _login_ports(process, paths):
-            found.setdefault(path, f"{_name(process)} (pid {process.name})")
+            found.setdefault(path, describe_process(process))
     return found
 
 
-def _processes(proc: Path) -> Iterator[Path]:
-    with contextlib.suppress(OSError):
-        for entry in sorted(os.listdir(proc)):
-            if entry.isdigit() and int(entry) != os.getpid():
-                yield proc / entry
-
-
-def _open_files(process: Path) -> Iterator[str]:
-    with contextlib.suppress(OSError):
-        for descriptor in os.listdir(process / "fd"):
-            with contextlib.suppress(OSError):
-                target = os.readlink(process / "fd" / descriptor)
-                if target.startswith("/dev/"):
-                    yield target
-
-
 def _login_ports(process: Path, paths: list[str]) -> list[str]:
-    if _name(process) not in LOGINS:
+    if program_name(process) not in LOGINS:
         return []
     with contextlib.suppress(OSError):
         words = (process / "cmdline").read_bytes().decode("utf-8", "replace").split("\0")
         return [path for path in paths if Path(path).name in words or path in words]
     return []
-
-
-def _name(process: Path) -> str:
-    with contextlib.suppress(OSError):
-        return "".join(filter(str.isprintable, (process / "comm").read_text("utf-8", "replace").strip()))
-    return "?"
 
 
 def _description(text: str) -> str:

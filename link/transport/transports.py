@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib import import_module
 
-from link.endpoint import SCHEMES, Scheme, parse_endpoints
+from link.endpoint import SCHEMES, Scheme, Side, parse_endpoints
 from link.transport.transport import LinkError, Transport, TransportFactory
 
 
@@ -16,11 +17,12 @@ def load_factory(scheme: Scheme) -> TransportFactory:
     return factory
 
 
-def open_transports(endpoints: Sequence[str]) -> list[Transport]:
-    """Open all endpoints, or none. Raises EndpointError or LinkError."""
+def open_transports(endpoints: Sequence[str], side: Side | None = None) -> list[Transport]:
+    """Open all endpoints, or none. Raises EndpointError or LinkError. `side`: which end this program is."""
     transports: list[Transport] = []
     try:
-        transports.extend(load_factory(SCHEMES[each.scheme])(each) for each in parse_endpoints(endpoints))
+        parsed = [replace(each, side=side) for each in parse_endpoints(endpoints)]
+        transports.extend(load_factory(SCHEMES[each.scheme])(each) for each in parsed)
     except LinkError:
         for transport in transports:
             transport.close()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects import codec
-from dialects.messages import StatusText, boot_ms, decode_text, printable
+from dialects.messages import RoverStationEvent, StatusText, boot_ms, decode_text, encode_text, printable
 
 
 def test_text_is_utf8_and_harmless_to_a_terminal() -> None:
@@ -17,3 +17,12 @@ def test_text_is_utf8_and_harmless_to_a_terminal() -> None:
 def test_boot_time_wraps_instead_of_raising() -> None:
     assert boot_ms(0.0) == 0
     assert boot_ms(2**32 / 1000 + 1.5) == 1500
+
+
+def test_a_long_text_is_cut_between_characters() -> None:
+    text = "neutral: " + "\N{HEAVY BLACK HEART}" * 40  # 3 bytes each
+    event = RoverStationEvent(10, 4, 1, 0, 0, encode_text(text, 100))
+    read = codec.decode(RoverStationEvent.id, codec.encode_payload(event))
+    assert isinstance(read, RoverStationEvent)
+    assert decode_text(read) == "neutral: " + "\N{HEAVY BLACK HEART}" * 30
+    assert encode_text("\udc80", 9) == b"?"  # half a character, as from a file name that is not UTF-8

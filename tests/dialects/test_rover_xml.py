@@ -10,6 +10,7 @@ from dialects.messages import MESSAGES, Message
 
 OFFICIAL = {
     "COMMAND_CANCEL": (80, 14),
+    "MAG_CAL_PROGRESS": (191, 92),
     "EKF_STATUS_REPORT": (193, 71),
     "ESC_INFO": (290, 251),
     "ESC_STATUS": (291, 10),
@@ -37,6 +38,7 @@ PRIVATE = {
     "ROVER_LINK_STATUS": (46003, 245, 38),
     "ROVER_DRIVE_INFO": (46004, 33, 24),
     "ROVER_CONTROL": (46005, 79, 7),
+    "ROVER_STATION_EVENT": (46006, 232, 107),
 }
 
 

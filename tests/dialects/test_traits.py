@@ -16,7 +16,7 @@ NAMED = sorted(
     key=lambda each: each.id,
 )
 """Every message that dialects/messages.py names."""
-SETS = ("ACKED", "URGENT", "NEWEST_ONLY", "DEMANDS", "COMMANDS", "LOCAL", "UNLOGGED", "SECRET")
+SETS = ("ACKED", "URGENT", "NEWEST_ONLY", "DEMANDS", "COMMANDS", "LOCAL", "UNLOGGED", "SECRET", "LOG_ONLY")
 
 
 def test_every_row_is_a_message_of_the_dialect_that_has_a_name_of_ours() -> None:
@@ -40,6 +40,9 @@ def test_traits_do_not_contradict_each_other(message: type[Message]) -> None:
         assert Trait.ACKED | Trait.URGENT in each
     if Trait.SECRET in each:
         assert Trait.LOCAL | Trait.UNLOGGED in each
+    if Trait.LOG_ONLY in each:  # forwarded by nobody, recorded, and each of them
+        assert Trait.LOCAL | Trait.ACKED in each
+        assert not each & (Trait.UNLOGGED | Trait.URGENT | Trait.SECRET)
 
 
 def test_a_message_without_a_row_is_state() -> None:
@@ -48,13 +51,14 @@ def test_a_message_without_a_row_is_state() -> None:
 
 
 def test_the_sets_hold_what_the_table_says() -> None:
-    for name in ("ACKED", "URGENT", "LOCAL", "UNLOGGED", "SECRET"):
+    for name in ("ACKED", "URGENT", "LOCAL", "UNLOGGED", "SECRET", "LOG_ONLY"):
         assert getattr(traits, name) == ids_with(Trait[name]) != frozenset()
     assert {m.ManualControl.id, m.RcChannelsOverride.id, m.RoverOperatorPresence.id} == traits.DEMANDS
     assert {m.CommandLong.id, m.CommandInt.id, m.SetMode.id} == traits.COMMANDS
     assert traits.NEWEST_ONLY == traits.URGENT - traits.ACKED
     assert {m.SetupSigning.id} == traits.SECRET
-    assert {m.SetupSigning.id, m.RadioStatus.id} == traits.LOCAL
+    assert {m.RoverStationEvent.id} == traits.LOG_ONLY
+    assert {m.SetupSigning.id, m.RadioStatus.id, m.RoverStationEvent.id} == traits.LOCAL
     assert {m.SetupSigning.id, m.FileTransferProtocol.id, m.LogData.id, m.LogEntry.id} == traits.UNLOGGED
 
 

@@ -70,11 +70,12 @@ class Vehicle:
             GeneratedFolder({"general.json.xz": lambda query: GENERAL}),
             {"@PARAM": GeneratedFolder({"param.pck": pack}), "logs": logs, "missions": self.missions},
         )
+        self.pacer = BulkPacer(lambda peer: self.rate)
         self.server = FtpServer(
             self.tree,
             system=1,
             component=1,
-            pacer=BulkPacer(lambda peer: self.rate),
+            pacer=self.pacer,
             allowed=lambda received, now: self.allowed,
         )
 

@@ -9,7 +9,7 @@ from typing import Any
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Received
-from link.services.mission.commit import NullPlanWrite, PendingPlanWrite
+from link.services.mission.commit import PendingPlanWrite
 from link.services.mission.items import ItemRequest, ItemRule, Items, MissionItem, PlanRules, PositionRule
 from link.services.mission.server import MissionServer
 from link.services.pacing import BulkPacer
@@ -50,6 +50,13 @@ def waypoint(number: int = 0, **changes: Any) -> MissionItem:
 def plain(items: Items) -> list[str]:
     """Items as text: NaN is not equal to itself."""
     return [repr(item) for item in items]
+
+
+class NullPlanWrite:
+    """A write that does nothing."""
+
+    done = True
+    problem: str | None = None
 
 
 @dataclass

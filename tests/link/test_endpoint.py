@@ -29,6 +29,27 @@ from link.transport.transports import load_factory
                 baud=921600,
             ),
         ),
+        ("zenoh:alice.json5/farm", Endpoint("zenoh:alice.json5/farm", "zenoh", locator="alice.json5", fleet="farm")),
+        (
+            "zenoh:///etc/mavhelm/rover1.json5/farm/rover1/",
+            Endpoint(
+                "zenoh:/etc/mavhelm/rover1.json5/farm/rover1",
+                "zenoh",
+                locator="/etc/mavhelm/rover1.json5",
+                fleet="farm",
+                vehicle="rover1",
+            ),
+        ),
+        (
+            "zenoh:quic/[::1]:7447?mixed_rel=1/farm/rover-1.a",
+            Endpoint(
+                "zenoh:quic/[::1]:7447?mixed_rel=1/farm/rover-1.a",
+                "zenoh",
+                locator="quic/[::1]:7447?mixed_rel=1",
+                fleet="farm",
+                vehicle="rover-1.a",
+            ),
+        ),
     ],
 )
 def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
@@ -78,6 +99,16 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
         ("serial:/dev/ttyAMA0:fast", "baud rate 'fast' is not a number"),
         ("serial:/dev/ttyAMA0:0", "baud rate '0' is not a number from 300"),
         ("serial:/dev/ttyAMA0:99999999", "baud rate '99999999'"),
+        ("zenoh:", "write zenoh:FILE_OR_ROUTER/FLEET[/VEHICLE], for example"),
+        ("zenoh:farm/rover1", "for example zenoh:alice.json5/farm"),
+        ("zenoh:127.0.0.1:7447/farm", "or zenoh:tcp/192.168.1.2:7447/farm/rover1"),
+        ("zenoh:alice.json5", "name the fleet behind alice.json5"),
+        ("zenoh:tcp/127.0.0.1:7447", "name the fleet behind tcp/127.0.0.1:7447"),
+        ("zenoh:tcp/127.0.0.1/farm", "'tcp/127.0.0.1' is no address of a router"),
+        ("zenoh:tls/host:99999/farm", "'tls/host:99999' is no address of a router"),
+        ("zenoh:alice.json5/farm/rover1/x", "one vehicle at most"),
+        ("zenoh:alice.json5/fa*m", "'fa*m' is no name; it has 1 to 24 letters"),
+        ("zenoh:alice.json5/farm/**", "'**' is no name"),
     ],
 )
 def test_what_is_not_understood_is_explained(text: str, told: str) -> None:
@@ -102,6 +133,7 @@ def test_the_table_is_the_help_and_every_scheme_can_be_opened() -> None:
         ("udpout:rover.local:14550", "tcpin:0.0.0.0:5760", "UDPOUT://rover.local:14550"),
         ("serial:/dev/ttyAMA0:57600", "serial:/dev/ttyAMA0:115200"),
         ("udpin:localhost:14550", "udpin:127.0.0.1:14550"),
+        ("zenoh:a.json5/farm/rover1", "zenoh://a.json5/farm/rover1"),
     ],
 )
 def test_an_endpoint_that_is_given_twice_is_refused(texts: tuple[str, ...]) -> None:

@@ -7,6 +7,7 @@ import contextlib
 import logging
 import socket
 from collections.abc import Callable, Hashable, Iterator, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ import pytest
 from dialects.messages import Heartbeat, ManualControl, Message
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.log_tap import LogTap
-from link.runner import Runner, open_links
+from link.runner import REST_PERIOD, Runner, open_links
 from link.transport.transport import Link
 from tests.link.frames import demand, heartbeat
 from tests.link.ports import Cable
@@ -29,6 +30,7 @@ class Recorder:
 
     def __init__(self, done: Callable[[Recorder], bool], runner: list[Runner]) -> None:
         self.received: list[Received] = []
+        self.times: list[float] = []
         self.reports: list[Sequence[LinkReport]] = []
         self.ticks: list[float] = []
         self.numbers: list[tuple[Message, int]] = []
@@ -38,6 +40,7 @@ class Recorder:
 
     def receive(self, received: Received, now: float) -> None:
         self.received.append(received)
+        self.times.append(now)
         if isinstance(received.message, ManualControl):
             self.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
         self._check()
@@ -299,3 +302,75 @@ async def test_frames_that_a_program_with_two_links_hands_back_are_no_other_syst
         await asyncio.gather(*(runner.run() for runner in runners))
     assert returned
     assert not any(report.own_id for core in cores for reports in core.reports for report in reports)
+
+
+class Resting(Recorder):
+    """A core that has nothing to do until a message has come."""
+
+    @property
+    def may_rest(self) -> bool:
+        return not self.received
+
+
+async def test_a_core_that_rests_is_ticked_less_often_until_a_message_comes(ground: socket.socket) -> None:
+    port, runner = free_port(), list[Runner]()
+
+    def done(core: Recorder) -> bool:
+        if len(core.ticks) == 4:
+            ground.sendto(heartbeat(0), ("127.0.0.1", port))
+        return bool(core.received) and len(core.ticks) >= 30
+
+    core = Resting(done, runner)
+    runner.append(Runner(core, open_links([f"udpin:127.0.0.1:{port}"], system=1, component=1), period=0.01))
+    async with asyncio.timeout(60):
+        await runner[0].run()
+    gaps = [later - earlier for earlier, later in pairwise(core.ticks)]
+    assert min(gaps[:3]) > 0.9 * REST_PERIOD
+    assert min(gaps[6:]) < 0.5 * REST_PERIOD
+
+
+async def test_messages_that_are_read_together_have_times_of_their_own(ground: socket.socket) -> None:
+    port = free_port()
+
+    def speak() -> None:
+        for number in range(8):
+            ground.sendto(heartbeat(number), ("127.0.0.1", port))
+
+    core = await run(f"udpin:127.0.0.1:{port}", lambda core: len(core.received) >= 8, first=speak)
+    assert core.times == sorted(set(core.times)), "a ramp needs time to move"
+
+
+class Early(Recorder):
+    """A core that has something to do `AFTER` s after each tick, and says so."""
+
+    AFTER = 0.05
+
+    def __init__(self, done: Callable[[Recorder], bool], runner: list[Runner]) -> None:
+        super().__init__(done, runner)
+        self.acts: list[float] = []
+        self.due_at: float | None = None
+
+    def tick(self, now: float) -> None:
+        super().tick(now)
+        self.due_at = now + self.AFTER
+
+    def act(self, now: float) -> None:
+        self.acts.append(now)
+        self.due_at = now + self.AFTER if len(self.acts) < 3 else None
+        self.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+
+
+async def test_what_is_due_before_the_next_tick_is_done_then_and_sent(ground: socket.socket) -> None:
+    runner: list[Runner] = []
+    core = Early(lambda _: False, runner)
+    links = open_links([f"udpout:127.0.0.1:{ground.getsockname()[1]}"], system=1, component=1)
+    runner.append(Runner(core, links, period=60.0))
+    running = asyncio.create_task(runner[0].run())
+    frames = [await asyncio.to_thread(ground.recv, 300) for _ in range(3)]
+    runner[0].stop()
+    await running
+    assert [frame[7] for frame in frames] == [Heartbeat.id] * 3
+    assert len(core.ticks) == 1
+    gaps = [later - earlier for earlier, later in pairwise([core.ticks[0], *core.acts])]
+    assert all(gap >= Early.AFTER - 1e-6 for gap in gaps), gaps
+    assert len(core.acts) == 3, "and then nothing more is due"

@@ -54,7 +54,7 @@ class _Waiting:
     """Of a COMMAND_INT."""
     sent: int = 0
     progress: int | None = None
-    """% of a command that is IN_PROGRESS; None: not told."""
+    """% of a command that is IN_PROGRESS; None: not reported."""
 
 
 class CommandClient:
@@ -97,7 +97,7 @@ class CommandClient:
         return (target_system, int(command)) in self._waiting
 
     def progress(self, command: int, target_system: int) -> int | None:
-        """Return how far a command is that the vehicle reports as in progress, %; None: not told."""
+        """Return how far a command is that the vehicle reports as in progress, %; None: not reported."""
         waiting = self._waiting.get((target_system, int(command)))
         return waiting.progress if waiting else None
 

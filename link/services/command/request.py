@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from dialects.messages import CommandInt, CommandLong
 from link.core import Peer, Received
+from link.signing.role import Role
 
 PROGRESS_TIMEOUT = 3.0
 """s in which the same command from the same sender is a repeat."""
@@ -40,6 +41,9 @@ class CommandRequest:
     """Its sender's run of packet numbers (link/core.py, Received)."""
     repeated: bool = field(default=False, compare=False)
     """May be a repeat: `confirmation` is above 0, or it is a COMMAND_INT, which has none."""
+    role: Role = field(default=Role.SET_UP, compare=False)
+    """What the key of its sender allows."""
+    signed: bool = field(default=False, compare=False)
 
 
 def _comparable(param: float) -> float:
@@ -75,4 +79,6 @@ def parse_command(message: CommandLong | CommandInt, received: Received) -> Comm
         may_ask=received.may_ask,
         numbering=received.numbering,
         repeated=isinstance(message, CommandInt) or message.confirmation > 0,
+        role=received.role,
+        signed=received.signed,
     )

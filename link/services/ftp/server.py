@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from dialects import messages as m
+from dialects.codec import MAX_FRAME
 from link.core import Outgoing, Received
 from link.services.ftp.files import FileTree
 from link.services.ftp.handlers import FtpHandlers, FtpRequest
@@ -21,6 +22,8 @@ from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 
 BURST_LENGTH = 200
 """Messages until a client must request more: 48 kB, so that a client that has gone costs no more."""
+BURST_TIME = 0.25
+"""s of a fast link that a burst takes at least: between two bursts a control cycle passes."""
 MAX_CLIENTS = 16
 """Stored replies, and requests that wait; the oldest is dropped."""
 FRAME_OVERHEAD = m.FileTransferProtocol.unpacker.size - MAX_DATA + MAVLINK2_OVERHEAD
@@ -94,6 +97,10 @@ class FtpServer:
         if request.packet.op == FtpOpcode.BURST:
             fault = self._begin_burst(request.client, request.packet, now)
             return [_nak(request, fault)] if fault else []
+        if request.packet.op == FtpOpcode.READ:
+            session = self._sessions.get(request.client, request.packet.session, now)
+            if session is not None and session.was_burst:
+                self._pacer.note_loss(request.client.peer)
         answer = self._handlers.handle(request, now)
         if answer is None:
             _keep(self._waiting, request.client, request)
@@ -117,7 +124,9 @@ class FtpServer:
         if packet.offset >= session.content.size:
             return FtpError.END_OF_FILE
         first = (packet.sequence + 1) & SEQUENCE_MASK
-        session.burst = Burst(first, packet.offset, packet.size or MAX_DATA, BURST_LENGTH)
+        session.was_burst = True
+        messages = max(BURST_LENGTH, int(self._pacer.rate(client.peer) * BURST_TIME / MAX_FRAME))
+        session.burst = Burst(first, packet.offset, packet.size or MAX_DATA, messages)
         return None
 
     def _burst(self, session: FtpSession, now: float) -> list[Outgoing]:

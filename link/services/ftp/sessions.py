@@ -59,6 +59,8 @@ class FtpSession:
     data: bytearray | None = None
     """What was written so far."""
     burst: Burst | None = None
+    was_burst: bool = False
+    """A burst was requested: what is read piece by piece after that was lost."""
 
     def write(self, offset: int, data: bytes) -> FtpError | None:
         """Write `data` at `offset`. Pieces may come in any order; gaps are zero."""

@@ -10,6 +10,8 @@ from link.services.ftp.job import TRIES, Exchange, FtpLine, FtpOperation, FtpOut
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket
 
 MAX_ENTRIES = 10_000
+CHECKSUM_TRIES = 48
+"""Requests for a checksum without a reply before it fails: 34 s, in which ArduPilot reads 32 MB from a card."""
 
 
 @dataclass(slots=True)
@@ -73,7 +75,7 @@ class SingleRequest:
     _exchange: Exchange = field(init=False)
 
     def __post_init__(self) -> None:
-        self._exchange = Exchange(self.line)
+        self._exchange = Exchange(self.line, CHECKSUM_TRIES if self.job is FtpOperation.CHECKSUM else TRIES)
 
     @property
     def progress(self) -> tuple[int, int | None]:
@@ -98,7 +100,7 @@ class SingleRequest:
     def tick(self, now: float) -> None:
         """Repeat what is overdue, and give up at last."""
         if not self._exchange.tick(now):
-            self.outcome = failure(self.job, self.path, None, TRIES)
+            self.outcome = failure(self.job, self.path, None, self._exchange.patience)
 
     def abandon(self) -> None:
         """Do nothing: the request has no session."""

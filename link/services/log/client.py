@@ -56,8 +56,11 @@ class _Listing:
 
 @dataclass(slots=True)
 class _LogDownload:
-    log: int
+    log: RemoteLog
     file: FileReassembly
+    proof: bytes = b""
+    """Last piece of what an earlier job left: requested again, because LOG_DATA has no checksum."""
+    proof_at: int = 0
     request_end: int = 0
     """End of the part that was requested."""
 
@@ -84,9 +87,15 @@ class LogClient:
         self.list_logs(now)
 
     def download(self, log: RemoteLog, now: float, have: bytes = b"") -> None:
-        """Download a log of the list; `have` is its beginning, from an earlier job."""
-        job = _LogDownload(log.number, FileReassembly(min(log.size, MAX_SIZE)))
-        job.file.add_piece(0, have[: len(have) // DATA_SIZE * DATA_SIZE])
+        """Download a log of the list; `have` is its beginning, from an earlier job.
+
+        If the last piece of it is not that of the log, it is of another log, and the download begins anew.
+        """
+        at = len(have) // DATA_SIZE * DATA_SIZE - DATA_SIZE
+        kept = 0 <= at < log.size
+        proof = have[at : at + DATA_SIZE] if kept else b""
+        job = _LogDownload(log, FileReassembly(min(log.size, MAX_SIZE)), proof, at)
+        job.file.add_piece(0, have[:at] if kept else b"")
         self._job, self._tries = job, 0
         self._request(now)
 
@@ -128,7 +137,7 @@ class LogClient:
         match received.message:
             case m.LogEntry() as message if isinstance(self._job, _Listing):
                 self._entry(self._job, message, now)
-            case m.LogData() as message if isinstance(self._job, _LogDownload) and message.id == self._job.log:
+            case m.LogData() as message if isinstance(self._job, _LogDownload) and message.id == self._job.log.number:
                 self._data(self._job, message, now)
 
     def tick(self, now: float) -> None:
@@ -166,7 +175,13 @@ class LogClient:
     def _data(self, job: _LogDownload, message: m.LogData, now: float) -> None:
         before = job.file.received.bytes
         count = min(message.count, DATA_SIZE)
-        job.file.add_piece(message.ofs, bytes(message.data[:count]))
+        piece = bytes(message.data[:count])
+        if job.proof and message.ofs == job.proof_at:
+            if piece != job.proof:
+                self.download(job.log, now)
+                return
+            job.proof = b""
+        job.file.add_piece(message.ofs, piece)
         if count < DATA_SIZE:
             job.file.truncate(message.ofs + count)
         if job.file.received.bytes > before:
@@ -189,7 +204,7 @@ class LogClient:
                 self._finish(done=True)
                 return
             self._job.request_end = gap[1]
-            self._send(m.LogRequestData(*self._target, self._job.log, gap[0], gap[1] - gap[0]))
+            self._send(m.LogRequestData(*self._target, self._job.log.number, gap[0], gap[1] - gap[0]))
         elif self._job is not None:
             self._send(m.LogRequestList(*self._target, 0, LAST))
 
@@ -198,7 +213,7 @@ class LogClient:
         if isinstance(job, _LogDownload):
             self._send(m.LogRequestEnd(*self._target))
             data = job.file.data if done else job.file.beginning
-            self._outcomes.append(LogOutcome(job.log, done, data=data, tries=self._tries))
+            self._outcomes.append(LogOutcome(job.log.number, done, data=data, tries=self._tries))
         elif job is not None:
             logs = tuple(job.logs[number] for number in sorted(job.logs))
             self._outcomes.append(LogOutcome(None, done, logs, tries=self._tries))

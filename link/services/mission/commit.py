@@ -15,7 +15,7 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing
 from link.services.mission.items import Items
-from link.services.mission.plans import PlanTable
+from link.services.mission.plans import PlanSet
 from link.services.mission.upload import Sender
 
 WRITE_TIMEOUT = 8.0
@@ -32,13 +32,6 @@ class PendingPlanWrite(Protocol):
     @property
     def problem(self) -> str | None:
         """Why the write failed, in one line."""
-
-
-class NullPlanWrite:
-    """A write that does nothing, for a vehicle without storage: its plans are lost when the program ends."""
-
-    done = True
-    problem: str | None = None
 
 
 class PlanBackend(Protocol):
@@ -81,7 +74,7 @@ class PlanChange:
 class PlanChanges:
     """The changes under way, at most one of each plan type."""
 
-    def __init__(self, plans: PlanTable, backend: PlanBackend) -> None:
+    def __init__(self, plans: PlanSet, backend: PlanBackend) -> None:
         self._plans = plans
         self._backend = backend
         self._under_way: list[PlanChange] = []

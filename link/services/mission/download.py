@@ -14,7 +14,7 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing, Peer, Received
 from link.services.mission.items import to_message
-from link.services.mission.plans import PlanTable
+from link.services.mission.plans import PlanSet
 from link.services.mission.upload import Sender, ack, sender_of
 from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 
@@ -27,7 +27,7 @@ TO_THE_END = -1
 class PlanDownloads:
     """Serves downloads. `current` returns the index of the current mission item."""
 
-    def __init__(self, plans: PlanTable, pacer: BulkPacer, current: Callable[[], int]) -> None:
+    def __init__(self, plans: PlanSet, pacer: BulkPacer, current: Callable[[], int]) -> None:
         self._plans = plans
         self._pacer = pacer
         self._current = current

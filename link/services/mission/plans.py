@@ -18,7 +18,7 @@ from link.services.mission.items import Items, MissionItem
 _ITEM = struct.Struct("<HB?4fiif")
 
 
-class PlanTable:
+class PlanSet:
     """One plan of each supported type, empty at first."""
 
     def __init__(self, kinds: Iterable[MissionType]) -> None:

@@ -17,7 +17,7 @@ from link.core import Outgoing, Received
 from link.services.mission.commit import PlanBackend, PlanChange, PlanChanges
 from link.services.mission.download import PlanDownloads
 from link.services.mission.items import ItemRequest, Items, MissionItem, PlanRules, from_message, item_request
-from link.services.mission.plans import PlanTable
+from link.services.mission.plans import PlanSet
 from link.services.mission.upload import EndedUpload, PlanUpload, Sender, ack, sender_of
 from link.services.pacing import BulkPacer
 
@@ -71,7 +71,7 @@ class MissionServer:
         self._backend = backend
         self._rules = rules
         self._ids = (system, component)
-        self._plans = PlanTable(rules)
+        self._plans = PlanSet(rules)
         self._changes = PlanChanges(self._plans, backend)
         self._downloads = PlanDownloads(
             self._plans, pacer or BulkPacer(), lambda: int(backend.build_mission_current().seq)

@@ -11,7 +11,7 @@ _FLOAT = struct.Struct("<f")
 def shortest_float32(value: float) -> float:
     """Return the number with the fewest digits that is the same float32: 0.45, not 0.44999998807907104."""
     try:
-        packed = _FLOAT.pack(value)
+        packed = _FLOAT.pack(float(value))  # of an int that is too large for a float, pack() raises struct.error
     except OverflowError:  # beyond every float32
         return value
     for digits in range(6, 10):  # nine digits tell all float32 apart
@@ -24,7 +24,7 @@ def shortest_float32(value: float) -> float:
 def is_float32(value: float) -> bool:
     """Return whether a finite float32 is near `value`."""
     try:
-        return math.isfinite(_FLOAT.unpack(_FLOAT.pack(value))[0])
+        return math.isfinite(_FLOAT.unpack(_FLOAT.pack(float(value)))[0])
     except OverflowError:
         return False
 
@@ -32,7 +32,7 @@ def is_float32(value: float) -> bool:
 def same_float32(one: float, other: float) -> bool:
     """Return whether both are the same float32."""
     try:
-        return bool(_FLOAT.unpack(_FLOAT.pack(one)) == _FLOAT.unpack(_FLOAT.pack(other)))
+        return bool(_FLOAT.unpack(_FLOAT.pack(float(one))) == _FLOAT.unpack(_FLOAT.pack(float(other))))
     except OverflowError:  # beyond every float32
         return one == other
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from dialects import codec, enum_names, messages, targets
 
 TABLES: tuple[dict[Any, Any], ...] = (
-    messages.MESSAGES, codec.CRC_EXTRA, codec.BASE_SIZE, codec._SIZES, codec._DECODERS, codec._ENCODERS,
+    messages.MESSAGES, codec.CRC_EXTRA, codec.BASE_SIZE, codec._CHECKED, codec._DECODERS, codec._ENCODERS,
     targets.TARGETS, enum_names._added,
 )  # fmt: skip
 """Those that a dialect changes."""

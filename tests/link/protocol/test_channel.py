@@ -6,11 +6,23 @@ from fastcrc.crc16 import mcrf4xx
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dialects.messages import Attitude, CommandAck, CommandLong, Heartbeat, ManualControl, Message, StatusText
+from dialects.messages import (
+    Attitude,
+    CommandAck,
+    CommandLong,
+    FileTransferProtocol,
+    Heartbeat,
+    ManualControl,
+    Message,
+    Ping,
+    RoverStationEvent,
+    StatusText,
+)
 from link.core import Outgoing, Peer, Received
 from link.protocol.channel import Channel
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
+from link.protocol.peer import MAX_SOURCES
 from link.protocol.peer_table import MAX_PEERS, PEER_SILENCE, RESERVED_PLACES
 from link.protocol.sent_frames import SentFrames
 from tests.link.frames import demand, frame, heartbeat
@@ -197,6 +209,13 @@ def test_a_message_for_one_system_goes_where_that_system_is() -> None:
     assert sent(channel, ARM) == [(HERE, 0)]
 
 
+def test_a_note_of_a_log_is_never_sent() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), HERE, 0.0)
+    assert sent(channel, RoverStationEvent(1, 6, 1, 600, 0, b"i")) == []
+    assert sent(channel, Heartbeat(10, 0, 0, 0, 3, 3)) == [(HERE, 0)]
+
+
 def test_a_message_with_a_field_called_id_goes_out_as_what_it_is() -> None:
     channel = vehicle(target="there")
     data, _, _ = next(iter(channel.send(Outgoing(StatusText(severity=4, text=b"hello", id=7)))))
@@ -348,6 +367,19 @@ def test_a_flood_is_limited_and_a_stop_still_passes() -> None:
     assert len(channel.receive(frame(DISARM, 5001 % 256), HERE, 0.1)) == 1
 
 
+def test_a_station_takes_files_faster_than_a_vehicle_and_other_messages_no_faster() -> None:
+    piece = FileTransferProtocol(0, 1, 1, bytes(range(251)))
+    for options, kind, least, most in (
+        ({"downloads": True}, piece, 5000, 5000),
+        ({}, piece, 1000, 2300),
+        ({"downloads": True}, Ping(0, 1, 1, 1), 1000, 2300),
+    ):
+        channel = vehicle(**options)
+        channel.receive(heartbeat(0), HERE, 0.0)
+        taken = [channel.receive(frame(kind, number % 256), HERE, number / 10_000) for number in range(1, 5001)]
+        assert least <= sum(map(len, taken)) <= most
+
+
 def test_a_script_that_asks_as_fast_as_it_is_answered_is_always_answered() -> None:
     channel = vehicle()
     channel.receive(heartbeat(0), HERE, 0.0)
@@ -440,3 +472,27 @@ def test_a_stop_without_a_place_is_in_the_telemetry_log() -> None:
 
 def test_an_unwanted_stop_is_not_handed_on() -> None:
     assert full(wanted=frozenset({Heartbeat.id})).receive(frame(DISARM), HERE, 1.0) == []
+
+
+# ---- ends of the tables ----
+
+
+def test_a_channel_of_datagrams_has_no_partial_frames() -> None:
+    channel = vehicle()
+    channel.receive(demand(0)[:10], HERE, 0.0)
+    assert channel.tick(1.0) == []
+
+
+def test_a_connection_that_nobody_knew_ends_without_a_trace() -> None:
+    channel = vehicle(stream=True)
+    channel.handle_disconnect(HERE)
+    assert channel.report().peers == 0
+
+
+def test_of_too_many_sources_at_one_address_no_numbers_are_kept() -> None:
+    channel = vehicle()
+    for system in range(2, 2 + MAX_SOURCES):
+        channel.receive(heartbeat(0, system=system), HERE, 0.0)
+    assert len(channel.receive(heartbeat(0, system=200), HERE, 0.1)) == 1
+    assert len(channel.receive(heartbeat(0, system=200), HERE, 0.2)) == 1  # not known as a repeat
+    assert (200, 190) not in channel.report().sources

@@ -9,7 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects import rover
+from dialects.codec import CRC_EXTRA
 from dialects.messages import Attitude, Heartbeat, ManualControl
+from link.protocol.failed_frame import MAX_MISMATCHES
 from link.protocol.frame import MAX_UNKNOWN, FramerCounts, payload_of
 from link.protocol.framer import PARTIAL_DEADLINE, Framer
 from tests.link.frames import demand, frame, heartbeat, version_1
@@ -173,6 +175,16 @@ def test_empty_short_and_huge_datagrams(data: bytes) -> None:
     assert framer.counts.resync_bytes == len(data)
 
 
+@pytest.mark.parametrize("router", [False, True])
+@pytest.mark.parametrize("number", [Heartbeat.id, 61000])
+def test_a_datagram_shorter_than_a_signature_is_no_frame_or_one_of_an_unknown_id(number: int, router: bool) -> None:
+    """A frame of 12 to 14 bytes with a bad checksum ended the program: its signature was looked for."""
+    for length in (0, 1, 2):
+        data = bytes([0xFD, length, 0, 0, 7, 1, 1, number & 255, number >> 8, 0, *(5,) * length, 1, 2])
+        found = Framer(stream=False, unknown=router).feed(data, 0.0)
+        assert [raw for *_, raw in found] == ([data] if router and number == 61000 else [])
+
+
 # ---- for routers: ids that nobody here knows ----
 
 
@@ -270,3 +282,21 @@ def test_any_unknown_frames_between_sound_ones(train: list[tuple[bytes, bool]], 
     found = [each for start in range(0, len(data), piece) for each in framer.feed(data[start : start + piece], 0.0)]
     found += framer.expire(1.0)
     assert len(found) == len(train)
+
+
+def test_of_too_many_foreign_definitions_the_first_are_counted() -> None:
+    framer = Framer(stream=False)
+    ids = [number for number in sorted(CRC_EXTRA) if number not in (0, 69)][: MAX_MISMATCHES + 1]
+    for number in ids:
+        foreign = bytearray(frame(Heartbeat(6, 8, 0, 0, 4, 3)))
+        foreign[7:10] = number.to_bytes(3, "little")
+        foreign[-1] ^= 0x55
+        framer.feed(bytes(foreign), 0.0)
+    assert len(framer.counts.mismatches) == MAX_MISMATCHES
+    assert ids[-1] not in framer.counts.mismatches
+
+
+def test_what_only_looks_like_a_header_is_no_frame_for_a_router() -> None:
+    framer = Framer(stream=False, unknown=True)
+    flags = unknown(2)[:2] + b"\x7e" + unknown(2)[3:]
+    assert sequences(framer, demand(1) + flags + demand(3)) == [1, 3]

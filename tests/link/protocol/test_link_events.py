@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from dialects.enums import Severity
-from link.core import LinkReport
+from link.core import LinkReport, SigningCounts
 from link.protocol.channel import Channel
-from link.protocol.link_events import LinkEvent, LinkEvents, UpDownEvents, link_problem
+from link.protocol.link_events import PROVEN_AFTER, LinkEvent, LinkEvents, UpDownEvents, link_problem
 
 
 def report(received: int, **changes: Any) -> LinkReport:
@@ -79,3 +81,22 @@ def test_a_wrong_baud_rate_is_told_once_however_much_noise_there_is() -> None:
         channel.receive(bytes(2000), "port", float(second))
         told.append(troubles.update(channel.report(now=float(second))))
     assert [each.text for each in told if each] == ["bytes arrive, but no MAVLink frame; wrong baud rate?"]
+
+
+def test_another_program_with_our_ids_is_told_with_what_helps() -> None:
+    assert "change --system of one of them" in (link_problem(report(1, own_id=True)) or "")
+
+
+@pytest.mark.parametrize(
+    ("counts", "advice"),
+    [
+        (SigningCounts(bad=PROVEN_AFTER), "compare the fingerprints"),
+        (SigningCounts(too_old=PROVEN_AFTER), "set the clock"),
+        (SigningCounts(unsigned=PROVEN_AFTER), "give the other end a key"),
+        (SigningCounts(unsigned=PROVEN_AFTER - 1, bad=PROVEN_AFTER - 1), ""),
+    ],
+)
+def test_frames_that_are_refused_are_told_with_what_helps(counts: SigningCounts, advice: str) -> None:
+    assert advice in (link_problem(report(9, refused=counts)) or "")
+    assert link_problem(report(9, refused=counts, verified=frozenset({1}))) is None
+    assert bool(advice) is (link_problem(report(9, refused=counts)) is not None)

@@ -21,3 +21,11 @@ def test_a_meter_forgets_after_its_window() -> None:
     assert meter.rate(1.9) == pytest.approx(10)
     assert meter.rate(2.95) == pytest.approx(5)
     assert meter.rate(10.0) == 0
+
+
+def test_a_bucket_of_another_rate_keeps_what_it_has_as_far_as_it_fits() -> None:
+    bucket = TokenBucket(rate=10, burst=5)
+    assert bucket.consume(0.0)
+    bucket.set_rate(1, 2)
+    assert [bucket.consume(0.0) for _ in range(3)] == [True, True, False]
+    assert [bucket.consume(1.0), bucket.consume(1.0)] == [True, False]

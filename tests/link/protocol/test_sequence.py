@@ -136,6 +136,15 @@ def test_a_fast_sender_with_losses_stays_in_one_numbering() -> None:
     assert sender.tracker.lost == 40 * 11
 
 
+@pytest.mark.parametrize(("gap", "same"), [(69, True), (70, False)])
+def test_an_overtaken_frame_ends_a_second_in_which_the_rate_is_measured(gap: int, same: bool) -> None:
+    sender = Sender().stream(1, 60, 100)
+    assert sender.take(62, wait=0.3) is NEW
+    assert sender.take(61, OTHER, wait=0.11) is NEW  # the 62 frames before it took 1.01 s
+    sender.take(62 + gap, wait=0.5)  # 8 + 2 * 61.4 / s * 0.5 s = 69.4
+    assert (sender.numbering == 1) is same
+
+
 def test_a_numbering_is_forgotten_after_its_silence() -> None:
     sender = Sender().stream(1, 20, 20)
     assert sender.take(21, wait=NUMBERING_SILENCE) is NEW

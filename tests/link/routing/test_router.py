@@ -67,6 +67,17 @@ def test_a_broadcast_goes_to_all_others_and_not_back() -> None:
     assert rig.send(SERIAL, data) == {(UDP, GCS): data, (OTHER, "out"): data}
 
 
+def test_a_connection_that_has_sent_nothing_yet_gets_broadcasts_only() -> None:
+    """Two bridges that are joined would each wait for the first frame of the other."""
+    bridge = Router([(False, None), (True, None)])
+    assert bridge.receive(1, [(b"", "rover1")], 1.0) == []
+    [delivery] = bridge.receive(0, [(heartbeat(0), GCS)], 1.1)
+    assert (delivery.link, delivery.address, delivery.frames) == (1, "rover1", [heartbeat(0)])
+    assert bridge.receive(0, [(command(1, 1), GCS)], 1.2) == []
+    bridge.table.handle_disconnect(1, "rover1")
+    assert bridge.receive(0, [(heartbeat(2), GCS)], 2.1) == []
+
+
 def test_a_command_goes_only_where_its_system_was_heard() -> None:
     rig = Rig()
     data = command(1, 1)

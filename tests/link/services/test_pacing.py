@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from link.core import Peer
-from link.services.pacing import MAX_FRAME_RATE, MAX_PEERS, BulkPacer
+from link.protocol.peer import FILE_RATE
+from link.services.pacing import BURST_MAX, LOCAL_FILE_RATE, MAX_FRAME_RATE, MAX_PEERS, BulkPacer
 
 SLOW, FAST = Peer(0, "radio"), Peer(1, "network")
 
@@ -27,6 +28,24 @@ def test_each_peer_has_the_rate_of_its_link(peer: Peer, rate: float) -> None:
 
 def test_short_frames_are_no_more_than_a_ground_station_decodes() -> None:
     assert taken(BulkPacer(), FAST, 10.0, size=40) == pytest.approx(MAX_FRAME_RATE * 40 * 10.0, rel=0.03)
+
+
+def test_what_goes_at_once_fits_a_socket_buffer_and_a_cycle_of_a_slow_link_is_not_wasted() -> None:
+    fast, slow = BulkPacer(lambda peer: LOCAL_FILE_RATE), BulkPacer(lambda peer: 4800.0)
+    assert taken(fast, FAST, 0.02, size=263) <= BURST_MAX
+    assert taken(slow, SLOW, 20.0, size=263) == pytest.approx(4800.0 * 20.0, rel=0.01)
+
+
+def test_files_at_full_pace_are_what_a_station_accepts() -> None:
+    frames = taken(BulkPacer(lambda peer: LOCAL_FILE_RATE), FAST, 10.0, size=266) / 266 / 10.0
+    assert 10_000 < frames < FILE_RATE
+
+
+def test_losses_are_remembered_for_some_peers() -> None:
+    pacer = BulkPacer()
+    for number in range(MAX_PEERS + 1):
+        pacer.note_loss(Peer(0, number))
+    assert [pacer.is_lossy(Peer(0, number)) for number in (0, 1, MAX_PEERS)] == [False, True, True]
 
 
 def test_one_peer_does_not_take_from_the_other() -> None:

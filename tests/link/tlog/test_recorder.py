@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from link.tlog.recorder import MAX_BATCH, PENDING, PERIOD, SLOW, RawFile, Recorder
+from link.tlog.raw_file import RawFile
+from link.tlog.recorder import MAX_BATCH, PENDING, PERIOD, SLOW, Recorder
 from link.tlog.tlog import Record, read_records
 from tests.link.frames import demand, heartbeat
 

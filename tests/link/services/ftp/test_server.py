@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, crc32
-from link.services.ftp.server import BURST_LENGTH
+from link.services.ftp.server import BURST_LENGTH, BURST_TIME
+from link.services.pacing import LOCAL_FILE_RATE
 from tests.link.ftp_vehicle import GENERAL, LOG, MAX_OFFSET, Vehicle, as_entries, error
+from tests.link.services_world import PEER
 
 # ---- reading ----
 
@@ -128,11 +130,27 @@ def test_a_burst_of_small_pieces_from_the_middle() -> None:
 
 
 def test_a_burst_ends_for_a_client_that_has_gone() -> None:
-    vehicle = Vehicle(logs={"1.bin": bytes(10**6)})
+    vehicle = Vehicle(logs={"1.bin": bytes(10**6)}, rate=10_000.0)
     vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
     pieces = burst(vehicle)
     assert len(pieces) == BURST_LENGTH
     assert pieces[-1].burst_complete
+
+
+def test_a_burst_on_a_fast_link_is_longer_but_ends_as_well() -> None:
+    vehicle = Vehicle(logs={"1.bin": bytes(10**6)}, rate=LOCAL_FILE_RATE)
+    vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
+    assert len(burst(vehicle)) == int(LOCAL_FILE_RATE * BURST_TIME / 280)
+
+
+def test_what_is_read_after_a_burst_was_lost() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
+    vehicle.ask(FtpOpcode.READ, size=10)
+    assert not vehicle.pacer.is_lossy(PEER)
+    burst(vehicle)
+    vehicle.ask(FtpOpcode.READ, size=10)
+    assert vehicle.pacer.is_lossy(PEER)
 
 
 def test_a_burst_asked_for_again_goes_on_from_there() -> None:

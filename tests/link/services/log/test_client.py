@@ -61,14 +61,24 @@ def test_no_logs() -> None:
     assert ending(client, pair) == LogOutcome(None, True, (), tries=1)
 
 
-def test_a_download_is_resumed_at_a_whole_piece() -> None:
+def test_a_download_is_resumed_at_its_last_whole_piece() -> None:
     data = random.Random(1).randbytes(9_000)
     client = LogClient(255, 190, target_system=1)
     client.download(RemoteLog(0, 0, len(data)), 0.0, data[:1000])
     [outgoing] = client.messages_to_send()
     assert isinstance(outgoing.message, m.LogRequestData)
-    assert (outgoing.message.ofs, outgoing.message.count) == (990, 8_010)
+    assert (outgoing.message.ofs, outgoing.message.count) == (900, 8_100)
     pair = Pair(server({"1.bin": data}), client)
+    assert ending(client, pair).data == data
+
+
+@pytest.mark.parametrize("size", [89, 90, 1000, 8_999, 9_000, 20_000])
+@pytest.mark.parametrize("loss", [0.0, 0.3])
+def test_what_was_left_of_another_log_is_not_used(size: int, loss: float) -> None:
+    data, other = random.Random(1).randbytes(9_000), random.Random(2).randbytes(size)
+    client = LogClient(255, 190, target_system=1)
+    pair = Pair(server({"1.bin": data}), client, loss=loss, seed=3)
+    client.download(RemoteLog(0, 0, len(data)), pair.now, other)
     assert ending(client, pair).data == data
 
 

@@ -17,6 +17,9 @@ from link.services.param.float32 import same_float32
 from link.services.param.unpack import unpack
 from link.tlog.tlog import read_records
 
+pytestmark = pytest.mark.xdist_group("recorded parameters")
+"""Each worker would play the recording."""
+
 RECORDING = Path(__file__).resolve().parents[5] / "shared" / "data" / "ardurover.tlog"
 COUNT = 1297
 

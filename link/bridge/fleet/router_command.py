@@ -1,0 +1,133 @@
+"""Command line of `bridge router`: runs a Zenoh router in this process, with certificates and roles from fleet.toml."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import logging
+import signal
+import socket
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from link.bridge.fleet.access import build_access
+from link.bridge.fleet.fleet_file import AUTHORITY, ROUTER, ROUTER_KEY, FleetFile, read_fleet_file
+from link.bridge.fleet.members import read_encoded
+from link.fleet.config import SETTINGS, apply_settings, load_zenoh
+from link.runtime.command_line import CommandLineParser
+from link.runtime.toml_file import TomlError
+from link.transport.transport import LinkError
+
+log = logging.getLogger(__name__)
+
+ROUTER_SETTINGS: dict[str, Any] = {
+    "mode": "router",
+    "transport/unicast/max_sessions": 10_000,  # Zenoh's own limit is 1000
+    "transport/unicast/accept_pending": 1_000,  # after a restart all come at once
+    "transport/link/protocols": ["tls", "quic"],
+}
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+HELP = """\
+FILE is made by `bridge fleet new`. Whoever it does not name is refused, whatever its certificate.
+A restart takes a second; vehicles and ground stations reconnect by themselves, and rovers stop meanwhile.
+
+exit codes: 0 stopped by a signal (SIGTERM, Ctrl-C, SIGHUP), 2 usage error.
+"""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run until a signal; return the exit code."""
+    parser = build_parser()
+    options = parser.parse_args(parser.reject_empty(arguments))
+    logging.basicConfig(level=logging.INFO, format="bridge router: %(message)s", stream=sys.stderr)
+    try:
+        _run(read_fleet_file(options.file), options.file.parent)
+    except (TomlError, LinkError) as error:
+        parser.exit(2, f"{parser.prog}: {error}\n")
+    except OSError as error:
+        parser.exit(2, f"{parser.prog}: {error.filename}: {error.strerror}\n")
+    return 0
+
+
+def _run(fleet: FleetFile, folder: Path) -> None:
+    before = signal.pthread_sigmask(
+        signal.SIG_BLOCK, SIGNALS
+    )  # Zenoh's threads inherit it, so that sigwait() gets them
+    try:
+        session = _open(fleet, folder)
+        watching = session.info.declare_link_events_listener(_log_link(fleet), history=True)
+        members = f"{len(fleet.vehicles)} vehicles, {len(fleet.operators)} operators"
+        log.info("ready, fleet %s, %s, %s", fleet.fleet, " + ".join(fleet.listen), members)
+        signal.sigwait(SIGNALS)
+        watching.undeclare()
+        session.close()
+        log.info("stopped")
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _open(fleet: FleetFile, folder: Path) -> Any:
+    zenoh = load_zenoh()
+    config = zenoh.Config()
+    tls = {
+        "root_ca_certificate_base64": read_encoded(folder / AUTHORITY),
+        "listen_certificate_base64": read_encoded(folder / ROUTER),
+        "listen_private_key_base64": read_encoded(folder / ROUTER_KEY),
+        "enable_mtls": True,
+    }
+    apply_settings(config, SETTINGS | ROUTER_SETTINGS | {"listen/endpoints": fleet.listen})
+    apply_settings(config, {f"transport/link/tls/{key}": value for key, value in tls.items()})
+    config.insert_json5("access_control", json.dumps(build_access(fleet)))
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError as error:
+        raise LinkError(_explain(fleet, str(error))) from None
+
+
+def _explain(fleet: FleetFile, error: str) -> str:
+    """Return why the router did not start, in one line."""
+    where = ", ".join(fleet.listen)
+    if "in use" in error or not all(map(_is_free, fleet.listen)):
+        return f"{where}: the port is in use; stop the other program (`ss -lnp` lists it) or choose another one"
+    return f"{where}: {' '.join(error.split(' at /')[0].split())[:200]}"
+
+
+def _is_free(locator: str) -> bool:
+    kind = socket.SOCK_DGRAM if locator.startswith("quic/") else socket.SOCK_STREAM
+    host, _, port = locator.partition("/")[2].rpartition(":")
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host.strip("[]"), int(port), type=kind)[0]
+        with socket.socket(family, kind) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind(address)
+    except OSError:
+        return False
+    return True
+
+
+def _log_link(fleet: FleetFile) -> Any:
+    """Return a callback that logs who connects and disconnects, by the names of fleet.toml."""
+    owners = {each.certificate: f"vehicle {name}" for name, each in fleet.vehicles.items()}
+    owners |= {each.certificate: f"operator {name} ({each.role})" for name, each in fleet.operators.items()}
+
+    def note(event: Any) -> None:
+        certificate = event.link.auth_identifier
+        who = owners.get(certificate, f"{certificate}, who is not in the file and may do nothing,")
+        log.info("%s %s %s", who, "from" if str(event.kind).endswith("PUT") else "has gone from", event.link.dst)
+
+    return note
+
+
+def build_parser() -> CommandLineParser:
+    """Return the parser of the command line."""
+    parser = CommandLineParser(
+        prog="bridge router",
+        description="Runs the router of a fleet: vehicles and ground stations meet there, each with its certificate.",
+        epilog=HELP,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("file", metavar="FILE", type=Path, help="fleet.toml")
+    return parser

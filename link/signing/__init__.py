@@ -1,0 +1,1 @@
+"""MAVLink signing: keys, their files, and (in other modules) signatures of frames."""

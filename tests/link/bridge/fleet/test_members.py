@@ -1,0 +1,171 @@
+"""The folder of a fleet, its certificates and the rules that follow from it."""
+
+from __future__ import annotations
+
+import re
+import ssl
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from link.bridge.fleet.access import build_access
+from link.bridge.fleet.fleet_command import run
+from link.bridge.fleet.fleet_file import read_fleet_file
+from link.bridge.fleet.members import FleetError, add_member, new_fleet
+from link.bridge.fleet.router_command import run as run_router
+from link.endpoint import parse_endpoint
+from link.fleet.config import load_config
+from link.runtime.toml_file import TomlError
+from link.signing.role import Role
+
+FILE = """
+fleet = "farm"
+listen = ["tls/[::]:7447"]
+routers = ["tls/fleet.example.org:7447"]
+[vehicles.rover1]
+certificate = "rover1-1"
+[operators.alice]
+role = "drive"
+certificate = "alice-1"
+"""
+
+
+@pytest.fixture(scope="module")
+def farm(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A fleet of one vehicle and one operator."""
+    path = new_fleet(tmp_path_factory.mktemp("fleets") / "farm", "farm", ["fleet.example.org", "10.0.0.1", "::1"])
+    add_member(path, "rover1", "vehicle")
+    path.write_text(path.read_text() + "\n# my own note\n")
+    add_member(path, "alice.b", "drive")
+    return path
+
+
+def test_a_fleet_is_made_and_read(farm: Path) -> None:
+    fleet = read_fleet_file(farm)
+    assert (fleet.fleet, set(fleet.vehicles), set(fleet.operators)) == ("farm", {"rover1"}, {"alice.b"})
+    assert fleet.routers == ["tls/fleet.example.org:7447", "tls/10.0.0.1:7447", "tls/[::1]:7447"]
+    assert re.fullmatch(r"alice\.b-[0-9a-f]{8}", fleet.operators["alice.b"].certificate)
+    assert "# my own note" in farm.read_text()
+
+
+def test_keys_are_for_their_user_only(farm: Path) -> None:
+    modes = {each.name: each.stat().st_mode & 0o777 for each in farm.parent.iterdir()}
+    secret = {name for name in modes if name.endswith((".key", ".json5"))}
+    assert secret == {"authority.key", "router.key", "rover1.json5", "alice.b.json5"}
+    assert {modes[name] for name in secret} == {0o600}
+    assert farm.parent.stat().st_mode & 0o777 == 0o700
+
+
+def test_the_file_of_a_member_is_all_that_it_needs(farm: Path) -> None:
+    config = load_config(parse_endpoint(f"zenoh:{farm.parent}/alice.b.json5/farm"))
+    assert (config.name, config.operator_role, config.is_proven) == ("alice.b", Role.DRIVE, True)
+    assert list(config.routers) == read_fleet_file(farm).routers
+
+
+def test_the_router_certificate_names_its_addresses_and_the_authority_signs_nothing_more(farm: Path) -> None:
+    ssl.create_default_context(cafile=str(farm.parent / "authority.pem"))
+    text = subprocess.run(
+        ["openssl", "x509", "-in", str(farm.parent / "router.pem"), "-noout", "-text"],
+        capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    assert "DNS:fleet.example.org, IP Address:10.0.0.1, IP Address:0:0:0:0:0:0:0:1" in text
+    assert "TLS Web Server Authentication" in text
+    assert "CA:FALSE" in text
+
+
+def test_what_exists_is_not_made_again(farm: Path) -> None:
+    before = farm.read_text()
+    with pytest.raises(FleetError, match="has rover1 already; delete its lines first"):
+        add_member(farm, "rover1", "drive")
+    with pytest.raises(FleetError, match="exists already; add to it"):
+        new_fleet(farm.parent, "farm", ["10.0.0.1"])
+    with pytest.raises(FleetError, match="is no name"):
+        add_member(farm, "../x", "vehicle")
+    assert farm.read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('role = "drive"', 'role = "drives"', "operators"),
+        ("tls/[::]:7447", "tcp/[::]:7447", "listen: 'tcp/[::]:7447' has no certificates; write tls/ or quic/"),
+        ("tls/[::]:7447", "7447", "listen: '7447' is no address; write tls/HOST:PORT"),
+        ("alice-1", "rover1-1", "certificate rover1-1 is given twice"),
+        ("operators.alice", "operators.rover1", "rover1 is a vehicle and an operator"),
+        ("[vehicles.rover1]", '[vehicles."**"]', "'**' is no name"),
+        ("fleet = ", "flet = ", "did you mean fleet?"),
+    ],
+)
+def test_a_mistake_in_the_file_is_one_line(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], old: str, new: str, told: str
+) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text(FILE)
+    assert read_fleet_file(path).fleet == "farm"
+    path.write_text(FILE.replace(old, new))
+    with pytest.raises(TomlError, match=re.escape(told)):
+        read_fleet_file(path)
+    with pytest.raises(SystemExit) as ended:
+        run_router([str(path)])
+    assert ended.value.code == 2
+    assert len(capfd.readouterr().err.splitlines()) == 1
+
+
+def test_who_may_publish_and_hear_what(tmp_path: Path) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text(FILE)
+    access = build_access(read_fleet_file(path))
+    assert access["default_permission"] == "deny"
+    allowed = {
+        (rule["id"].split()[0], message): rule["key_exprs"]
+        for rule in access["rules"]
+        for message in rule["messages"]
+        if rule["flows"] == ["ingress"]
+    }
+    down = "fleet/farm/*/down/alice/*"
+    assert allowed["alice-1", "put"] == [f"{down}/watch/**", f"{down}/drive/**"]
+    assert allowed["alice-1", "declare_subscriber"] == ["fleet/farm/*/up/alice/**"]
+    assert allowed["rover1-1", "put"] == ["fleet/farm/rover1/up/**"]
+    assert allowed["rover1-1", "declare_subscriber"] == ["fleet/farm/rover1/down/**"]
+    assert not any("declare_queryable" in rule["messages"] for rule in access["rules"])
+
+
+def test_the_commands_say_what_to_do_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["new", "farm", "--host", "10.0.0.1"]) == 0
+    assert "bridge router farm/fleet.toml" in capsys.readouterr().out
+    assert run(["add", "operator", "bob", "--role", "watch", "--folder", "farm"]) == 0
+    assert "there: groundstation zenoh:bob.json5/farm" in capsys.readouterr().out
+    for wrong, told in (
+        (["new", "farm", "--host", "10.0.0.1"], "exists already"),
+        (["new", "barn", "--host", "a/b"], "--host: 'tls/a/b:7447' is no address"),
+        (["add", "vehicle", "rover1"], "fleet.toml: No such file or directory"),
+        (["add", "operator", "carl", "--role", "boss"], "choose from"),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            run(wrong)
+        assert ended.value.code == 2
+        said = capsys.readouterr().err
+        assert told in said
+        assert len(said.splitlines()) == 1
+
+
+def test_a_port_that_is_taken_is_named(farm: Path) -> None:
+    import socket
+
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        own = farm.parent / "taken.toml"
+        own.write_text(farm.read_text().replace("tls/[::]:7447", f"tls/127.0.0.1:{taken.getsockname()[1]}", 1))
+        done = subprocess.run(
+            [sys.executable, "-m", "link.bridge", "router", str(own)],
+            capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert "the port is in use" in done.stderr
+    assert len(done.stderr.splitlines()) == 1

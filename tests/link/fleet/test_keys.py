@@ -1,0 +1,92 @@
+"""A frame counts only under the key of its own message, role and sender."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects import messages as m
+from dialects import rover
+from link.fleet.keys import FleetKeys, read_frame
+from tests.link.frames import demand, frame, heartbeat
+
+ALICE = FleetKeys("farm", "", "alice/1")
+ROVER = FleetKeys("farm", "rover1", None)
+ARM = frame(m.CommandLong(1, 1, rover.MAV_CMD_COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
+DISARM = frame(m.CommandLong(1, 1, rover.MAV_CMD_COMPONENT_ARM_DISARM, 0, 0, 0, 0, 0, 0, 0, 0))
+BASE = "fleet/farm/rover1/down/alice/1"
+
+
+def key(data: bytes, keys: FleetKeys = ALICE, address: str = "rover1") -> str:
+    found = read_frame(data)
+    assert found is not None
+    return keys.place(found, address)
+
+
+@pytest.mark.parametrize(
+    ("data", "tail"),
+    [
+        (heartbeat(0), "watch/ctl/HEARTBEAT"),
+        (demand(0), "drive/ctl/MANUAL_CONTROL"),
+        (ARM, "drive/cmd/COMMAND_LONG"),
+        (DISARM, "watch/cmd/COMMAND_LONG"),
+        (frame(m.ParamSet(1, 1, b"A", 1.0, 9)), "setup/rel/PARAM_SET"),
+        (frame(m.RequestDataStream(1, 1, 0, 4, 1)), "watch/tlm/REQUEST_DATA_STREAM"),
+    ],
+)
+def test_a_frame_to_a_vehicle_and_back_from_its_key(data: bytes, tail: str) -> None:
+    assert key(data) == f"{BASE}/{tail}"
+    sender, read = ROVER.read(key(data), data) or ("", ())
+    assert (sender, read) == ("alice/1", read_frame(data))
+
+
+def test_a_frame_to_a_ground_station() -> None:
+    beat = heartbeat(0, system=1, component=1)
+    assert key(beat, ROVER, "alice/1") == "fleet/farm/rover1/up/alice/1/ctl/HEARTBEAT"
+    assert (ALICE.read(key(beat, ROVER, "alice/1"), beat) or ("",))[0] == "rover1"
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("a command as a heartbeat", ARM),
+        ("a demand as a heartbeat", demand(0)),
+        ("two frames", heartbeat(0) + demand(1)),
+        ("a frame in the bytes of a damaged one", heartbeat(0)[:-1] + b"\xff" + demand(1)),
+        ("half a frame", heartbeat(0)[:-3]),
+        ("nothing", b""),
+    ],
+)
+def test_what_hides_under_the_key_of_a_heartbeat_is_refused(name: str, data: bytes) -> None:
+    assert ROVER.read(f"{BASE}/watch/ctl/HEARTBEAT", heartbeat(0)) is not None
+    assert ROVER.read(f"{BASE}/watch/ctl/HEARTBEAT", data) is None, name
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        f"{BASE}/watch/cmd/COMMAND_LONG",  # arming needs drive
+        f"{BASE}/setup/cmd/COMMAND_LONG",
+        f"{BASE}/drive/ctl/COMMAND_LONG",
+        f"{BASE}/drive/cmd/COMMAND_INT",
+        f"{BASE}/drive/cmd",
+        "fleet/farm/rover1/down/alice",
+        "",
+    ],
+)
+def test_a_command_counts_only_under_its_role_and_class(wrong: str) -> None:
+    assert ROVER.read(f"{BASE}/drive/cmd/COMMAND_LONG", ARM) is not None
+    assert ROVER.read(wrong, ARM) is None
+
+
+def test_tokens() -> None:
+    assert ALICE.read_token(ROVER.token("")) == "rover1"
+    assert ROVER.read_token(ALICE.token("rover1")) == "alice/1"
+    assert (ALICE.others, ROVER.others) == ("fleet/farm/*/alive", "fleet/farm/rover1/gcs/*/*")
+    assert ALICE.read_token(ALICE.token("rover1")) is None
+    assert ROVER.read_token("fleet/farm/rover1/alive") is None
+    assert FleetKeys("farm", "rover1", "alice/1").others == "fleet/farm/rover1/alive"
+
+
+def test_an_unknown_message_is_under_its_number() -> None:
+    unknown = bytes([0xFD, 1, 0, 0, 7, 1, 1, 0x48, 0xEE, 0, 5, 1, 2])
+    assert key(unknown).endswith("/setup/tlm/ID61000")

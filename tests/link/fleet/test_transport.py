@@ -1,0 +1,140 @@
+"""Two ends of a fleet and a router without certificates, in one process: who comes, what passes, what is refused."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import replace
+
+import pytest
+import zenoh
+
+from dialects import messages as m
+from link.endpoint import Side, parse_endpoint
+from link.fleet.config import SETTINGS, apply_settings
+from link.fleet.transport import FleetTransport, open_fleet
+from tests.link.frames import demand, frame, heartbeat
+from tests.ports import free_port
+
+VEHICLE_BEAT = heartbeat(0, 1, 1)
+
+
+class End:
+    """A transport, and what it has received."""
+
+    def __init__(self, endpoint: str, side: Side) -> None:
+        self.transport: FleetTransport = open_fleet(replace(parse_endpoint(endpoint), side=side))
+        self.received: list[tuple[bytes, Hashable]] = []
+        self.gone: list[Hashable] = []
+
+    def start(self) -> None:
+        self.transport.start(asyncio.get_running_loop(), self.take, self.gone.append)
+
+    def take(self, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
+        self.received += pieces
+
+
+async def until(condition: Callable[[], object], again: Callable[[], object] = lambda: None) -> None:
+    deadline = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < deadline
+        again()
+        await asyncio.sleep(0.01)
+
+
+def open_router(port: int) -> zenoh.Session:
+    config = zenoh.Config()
+    apply_settings(config, SETTINGS | {"mode": "router", "listen/endpoints": [f"tcp/127.0.0.1:{port}"]})
+    return zenoh.open(config)
+
+
+@pytest.fixture
+def port() -> Iterator[int]:
+    port = free_port()
+    with open_router(port):
+        yield port
+
+
+def ends(port: int, *vehicles: str) -> tuple[End, ...]:
+    """A ground station and vehicles, started."""
+    base = f"zenoh:tcp/127.0.0.1:{port}/farm"
+    found = End(base, Side.GROUND_STATION), *(End(f"{base}/{name}", Side.VEHICLE) for name in vehicles)
+    for each in found:
+        each.start()
+    return found
+
+
+async def test_frames_both_ways_and_what_is_refused(port: int) -> None:
+    station, rover = ends(port, "rover1")
+    assert (station.transport.problem or "").endswith(": connecting")
+    await until(lambda: station.received and rover.received)
+    (empty, vehicle), (_, me) = station.received[0], rover.received[0]
+    assert (empty, vehicle, station.transport.problem) == (b"", "rover1", None)
+
+    two = heartbeat(1) + frame(m.ParamRequestList(1, 1), 2)  # the bridge joins frames that wait at the same time
+    station.transport.send(two, vehicle)
+    await until(lambda: len(rover.received) == 3)
+    assert sorted(data for data, _ in rover.received[1:]) == sorted((heartbeat(1), frame(m.ParamRequestList(1, 1), 2)))
+    assert {address for _, address in rover.received} == {me}
+    rover.transport.send(VEHICLE_BEAT, me)
+    await until(lambda: (VEHICLE_BEAT, "rover1") in station.received)
+
+    stranger = station.transport._session._session
+    assert stranger is not None
+    before = len(rover.received)
+    key = f"fleet/farm/rover1/down/{me}/watch/ctl/HEARTBEAT"
+    await until(lambda: rover.transport.refused >= 3, lambda: stranger.put(key, demand(0)))
+    assert rover.transport.dropped >= 3
+    assert rover.received[before:] == []
+    station.transport.send(b"no frame", vehicle)
+    assert station.transport.dropped == 1
+    for each in (station, rover):
+        each.transport.close()
+
+
+async def test_two_vehicles_with_one_system_id_are_not_taken_for_one(port: int) -> None:
+    station, first, second = ends(port, "rover1", "rover2")
+    await until(lambda: {address for _, address in station.received} == {"rover1", "rover2"})
+    await until(lambda: first.received and second.received)
+    first.transport.send(VEHICLE_BEAT, first.received[0][1])
+    await until(lambda: (VEHICLE_BEAT, "rover1") in station.received)
+    to = second.received[0][1]
+    await until(lambda: station.transport.refused, lambda: second.transport.send(VEHICLE_BEAT, to))
+    assert (VEHICLE_BEAT, "rover2") not in station.received
+    second.transport.send(heartbeat(0, 2, 1), to)
+    await until(lambda: (heartbeat(0, 2, 1), "rover2") in station.received)
+
+    second.transport.close()
+    await until(lambda: station.gone)
+    assert station.gone == ["rover2"]
+    for each in (station, first):
+        each.transport.close()
+
+
+async def test_without_a_router_the_link_says_why_and_connects_when_there_is_one() -> None:
+    port = free_port()
+    station, rover = ends(port, "rover1")
+    refused = f"no router at tcp/127.0.0.1:{port} (connection refused); trying again"
+    await until(lambda: refused in (station.transport.problem or ""))
+    station.transport.send(heartbeat(0), "rover1")
+    assert station.transport.dropped == 1
+    with open_router(port):
+        await until(lambda: station.received and rover.received)
+        assert station.transport.problem is None
+    await until(lambda: "connection to the router lost" in (station.transport.problem or ""))
+    for each in (station, rover):
+        each.transport.close()
+
+
+@pytest.mark.parametrize("rest", ["nosuch.invalid:7447", "127.0.0.1:1"])
+async def test_an_address_where_nothing_is(rest: str) -> None:
+    end = End(f"zenoh:tls/{rest}/farm", Side.GROUND_STATION)
+    end.start()
+    await until(lambda: not (end.transport.problem or "").endswith("connecting"))
+    assert ("is not known" in (end.transport.problem or "")) == ("nosuch" in rest)
+    begun = time.monotonic()
+    end.transport.close()
+    assert time.monotonic() - begun < 2.0
+    assert json.dumps(end.received) == "[]"

@@ -1,0 +1,96 @@
+"""What a program keeps of signing for its next run: on the disk, whole, private, and refused if it is damaged."""
+
+from __future__ import annotations
+
+import logging
+import stat
+from pathlib import Path
+
+import pytest
+
+from link.signing.memory_file import FILE, MemoryFileError, load_memory, save_memory
+from link.signing.signing import SigningMemory
+from link.signing.streams import MAX_STREAMS, Stream
+from link.signing.verifier import Refusal
+from link.signing_keeper import STORE_PERIOD, SigningKeeper
+from tests.link.signing.signed import ARM, DRIVER, NOON, NOW, keep, signed
+
+MEMORY = SigningMemory(
+    NOW, {Stream(DRIVER.fingerprint, 255, 190, 2): NOW + 5}, {DRIVER.fingerprint: NOW - 9}, ended=True
+)
+MANY = ",".join(['["ab",1,1,1,1]'] * (MAX_STREAMS + 1))
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "new" / FILE
+    assert load_memory(path) == SigningMemory()
+    save_memory(path, MEMORY)
+    assert load_memory(path) == MEMORY
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert DRIVER.secret.hex() not in path.read_text()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        "{}",
+        '{"stamp":-1,"streams":[],"floors":{}}',
+        f'{{"stamp":{1 << 48},"streams":[],"floors":{{}}}}',
+        '{"stamp":1,"streams":[["ab",1,1,1]],"floors":{}}',
+        f'{{"stamp":1,"streams":[{MANY}],"floors":{{}}}}',
+        "\xff",
+    ],
+)
+def test_a_damaged_file_is_named_in_one_line(tmp_path: Path, text: str) -> None:
+    path = tmp_path / FILE
+    path.write_bytes(text.encode("latin-1"))
+    with pytest.raises(MemoryFileError) as caught:
+        load_memory(path)
+    assert str(caught.value) == f"{path}: damaged; remove it, once the computer's clock is right"
+
+
+def test_a_restart_replays_nothing(tmp_path: Path) -> None:
+    path, frame = tmp_path / FILE, signed(ARM)
+    for run in range(2):
+        keeper = SigningKeeper(keep(DRIVER).ring, path, 0.0, wall=lambda: NOON)
+        refused = keeper.signing.verifier.check(frame, 255, 190, 0.0) is Refusal.REPLAYED
+        assert refused is bool(run)
+        keeper.close(1.0)
+
+
+def test_a_killed_program_has_stored_at_the_first_frame_of_a_stream_and_every_30_s(tmp_path: Path) -> None:
+    path = tmp_path / FILE
+    keeper = SigningKeeper(keep(DRIVER).ring, path, 0.0, wall=lambda: NOON)
+    stored = []
+    for now, stamp in ((1.0, NOW), (2.0, NOW + 1), (STORE_PERIOD + 1.0, NOW + 2)):
+        keeper.signing.verifier.check(signed(stamp=stamp), 255, 190, now)
+        keeper.update(now)
+        drain(keeper)
+        stored.append(max(load_memory(path).newest.values()))
+    assert stored == [NOW, NOW, NOW + 2]
+
+
+def test_a_disk_that_is_full_is_told_once_and_stops_nothing(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "file").write_text("")
+    keeper = SigningKeeper(keep(DRIVER).ring, None, 0.0, wall=lambda: NOON)
+    keeper._path = tmp_path / "file" / FILE
+    with caplog.at_level(logging.ERROR):
+        keeper.update(STORE_PERIOD)
+        keeper.update(2 * STORE_PERIOD)
+        keeper.close(2 * STORE_PERIOD)
+    assert len(caplog.records) == 1
+    assert "after a restart old signed frames may be accepted again" in caplog.text
+    assert keeper.signing.verifier.check(signed(), 255, 190, 61.0)
+
+
+def drain(keeper: SigningKeeper) -> None:
+    """Wait for the writes that were submitted."""
+    keeper._worker.close(5.0)
+    keeper._worker._thread = None
+
+
+def test_a_file_that_cannot_be_read_is_one_line(tmp_path: Path) -> None:
+    with pytest.raises(MemoryFileError, match="Is a directory; run this as the user whose file this is"):
+        load_memory(tmp_path)
