@@ -3,7 +3,8 @@
 It is a core like the rover inside it, so that tests run it in virtual time. Its rules:
 - what the rover decides when a message arrives is written to the motors before `receive` returns, not at the next tick;
 - a motor driver that fails is stopped first, and reported to the rover after that;
-- the emergency-stop input is read each cycle, and one that cannot be read counts as pressed;
+- the emergency-stop input is read each cycle, and one that cannot be read counts as pressed; the rest of a cycle may be
+  left out while the motors have no power;
 - an exception of any kind stops the motors before it propagates;
 - once closed, no motor turns again, whatever the outputs of the rover are.
 """
@@ -47,6 +48,12 @@ class Controller(Core, Protocol):
     def motor_repaired(self, now: float) -> None:
         """Handle a motor driver that works again; the motors are still stopped."""
 
+    def may_skip(self, now: float) -> bool:
+        """Return whether `sense` and `tick` may be left out in this cycle, as they would find nothing to do.
+
+        Only asked while the motors have no power.
+        """
+
     def shutdown(self, now: float) -> None:
         """Queue the last messages; the motors are stopped by now."""
 
@@ -73,6 +80,11 @@ class Drivetrain:
         except MotorError:
             self._stop()
             raise
+
+    @property
+    def powered(self) -> bool:
+        """Whether the motors have power, or may have it."""
+        return self._powered
 
     def self_test(self) -> None:
         """Write neutral to disabled motors. Raises MotorError."""
@@ -129,8 +141,8 @@ class ControlLoop:
         """Check that the driver has as many motors as the DRIVE_TYPE of the rover, or raise MotorError.
 
         `stop_input` reads the emergency-stop input (vehicle.motors.estop_reader), `prove` checks that the motors may be
-        armed (vehicle.motors.arming_check). `completed` is called with the time of each control cycle after the motors
-        are written.
+        armed (vehicle.motors.arming_check). `completed` is called with the time of each whole control cycle after the
+        motors are written.
         """
         needed = len(controller.outputs.throttles)
         if motors.count != needed:
@@ -142,6 +154,8 @@ class ControlLoop:
         self._stop_input = stop_input
         self._completed = completed
         self._retry_due: float | None = None
+        self._whole = True
+        """Whether the newest cycle was a whole one."""
         self._closed = False
 
     def receive(self, received: Received, now: float) -> None:
@@ -149,13 +163,13 @@ class ControlLoop:
         self._guard(lambda: self._controller.receive(received, now), now)
 
     def tick(self, now: float) -> None:
-        """Run one control cycle: read the sensors, decide, write the motors.
+        """Run one control cycle: read the emergency-stop input and the sensors, decide, write the motors.
 
         Enabled motors are written each cycle, changed or not: a driver with a timeout of its own stops by itself when
         the cycles end.
         """
         self._guard(lambda: self._cycle(now), now, refresh=True)
-        if not self._closed:
+        if not self._closed and self._whole:
             self._completed(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
@@ -202,8 +216,10 @@ class ControlLoop:
 
     def _cycle(self, now: float) -> None:
         self._controller.update_estop_input(self._stop_reason(), now)
-        self._controller.sense(self._sensors.read(now), now)
-        self._controller.tick(now)
+        self._whole = self._drivetrain.powered or not self._controller.may_skip(now)
+        if self._whole:
+            self._controller.sense(self._sensors.read(now), now)
+            self._controller.tick(now)
         if not self._proven:
             self._prove(now)
         if self._retry_due is not None and now >= self._retry_due and not self._closed:

@@ -210,15 +210,18 @@ class Params:
     @property
     def table(self) -> tuple[Parameter, ...]:
         """TABLE for ground stations: pinned parameters are read only, the defaults are those of this car."""
-        return tuple(
-            replace(
-                each,
-                read_only=each.read_only or each.name in self.pinned,
-                default=self.get_default(each.name),
-                high=each.high if each.remote_high is None else each.remote_high,
-            )
-            for each in TABLE
+        return tuple(map(self._for_stations, TABLE))
+
+    def _for_stations(self, parameter: Parameter) -> Parameter:
+        own = (
+            parameter.read_only or parameter.name in self.pinned,
+            self.get_default(parameter.name),
+            parameter.high if parameter.remote_high is None else parameter.remote_high,
         )
+        if own == (parameter.read_only, parameter.default, parameter.high):
+            return parameter
+        read_only, default, high = own
+        return replace(parameter, read_only=read_only, default=default, high=high)
 
     def get_default(self, name: str) -> float:
         """Return the default of a parameter for this car."""

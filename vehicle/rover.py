@@ -15,11 +15,14 @@ from vehicle.commands.context import COMPONENT, Context, Reporting
 from vehicle.commands.dispatch import Dispatcher, Stores
 from vehicle.commands.inbound import Effect, InboundTable
 from vehicle.commands.reboot import RebootRequest
+from vehicle.commands.signing import Pairing
 from vehicle.drive.control import Control
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
-from vehicle.drive.gate import Outputs, Permit
+from vehicle.drive.gate import DRIVE, Outputs
 from vehicle.modes import MODES
+from vehicle.outbox import Outbox
+from vehicle.pace import ROUTINE, Activity, Pace
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety.failsafe import FailsafeAction
@@ -39,6 +42,9 @@ from vehicle.telemetry.streams import DialectLevel
 from vehicle.telemetry.telemetry import Telemetry
 from vehicle.telemetry.view import TelemetryView
 
+_LIMIT, _DEMAND, _MOTION, _OFF = FailsafeAction.LIMIT, Effect.DEMAND, Effect.MOTION, SafetyState.OFF
+"""Shortcuts for what runs with each demand: a lookup in an enum costs as much as three comparisons."""
+
 
 class Rover:
     """A `link.core.Core`. Call `receive` for each message, `sense` with readings, and `tick` at 50 Hz."""
@@ -51,6 +57,8 @@ class Rover:
         param_store: ParamStore | None = None,
         plan_store: PlanStore | None = None,
         recording: LogRecorder | None = None,
+        pairing: Pairing | None = None,
+        arming_note: str | None = None,
         host: HostInfo | None = None,
         on_text: Callable[[Severity, str], None] = lambda severity, text: None,
         rack: AccessorySet | None = None,
@@ -58,42 +66,42 @@ class Rover:
         """`now` is the monotonic time of boot.
 
         `param_store` saves parameters and `plan_store` plans; without them both end with the program. `recording`
-        writes logs. `host` describes the computer. `on_text` is called with every STATUSTEXT. `rack` holds relays and
-        servos.
+        writes logs. `pairing` keeps keys. `arming_note` is said at each arming. `host` describes the computer.
+        `on_text` is called with every STATUSTEXT. `rack` holds relays and servos.
         """
         self._params = params
         self._boot = now
         self._host = host or HostInfo()
         self._rack = rack or AccessorySet()
         self._readings = NO_READINGS
-        self._outgoing: list[Outgoing] = []
-        self._demanded: float | None = None
-        """When a demand came whose telemetry is not built yet."""
-        self._ticked: float | None = None
-        """When the cycle ran whose messages are not built yet."""
-        self._texts = StatusTextQueue(on_text)
-        self._health_notices = HealthNotices(self._texts)
-        self._control = Control(params, self._texts, system=int(params["MAV_SYSID"]), boot=now)
+        self._activity = Activity(now)
+        self._cycles = Pace(self._activity)
+        self._texts = texts = StatusTextQueue(on_text)
+        self._health_notices = HealthNotices(texts)
+        self._control = Control(params, texts, system=int(params["MAV_SYSID"]), boot=now)
         self._drive = Drive(params, now)
         self._navigator = Navigator(params, self._drive.kind)
-        self._safety = Safety(params, self._control, self._texts, now, self._navigator)
+        self._safety = Safety(params, self._control, texts, now, self._navigator)
         self._monitor = SafetyMonitor(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(self._control.system, now, logged=recording is not None)
-        self._bandwidth = Bandwidth(self._safety)
+        self._bandwidth = Bandwidth(self._safety, lambda peer: self._telemetry.has_level(peer, DialectLevel.ROVER))
         self._links = LinkStatusReporter(self._control, self._texts, (self._control.system, COMPONENT))
-        self._dispatcher = self._build_dispatcher(Stores(param_store, plan_store, recording))
+        self._dispatcher = self._build_dispatcher(Stores(param_store, plan_store, recording, pairing), arming_note)
         self._actuator_test = self._dispatcher.actuator_test
+        self._outbox = Outbox(
+            self._telemetry, texts, self._dispatcher, self._safety, self._rack, self._build_view, self._activity
+        )
         self._routes = {row.message: row for row in self._dispatcher.messages}
-        self._observers = (
+        self._observers = (  # called with every message, before its handler and whoever sent it
             self._control.hear,
             self._actuator_test.update_liveness,
             self._telemetry.observe,
+            self._dispatcher.signing.observe,
         )
-        """Called with every message, before its handler and whoever sent it."""
 
     @property
     def outputs(self) -> Outputs:
-        """What the motors must get now; updated inside `receive` and `tick`."""
+        """What the motors must get now; `receive` and `tick` update it."""
         return self._drive.outputs
 
     @property
@@ -115,7 +123,7 @@ class Rover:
     @property
     def message_ids(self) -> frozenset[int]:
         """Ids of `messages`."""
-        return frozenset(row.message.id for row in self._dispatcher.messages)
+        return frozenset(row.message.id for row in self.messages)
 
     @property
     def commands(self) -> CommandTable:
@@ -128,7 +136,7 @@ class Rover:
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message; a new demand is in `outputs` when this returns."""
-        if self._safety.state is SafetyState.OFF:
+        if self._safety.state is _OFF:
             return
         for observe in self._observers:
             observe(received, now)
@@ -136,12 +144,14 @@ class Rover:
         route = self._routes.get(type(message))
         if route is None or not (received.introduced or route.accepts_unintroduced(received)):
             return
+        if not isinstance(message, ROUTINE):
+            self._activity.stir(now)
         effect = route.effect
-        before = self._motion_inputs() if effect is Effect.DEMAND else None
+        before = self._motion_inputs() if effect is _DEMAND else None
         replies = route.handle(received, message, now)
         if replies:
-            self._outgoing += replies
-        if effect is Effect.MOTION or (effect is Effect.DEMAND and self._motion_inputs() != before):
+            self._outbox.add(replies)
+        if effect is _MOTION or (effect is _DEMAND and self._motion_inputs() != before):
             self._act(effect, now)
 
     def tick(self, now: float) -> None:
@@ -151,7 +161,8 @@ class Rover:
         late = self._monitor.is_late(now)
         self._cycle(now)
         self._update_outputs(now, late=late)
-        self._ticked = now
+        self._cycles.mark_done(now)
+        self._outbox.note_cycle(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take the reports of the links, about once a second."""
@@ -162,22 +173,11 @@ class Rover:
         self._telemetry.update_audience(audience, self._bandwidth.telemetry_rates, now)
         self._dispatcher.check_storage(now)
         among = self._telemetry.peers_at_level(DialectLevel.ROVER)
-        self._outgoing += [Outgoing(status, among=among) for status in self._links.update(reports, now)]
+        self._outbox.add(Outgoing(status, among=among) for status in self._links.update(reports, now))
 
     def messages_to_send(self) -> list[Outgoing]:
-        """Return what to send now and forget it.
-
-        Messages that follow a demand or a cycle are built here, after the motors are written.
-        """
-        if self._demanded is not None:
-            self._outgoing += self._telemetry.build_after_demand(self._build_view(self._demanded))
-            self._demanded = None
-        if self._ticked is not None and self._safety.state is not SafetyState.OFF:
-            self._queue_due_messages(self._ticked)
-            self._outgoing += self._dispatcher.tick(self._ticked)
-        self._ticked = None
-        outgoing, self._outgoing = self._outgoing, []
-        return outgoing
+        """Return what to send now and forget it. What follows a demand or a cycle is built here, after the motors."""
+        return self._outbox.pop()
 
     def sense(self, readings: Readings, now: float) -> None:
         """Take the newest readings."""
@@ -193,6 +193,7 @@ class Rover:
         if before is not SafetyState.OFF:
             self._safety.update_estop_input(reason, now)
         if self._safety.state is not before:
+            self._activity.stir(now)
             self._update_outputs(now)
 
     def motor_failed(self, reason: str, now: float) -> None:
@@ -204,14 +205,21 @@ class Rover:
         """Allow arming again: the motor driver has passed its self-test."""
         self._safety.motor_repaired(now)
 
+    def may_skip(self, now: float) -> bool:
+        """Return whether this cycle may be left out: disarmed, nothing under way, and not late."""
+        if self._safety.armed or self._actuator_test.running or self._cycles.is_due(now) or self._monitor.is_late(now):
+            return False
+        self._monitor.skip_cycle(now)
+        return True
+
     def shutdown(self, now: float) -> None:
         """Set neutral outputs, disarm, and queue one HEARTBEAT with MAV_STATE_POWEROFF. The last call."""
         if self._safety.state is not SafetyState.OFF:
             self._safety.shutdown()
-            self._outgoing.append(Outgoing(build_status.heartbeat(self._build_view(now))))
+            self._outbox.add([Outgoing(build_status.heartbeat(self._build_view(now)))])
         self._drive.update(None, self._monitor.build_clearance(now, None, late=False), limited=False, now=now)
 
-    def _build_dispatcher(self, stores: Stores) -> Dispatcher:
+    def _build_dispatcher(self, stores: Stores, arming_note: str | None) -> Dispatcher:
         context = Context(
             params=self._params,
             safety=self._safety,
@@ -221,6 +229,8 @@ class Rover:
             access=CommandAccess(self._control.ownership, self._texts),
             mixer=self._drive.mixer,
             pacer=self._bandwidth.pacer,
+            file_pacer=self._bandwidth.file_pacer,
+            arming_note=arming_note,
         )
         reporting = Reporting(self._telemetry, self._links, self._build_view)
         return Dispatcher(context, reporting, stores, self._rack)
@@ -231,29 +241,23 @@ class Rover:
 
     def _act(self, effect: Effect, now: float) -> None:
         """Bring outputs and telemetry up to date with what a message has changed."""
-        if effect is Effect.DEMAND:
+        if effect is _DEMAND:
             self._update_outputs(now)
-            self._demanded = now
+            self._outbox.note_demand(now)
         else:
             self._navigator.restart_mode(self._safety, now)
             self._update_outputs(now)
-            self._queue_due_messages(now)
+            self._outbox.queue_due(now)
 
     def _update_outputs(self, now: float, *, late: bool | None = None) -> None:
         """Compute the motor outputs of this moment."""
         late = self._monitor.is_late(now) if late is None else late
         test = self._actuator_test.current_test(now, late=late)
         clearance = self._monitor.build_clearance(now, self._navigator.demand, late=late, trial=test)
-        limited = self._safety.failsafes.lasting_action(now) >= FailsafeAction.LIMIT
+        limited = self._safety.failsafes.lasting_action(now) >= _LIMIT
         self._drive.update(self._demand_in_use(now), clearance, limited=limited, now=now)
-        if clearance.permit is not Permit.DRIVE:
+        if clearance.permit is not DRIVE:
             self._navigator.reset_controller()
-
-    def _queue_due_messages(self, now: float) -> None:
-        """Queue telemetry and texts that are due."""
-        self._outgoing += self._telemetry.build_due(self._build_view(now))
-        self._outgoing += [Outgoing(text) for text in self._texts.pop_due(now)]
-        self._outgoing += self._texts.pop_replies()
 
     def _demand_in_use(self, now: float) -> Demand | None:
         """Return the demand that the mode obeys; the clearance decides whether it may move anything."""

@@ -15,6 +15,7 @@ from link.core import Peer, Received
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.simulated import SimulatedAccessory
+from vehicle.commands.signing import Pairing
 from vehicle.params import Params
 from vehicle.readings import ComputerReadings, Readings
 from vehicle.rover import Rover
@@ -55,6 +56,9 @@ class Bench:
     recording: LogRecorder | None = None
     """What writes its logs."""
 
+    pairing: Pairing | None = None
+    """What keeps its keys."""
+
     outputs: Sequence[AccessorySpec] = ()
     """Its relays and servos."""
 
@@ -69,6 +73,7 @@ class Bench:
             now=now,
             plan_store=self.plans,
             recording=self.recording,
+            pairing=self.pairing,
             rack=self.rack,
             on_text=lambda severity, text: self.logged.append(text),
         )

@@ -29,6 +29,7 @@ class Script:
         """Becomes `outputs` when a message comes."""
         self.calls: list[str] = []
         self.fault: BaseException | None = None
+        self.idle = False
 
     def receive(self, received: Received, now: float) -> None:
         self._happen("receive")
@@ -58,6 +59,9 @@ class Script:
 
     def motor_repaired(self, now: float) -> None:
         self.calls.append("repaired")
+
+    def may_skip(self, now: float) -> bool:
+        return self.idle
 
     def shutdown(self, now: float) -> None:
         self.calls.append("shutdown")

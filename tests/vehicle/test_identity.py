@@ -17,7 +17,7 @@ from dialects.axes import Axes
 from dialects.enums import Command, ControlFlag, Result
 from dialects.modes import Mode
 from link.core import Peer
-from tests.vehicle.wires import IDS, Program, SessionProgram, Wires
+from tests.vehicle.wires import IDS, Program, SessionProgram, Wires, drive_fully
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.driver import SUCCESSION_TIME
 
@@ -28,13 +28,7 @@ KINDS = [Program, SessionProgram]
 def driving(kind: type[Program] = Program, links: int = 1) -> tuple[Wires, Program]:
     """A driver at full throttle: the danger that each trace begins with."""
     wires = Wires(links)
-    driver = kind(wires)
-    driver.hold(1.0, None)
-    assert driver.arm() is Result.ACCEPTED
-    driver.hold(0.3, NEUTRAL)
-    driver.hold(1.0, AHEAD)
-    assert wires.throttle == pytest.approx(1.0, abs=0.05)
-    return wires, driver
+    return wires, drive_fully(kind, wires)
 
 
 def both(first: Program, one: Axes | None, second: Program, other: Axes | None, seconds: float) -> list[float]:

@@ -12,7 +12,6 @@ from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.protocol.channel import Channel
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from tests.vehicle.bench import AHEAD, BEAT, CYCLE, DRIVER, MESSAGE_IDS, NEUTRAL
 from vehicle.params import Params
@@ -72,7 +71,7 @@ class CrowdedLink:
         for outgoing in self.rover.messages_to_send():
             for data, address, _ in self.channel.send(outgoing):
                 found = self._framer.feed(data, self.now)
-                messages = (codec.decode(number, payload_of(raw)) for number, _, _, _, raw in found)
+                messages = (codec.decode_frame(number, raw) for number, _, _, _, raw in found)
                 self.replies.setdefault(address, []).extend(messages)
 
 

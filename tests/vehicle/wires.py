@@ -9,6 +9,8 @@ import heapq
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
+import pytest
+
 from dialects import codec
 from dialects import messages as m
 from dialects.axes import Axes, build_manual_control
@@ -98,7 +100,7 @@ class Wires:
     def _collect(self) -> None:
         for outgoing in self.rover.messages_to_send():
             for channel in self.channels:
-                self.sent += [(address, outgoing.message) for _, address, _ in channel.send(outgoing)]
+                self.sent += [(address, outgoing.message) for _, address, _ in channel.send(outgoing, now=self.now)]
 
 
 class Program:
@@ -200,3 +202,14 @@ class SessionProgram(Program):
             self._due = self.wires.now + 0.5
             self.send(self.build(None))
         super().step(axes, rate, lost=lost)
+
+
+def drive_fully(kind: type[Program], wires: Wires) -> Program:
+    """Return a driver at full throttle."""
+    driver = kind(wires)
+    driver.hold(1.0, None)
+    assert driver.arm() is Result.ACCEPTED
+    driver.hold(0.3, Axes())
+    driver.hold(1.0, Axes(throttle=1.0))
+    assert wires.throttle == pytest.approx(1.0, abs=0.05)
+    return driver

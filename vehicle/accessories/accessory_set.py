@@ -18,6 +18,11 @@ class AccessorySet:
     def __iter__(self) -> Iterator[AccessoryOutput]:
         return iter(self._outputs.values())
 
+    @property
+    def repeating(self) -> bool:
+        """Whether an output repeats, or waits for its target."""
+        return any(output.busy for output in self._outputs.values())
+
     def find(self, kind: str, number: float) -> AccessoryOutput | None:
         """Return the accessory with this number, or None."""
         return self._outputs.get((kind, number))

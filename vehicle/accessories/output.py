@@ -87,6 +87,11 @@ class AccessoryOutput:
         self._repeat: RepeatState | None = None
         self._retry_due = 0.0
 
+    @property
+    def busy(self) -> bool:
+        """Whether a repetition runs, or the hardware has not got the target yet."""
+        return self._repeat is not None or (self._accessory is not None and self.target != self.actual)
+
     def open(self) -> None:
         """Open the driver with the start value."""
         self._attempt(self._make, self.spec.start)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from dialects.enums import DriveType
+from link.endpoint import Side
 from link.protocol.link_events import CONNECTING
 from link.transport.transport import LinkError, Transport
 from link.transport.transports import open_transports
@@ -25,7 +27,7 @@ from vehicle.hardware.error_text import format_error
 from vehicle.motors import MotorError, arming_check
 from vehicle.motors.drivers import open_motors
 from vehicle.params import Params
-from vehicle.runtime.lock import MotorLock
+from vehicle.runtime.lock import InUseError, MotorLock
 from vehicle.sensors.encoders import Encoders
 from vehicle.sensors.gps import GpsdClient
 from vehicle.sensors.pi_health import PiHealth
@@ -37,6 +39,8 @@ GPS_WAIT = 3.0
 """s for a first report: gpsd responds at once, and receivers report once per second."""
 POLL = 0.1
 """s between two polls."""
+BUSY_ERRNOS = (errno.EADDRINUSE, errno.EBUSY, errno.EAGAIN)
+"""Errors of the kernel for a port that another program has open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +52,8 @@ class CheckResult:
     detail: str
     user_error: bool = False
     """The failure is caused by the file, not by the hardware."""
+    busy: bool = False
+    """The failure is that another program, maybe the vehicle itself, uses the hardware."""
 
     def __str__(self) -> str:
         return f"{'ok  ' if self.ok else 'FAIL'}  {self.item}: {self.detail}"
@@ -121,7 +127,12 @@ def _try(item: str, attempt: Callable[[], str]) -> CheckResult:
     try:
         return CheckResult(item, True, attempt())
     except (MotorError, OSError, ImportError, LinkError, _CheckError) as error:
-        return CheckResult(item, False, format_error(error))
+        return CheckResult(item, False, format_error(error), busy=_is_busy(error))
+
+
+def _is_busy(error: Exception) -> bool:
+    cause = error.__cause__
+    return isinstance(error, InUseError) or (isinstance(cause, OSError) and cause.errno in BUSY_ERRNOS)
 
 
 def _links(config: Config) -> Iterator[CheckResult]:
@@ -133,7 +144,7 @@ def _links(config: Config) -> Iterator[CheckResult]:
 
 
 def _link(endpoint: str) -> str:
-    [transport] = open_transports([endpoint])
+    [transport] = open_transports([endpoint], Side.VEHICLE)
     if connects := _is_connecting(transport):
         asyncio.run(_connect(transport))
     else:

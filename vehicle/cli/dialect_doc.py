@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dialects import messages as m
 from dialects.definition import MessageDefinition, private_enums, private_messages
 from dialects.enums import FenceItem, command_name
+from dialects.traits import LOG_ONLY
 from vehicle.autonomy.mission.rules import FENCE_RULES, MISSION_RULES, RALLY_RULES
 from vehicle.commands.access import Access
 from vehicle.commands.buttons import FUNCTIONS
@@ -157,8 +158,13 @@ def _private(rover: Rover) -> str:
 
 
 def _message(message: MessageDefinition, inbound: frozenset[int]) -> str:
-    direction = "to the vehicle" if message.id in inbound else "from the vehicle"
     fields = [(each.name, each.type, each.enum or each.unit, each.description) for each in message.fields]
     size = m.MESSAGES[message.id].unpacker.size
-    title = f"### {message.name} ({message.id}, {size} bytes; {direction})"
+    title = f"### {message.name} ({message.id}, {size} bytes; {_direction(message.id, inbound)})"
     return f"{title}\n\n{message.description}\n\n{_table(('field', 'type', 'unit, enum', ''), fields)}"
+
+
+def _direction(number: int, inbound: frozenset[int]) -> str:
+    if number in LOG_ONLY:
+        return "in logs of the ground station only"
+    return "to the vehicle" if number in inbound else "from the vehicle"

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from link.runtime import stdio
+from link.runtime import asyncio_without_ssl, stdio
 from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
 from vehicle.cli.options import (
@@ -47,6 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace, parser: CommandLineParser) -> int:
+    asyncio_without_ssl.load()
     from vehicle.runtime import daemon
     from vehicle.runtime.log import DaemonLog
 
@@ -83,6 +84,10 @@ def _load_config(options: argparse.Namespace, parser: CommandLineParser) -> Conf
     if options.system is not None:
         params = {name: value for name, value in config.params.items() if name != "MAV_SYSID"}
         config = replace(config, identity=Identity(options.system), params=params)
+    if options.allow_unsigned:
+        if config.signing.required:
+            parser.error("--allow-unsigned contradicts signing.required of the configuration file")
+        config = replace(config, signing=replace(config.signing, allow_unsigned=True))
     default = (GROUND_STATION,) if options.sim else ()
     return replace(config, endpoints=tuple(options.endpoints) or config.endpoints or default)
 
@@ -113,6 +118,8 @@ def _build_settings(options: argparse.Namespace, config: Config, parser: Command
         motor_log=options.motor_log or config.log.motors,
         state=_state_folder(options, config),
         logs=_log_folder(options, config),
+        signing=config.signing,
+        announce=options.announce or config.announce,
     )
 
 

@@ -36,6 +36,7 @@ examples:
   vehicle --sim --param DRIVE_TYPE=4             ... one with mecanum wheels (3: omni), that also moves sideways
   vehicle init                                   write rover.toml, with every setting and its description
   vehicle check                                  check rover.toml and the hardware; nothing moves
+  vehicle doctor                                 the same with permissions, ports, power, clock, disk and service
   vehicle --config rover.toml                    run with this file; options take precedence over it
   vehicle udpin:0.0.0.0:14550 --motors my_car:Motors         use your own motor driver
 
@@ -50,8 +51,8 @@ motor drivers (--motors):
   MODULE:CLASS   a driver of your own
 
 exit codes: 0 requested stop (SIGTERM, Ctrl-C, SIGHUP), 1 a fault, also a link that cannot be opened, 2 an error on the
-command line or in the file, 80 to 82 a ground station requested a restart of this program, a reboot of the computer, or
-its shutdown (REBOOT_ENABLE, docs/pi.md).
+command line or in the file, 7 `vehicle doctor` found a fault, 80 to 82 a ground station requested a restart of this
+program, a reboot of the computer, or its shutdown (REBOOT_ENABLE, docs/pi.md).
 Before the program ends for any reason, the motors are set to neutral and disabled.
 """
 
@@ -165,6 +166,10 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--config": {"metavar": "FILE", "help": "configuration file; `vehicle init` writes a template"},
     "--sim": {"action": "store_true", "help": "simulate motors, chassis, battery and sensors"},
     "--motors": {"metavar": "NAME", "help": "motor driver"},
+    "--announce": {"action": "store_true",
+                   "help": "announce endpoints that listen on the network (mDNS); needs the extra [discovery]"},
+    "--allow-unsigned": {"action": "store_true",
+                         "help": "let everybody in the network drive who has no key; see docs/security.md"},
     "--system": {"metavar": "N", "type": _system, "help": "MAVLink system id, 1 to 255 (default 1)"},
     "--param": {"metavar": "NAME=VALUE", "type": _param, "action": "append", "default": [],
                 "help": "set a parameter; repeatable"},

@@ -6,34 +6,21 @@ To add a subcommand, add its function here and a row to SUBCOMMANDS, with its ar
 from __future__ import annotations
 
 import argparse
+import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from link.runtime import stdio
 from link.runtime.command_line import USAGE_ERROR, CommandLineParser
 from link.runtime.toml_file import TomlError, read_toml
+from vehicle.cli.key_table import KEY
+from vehicle.cli.subcommand import DONE, FAULT, Subcommand, SubcommandError
 
-DONE, FAULT = 0, 1
-"""Exit codes: success, and an error of the hardware. USAGE_ERROR is an error of the user."""
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, 128 + SIGINT."""
 DEFAULT_FILE = "rover.toml"
-
-
-class SubcommandError(Exception):
-    """The subcommand cannot be executed; the text is one line."""
-
-
-@dataclass(frozen=True, slots=True)
-class Subcommand:
-    """One subcommand."""
-
-    help: str
-    run: Callable[[argparse.Namespace], int]
-    """Executes the subcommand and returns the exit code."""
-    arguments: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    """Name -> arguments of argparse."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -41,10 +28,12 @@ def run(arguments: Sequence[str]) -> int:
     parser = build_parser(arguments[0])
     options = parser.parse_args(parser.reject_empty(arguments[1:]))
     try:
-        code = SUBCOMMANDS[arguments[0]].run(options)
+        code: int = options.run(options)
         sys.stdout.flush()
     except (SubcommandError, TomlError) as error:
         parser.exit(USAGE_ERROR, f"{parser.prog}: {error}\n")
+    except KeyboardInterrupt:
+        return INTERRUPTED
     except OSError as error:
         # Errors of files are reported with their names: this is the output, full or closed by its reader.
         stdio.discard_output()
@@ -54,11 +43,8 @@ def run(arguments: Sequence[str]) -> int:
 
 def build_parser(name: str) -> CommandLineParser:
     """Return the parser for the arguments of a subcommand."""
-    subcommand = SUBCOMMANDS[name]
-    description = f"{subcommand.help[0].upper()}{subcommand.help[1:]}."
-    parser = CommandLineParser(prog=f"vehicle {name}", description=description)
-    for argument, settings in subcommand.arguments.items():
-        parser.add_argument(argument, **settings)
+    parser = CommandLineParser(prog=f"vehicle {name}")
+    SUBCOMMANDS[name].add_to(parser)
     return parser
 
 
@@ -105,6 +91,21 @@ def _check(options: argparse.Namespace) -> int:
         if not result.ok:
             code = max(code, USAGE_ERROR if result.user_error else FAULT)
     return code
+
+
+def _doctor(options: argparse.Namespace) -> int:
+    from link.runtime.diagnosis import STOPPED, find_faults, format_row, row_record
+    from vehicle.cli.doctor.gather import gather_facts
+    from vehicle.cli.doctor.table import examine
+
+    rows = examine(gather_facts(options.file, options.state))
+    faults = find_faults(rows)
+    for row in rows:
+        lines = [json.dumps(row_record(row))] if options.json else format_row(row)
+        sys.stdout.writelines(f"{line}\n" for line in lines)
+    if options.json:
+        sys.stdout.write(json.dumps({"ok": not faults, "faults": [row.id for row in faults]}) + "\n")
+    return STOPPED if faults else DONE
 
 
 def _safe_stop(options: argparse.Namespace) -> int:
@@ -180,11 +181,14 @@ _CONFIG: dict[str, dict[str, Any]] = {
 _STATE: dict[str, dict[str, Any]] = {
     "--state": {"metavar": "FOLDER", "help": "state folder of the vehicle, if not the one of its file"}
 }
+_JSON: dict[str, dict[str, Any]] = {"--json": {"action": "store_true", "help": "print one JSON object per row"}}
 
 SUBCOMMANDS: dict[str, Subcommand] = {
     "init": Subcommand("write a configuration file with every key and its default", _init, _FILE),
     "check": Subcommand("check the configuration file and the hardware, without moving anything", _check,
                         _FILE | _STATE),
+    "doctor": Subcommand("examine all that the vehicle needs on this computer, and what to do; nothing moves", _doctor,
+                         _FILE | _STATE | _JSON),
     "schema": Subcommand("print the JSON schema of the configuration file, for editors", _schema),
     "dialect": Subcommand("print the supported messages, commands, modes and parameters", _dialect),
     "motor-test": Subcommand("turn one motor, slowly and briefly", _motor_test, _CONFIG | _STATE | {
@@ -193,6 +197,7 @@ SUBCOMMANDS: dict[str, Subcommand] = {
         "--time": {"type": float, "default": 1.0, "metavar": "S", "help": "seconds, at most 3 (default 1)"},
         "--yes": {"action": "store_true", "help": "skip the question: the wheels are in the air"},
     }),
+    "key": KEY,
     "safe-stop": Subcommand("stop the motors that a killed vehicle left running", _safe_stop, _CONFIG),
     "systemd-unit": Subcommand("print the systemd unit that runs the vehicle as a service", _systemd_unit, _CONFIG | {
         "--user": {"help": "user of the service; default: the owner of the home directory that contains the file or "

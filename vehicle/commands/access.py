@@ -10,7 +10,9 @@ from link.core import Received
 from link.services.command.jobs import CommandJob
 from link.services.command.request import CommandRequest
 from link.services.command.server import CommandReply
+from link.signing.role import Role
 from vehicle.drive.ownership import Ownership
+from vehicle.drive.roles import role_denial
 from vehicle.navigation.geo import Home
 from vehicle.statustext import StatusTextQueue
 
@@ -41,6 +43,16 @@ class Access(Enum):
     """The ground station in control, or any introduced one while none is in control."""
 
 
+NEEDED_ROLES = {
+    Access.ANYONE: Role.WATCH,
+    Access.CONNECTED: Role.WATCH,
+    Access.INTRODUCED: Role.DRIVE,
+    Access.DRIVER: Role.DRIVE,
+    Access.DRIVER_OR_UNCLAIMED: Role.DRIVE,
+}
+"""What the key of a sender must allow, where a row says nothing else."""
+
+
 class CommandAccess:
     """Checks the sender of a command and reports denials to the driver."""
 
@@ -59,6 +71,22 @@ class CommandAccess:
             return None
         denied = self.reject(request, reason, now)
         return Result.TEMPORARILY_REJECTED if self._ownership.is_barred(request, now) else denied
+
+    def deny_role(self, needed: Role, request: CommandRequest, now: float) -> Result | None:
+        """Return DENIED, after saying why, if the sender's key does not allow this; None if it does."""
+        reason = role_denial(request, needed)
+        if reason is None:
+            return None
+        self.reject(request, reason, now)
+        return Result.DENIED
+
+    def may_set_up(self, received: Received, now: float) -> bool:
+        """Return whether a sender may change parameters or files now; it is told if its key does not allow it."""
+        if reason := role_denial(received, Role.SET_UP):
+            text = f"GCS {received.system}: change refused: {reason}"
+            self._texts.reply(received, Severity.WARNING, text, now)
+            return False
+        return self._ownership.denial_reason(received, now) is None
 
     def denial_reason(self, sender: Received | CommandRequest, now: float) -> str | None:
         """Return why a sender may not command the vehicle, or None."""

@@ -16,6 +16,7 @@ from functools import partial
 from dialects.enums import Command, Result, Severity
 from link.core import Received
 from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest
+from link.signing.role import Role
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
@@ -75,15 +76,22 @@ class ActuatorTest:
         self._last: tuple[RequestKey, float] | None = None
         """The newest accepted request, and when it came."""
 
+    @property
+    def running(self) -> bool:
+        """Whether a test was accepted and has not ended."""
+        return self._run is not None
+
     def commands(self) -> CommandTable:
         """Return the rows of the commands handled here."""
         return (
             CommandSpec(Command.DO_MOTOR_TEST, partial(self._handle_command, _parse_motor_test),
                         Access.DRIVER_OR_UNCLAIMED,
-                        "disarmed; 1: motor from 1, 2: 0 (percent), 3: percent, 4: s up to 3"),
+                        "disarmed; 1: motor from 1, 2: 0 (percent), 3: percent, 4: s up to 3",
+                        role=Role.SET_UP),
             CommandSpec(Command.ACTUATOR_TEST, partial(self._handle_command, _parse_actuator_test),
                         Access.DRIVER_OR_UNCLAIMED,
-                        "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1"),
+                        "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1",
+                        role=Role.SET_UP),
         )  # fmt: skip
 
     def update_liveness(self, received: Received, now: float) -> None:

@@ -14,11 +14,13 @@ from dialects.modes import Mode
 from link.core import Outgoing, Received
 from link.services.command.request import CommandRequest, value_or_default
 from link.services.command.server import CommandReply
+from link.signing.role import Role
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
 from vehicle.drive.conversation import Conversation
+from vehicle.drive.roles import role_denial
 from vehicle.modes import describe_mode, parse_mode, standard_mode
 from vehicle.replies import Asker
 
@@ -39,6 +41,7 @@ class ArmingCommands:
         self._ownership = context.control.ownership
         self._texts = context.statustext
         self._access = context.access
+        self._note = context.arming_note
         self._forwarded: tuple[Conversation | None, float] = (None, -math.inf)
         """Who sent the newest REQUEST_OPERATOR_CONTROL that was forwarded, and when."""
 
@@ -93,12 +96,15 @@ class ArmingCommands:
             return Result.ACCEPTED
         problems = self._safety.arm(Conversation.of(request), now, force=force in FORCE_VALUES)
         self._report_problems(problems, request, now)
+        if not problems and self._note is not None:
+            self._texts.send_change(Severity.WARNING, self._note, now)
         return Result.FAILED if problems else Result.ACCEPTED
 
     def _run_prearm_checks(self, request: CommandRequest, now: float) -> Result:
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
-        problems = self._safety.prearm_problems(now)
+        denial = role_denial(request, Role.DRIVE)
+        problems = [*([denial] if denial else []), *self._safety.prearm_problems(now)]
         self._report_problems(problems, request, now)
         if not problems:
             self._texts.reply(request, Severity.INFO, "PreArm: ready to arm", now)

@@ -12,6 +12,7 @@ import math
 from dialects.enums import Command, Result, Severity
 from link.services.command.jobs import CommandJob
 from link.services.command.request import CommandRequest
+from link.signing.role import Role
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
@@ -34,7 +35,8 @@ class CalibrationCommand:
         """Return the rows of the commands handled here."""
         return (
             CommandSpec(Command.PREFLIGHT_CALIBRATION, self._calibrate, Access.DRIVER_OR_UNCLAIMED,
-                        "disarmed; 1: 1 the gyro, at rest for 3 s, with progress"),
+                        "disarmed; 1: 1 the gyro, at rest for 3 s, with progress",
+                        role=Role.SET_UP),
         )  # fmt: skip
 
     def _calibrate(self, request: CommandRequest, now: float) -> Result | CommandJob:

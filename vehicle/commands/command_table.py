@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from dialects.messages import CommandInt, CommandLong
 from link.services.command.request import CommandRequest
 from link.services.command.server import CommandHandler, RunCommand
+from link.signing.role import Role
 from vehicle.autonomy.mission.rules import DoItem
-from vehicle.commands.access import Access, CommandAccess, CommandResult
+from vehicle.commands.access import NEEDED_ROLES, Access, CommandAccess, CommandResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +33,22 @@ class CommandSpec:
     """Accepted when sent to system 0; where `stops` is given only what stops, so that a broadcast never arms."""
     item: DoItem | None = None
     """The DO item of a mission; None if a mission does not hold this command as a DO item."""
+    role: Role | None = None
+    """What the key of its sender must allow; None: what `access` needs."""
 
     @property
     def who(self) -> str:
         """Who may send it, for docs/dialect.md."""
+        role = f", key: {self.needed_role.word}" if self.role is not None else ""
+        return f"{self._who}{role}"
+
+    @property
+    def needed_role(self) -> Role:
+        """What the key of its sender must allow, unless it only stops."""
+        return NEEDED_ROLES[self.access] if self.role is None else self.role
+
+    @property
+    def _who(self) -> str:
         return self.access.value if self.stops is None else f"{self.access.value}; to stop: {Access.ANYONE.value}"
 
     def accepts_broadcast(self, message: CommandLong | CommandInt) -> bool:
@@ -64,7 +77,7 @@ def _checked(row: CommandSpec, access: CommandAccess) -> RunCommand:
 
     def run(request: CommandRequest, now: float) -> CommandResult:
         if row.stops is None or not row.stops(request.params):
-            denial = access.deny(row.access, request, now)
+            denial = access.deny_role(row.needed_role, request, now) or access.deny(row.access, request, now)
             if denial is not None:
                 return denial
         return row.run(request, now)

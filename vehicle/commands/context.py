@@ -34,7 +34,11 @@ class Context:
     mixer: Mixer
     """Motors and servo outputs of this kind of drive."""
     pacer: BulkPacer
-    """Limits what parameter lists, plans, files and logs send."""
+    """Limits what parameter lists, plans and logs send."""
+    file_pacer: BulkPacer
+    """Limits what files send."""
+    arming_note: str | None = None
+    """What is said at each arming."""
 
     @property
     def ids(self) -> tuple[int, int]:

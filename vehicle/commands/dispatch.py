@@ -29,6 +29,7 @@ from vehicle.commands.preflight import PreflightCommands
 from vehicle.commands.preflight_storage import PreflightStorage
 from vehicle.commands.reboot import RebootRequest
 from vehicle.commands.requests import MessageRequests
+from vehicle.commands.signing import Pairing, SigningCommands
 from vehicle.storage.logbook import Logbook, LogRecorder
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.plan_store import PlanStore
@@ -40,6 +41,7 @@ class Stores(NamedTuple):
     params: ParamStore | None = None
     plans: PlanStore | None = None
     logs: LogRecorder | None = None
+    pairing: Pairing | None = None
 
 
 class Dispatcher:
@@ -51,6 +53,7 @@ class Dispatcher:
         self._accessories = AccessoryCommands(context, accessories)
         self._params = ParamService(context, stores.params)
         self._preflight = PreflightCommands(context)
+        self.signing = SigningCommands(context, stores.pairing)
         self.logbook = Logbook(context.params, context.control, context.statustext, context.safety, stores.logs)
         self.actuator_test = ActuatorTest(context)
         self.demands = DemandMessages(context)
@@ -84,7 +87,7 @@ class Dispatcher:
             *self._messages(),
             *arming.messages(),
             *origin.messages(),
-            *self._preflight.messages(),
+            *self.signing.messages(),
             *self._params.messages(),
             *self._mission.messages(),
             *self._files.messages(),
@@ -104,6 +107,7 @@ class Dispatcher:
             *self.logbook.tick(now),
         ]
         self._accessories.update(now)
+        self.signing.tick(now)
         return outgoing
 
     def check_storage(self, now: float) -> None:

@@ -14,6 +14,7 @@ from link.services.ftp.files import FileTree, Folder, GeneratedFolder, Query
 from link.services.ftp.server import FtpServer
 from link.services.log.server import LogServer
 from link.services.param.pack import pack
+from link.signing.role import Role
 from vehicle.commands.access import Access
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
@@ -37,8 +38,10 @@ class FileServices:
             FileTree(described, {"@PARAM": packed, "logs": logbook.folder(), "missions": missions}),
             system=system,
             component=component,
-            pacer=pacer,
-            allowed=lambda received, now: context.control.ownership.denial_reason(received, now) is None,
+            pacer=context.file_pacer,
+            allowed=lambda received, now: (
+                received.role >= Role.SET_UP and context.control.ownership.denial_reason(received, now) is None
+            ),
         )
         self._log = LogServer(
             logbook.recording.folder,

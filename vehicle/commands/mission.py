@@ -19,6 +19,7 @@ from link.services.mission.commit import PendingPlanWrite, PlanChange
 from link.services.mission.files import PlanFolder
 from link.services.mission.items import ItemRequest, Items, MissionItem, describe_rejection
 from link.services.mission.server import MissionServer
+from link.signing.role import Role
 from vehicle.autonomy.mission.item_reached import ItemReachedSender
 from vehicle.autonomy.mission.rules import DoItem, find_unsupported_items, plan_rules
 from vehicle.autonomy.navigator import PlanIds
@@ -26,6 +27,7 @@ from vehicle.commands.access import Access, CommandResult
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import Effect, InboundMessage, InboundTable, from_server
+from vehicle.drive.roles import role_denial
 from vehicle.navigation.fence import find_ineffective_items
 from vehicle.storage.plan_store import PlanStore
 from vehicle.telemetry.build_navigation import mission_state
@@ -140,7 +142,8 @@ class MissionService:
 
     def authorize_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         """Accept a change from the driver only, and of no plan that is in use."""
-        denial = self._control.ownership.denial_reason(received, now) or self._in_use(kind)
+        denial = role_denial(received, Role.SET_UP) or self._control.ownership.denial_reason(received, now)
+        denial = denial or self._in_use(kind)
         if denial is None:
             return MissionResult.ACCEPTED
         text = f"GCS {received.system}: {kind.name.lower()} not changed: {denial}"

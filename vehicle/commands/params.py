@@ -43,7 +43,7 @@ class ParamService:
             system=system,
             component=component,
             pacer=context.pacer,
-            allowed=lambda received, now: context.control.ownership.denial_reason(received, now) is None,
+            allowed=context.access.may_set_up,
             armed=lambda: context.safety.armed,
             changed=self._handle_change,
             refused=lambda received, text, now: context.statustext.reply(received, Severity.WARNING, text, now),

@@ -1,15 +1,13 @@
-"""PREFLIGHT_REBOOT_SHUTDOWN, DO_SEND_BANNER and SETUP_SIGNING."""
+"""PREFLIGHT_REBOOT_SHUTDOWN and DO_SEND_BANNER."""
 
 from __future__ import annotations
 
 from dialects.enums import Command, DriveType, Result, Severity
-from dialects.messages import SetupSigning
-from link.core import Received
 from link.services.command.request import CommandRequest
+from link.signing.role import Role
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
-from vehicle.commands.inbound import InboundMessage, InboundTable
 from vehicle.commands.reboot import REBOOT_DELAY, RebootRequest, parse_reboot_request
 from vehicle.telemetry.build_status import VERSION
 
@@ -20,7 +18,6 @@ class PreflightCommands:
     def __init__(self, context: Context) -> None:
         self._params = context.params
         self._safety = context.safety
-        self._control = context.control
         self._texts = context.statustext
         self._access = context.access
         self._pending: tuple[RebootRequest, float] | None = None
@@ -30,17 +27,10 @@ class PreflightCommands:
         """Return the rows of the commands handled here."""
         return (
             CommandSpec(Command.PREFLIGHT_REBOOT_SHUTDOWN, self._reboot, Access.DRIVER_OR_UNCLAIMED,
-                        "disarmed, REBOOT_ENABLE; 1: 1 this program, 2 shut down; 2: 1 reboot, 2 shut down"),
+                        "disarmed, REBOOT_ENABLE; 1: 1 this program, 2 shut down; 2: 1 reboot, 2 shut down",
+                        role=Role.SET_UP),
             CommandSpec(Command.DO_SEND_BANNER, self._send_banner, Access.CONNECTED,
                         "sends name and version as STATUSTEXT (of ardupilotmega.xml)"),
-        )  # fmt: skip
-
-    def messages(self) -> InboundTable:
-        """Return the rows of the messages handled here."""
-        return (
-            InboundMessage(SetupSigning, Access.ANYONE,
-                           "answered by a STATUSTEXT: signing is not offered, no key is stored",
-                           self._handle_setup_signing),
         )  # fmt: skip
 
     def reboot_request(self, now: float) -> RebootRequest | None:
@@ -51,12 +41,6 @@ class PreflightCommands:
             self._pending = None
             self._texts.send(Severity.WARNING, "Restart cancelled: armed", now)
         return self._pending[0] if self._pending else None
-
-    def _handle_setup_signing(self, received: Received, message: SetupSigning, now: float) -> None:
-        """Report that signing is not offered. The key of the message is neither used nor stored."""
-        if message.target_system == self._control.system:
-            text = "Signing is not offered: the key was not used"
-            self._texts.reply_once(f"signing {received.system}", received, Severity.WARNING, text, now)
 
     def _reboot(self, request: CommandRequest, now: float) -> Result:
         """Parameter 1: this program; 2: the computer; 3 and 4: an action and its component, this one or all."""

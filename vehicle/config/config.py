@@ -18,6 +18,8 @@ from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read
 from vehicle.accessories import settings as accessory_settings
 from vehicle.accessories.settings import Accessories
 from vehicle.config.conflicts import find_conflicts
+from vehicle.config.signing import SigningSettings
+from vehicle.config.signing import find_problems as find_signing_problems
 from vehicle.motors import MotorError, UnknownDriverError
 from vehicle.motors.drivers import DRIVERS, profile_params, profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
@@ -60,10 +62,13 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The configuration file."""
 
     endpoints: tuple[str, ...] = ()
-    """Links to ground stations. Every station that can reach one may request control: use trusted networks only."""
+    """Links to ground stations. Who sends over a network needs a key to drive: see [signing]."""
+    announce: bool = False
+    """Announce the endpoints that listen (udpin, tcpin) on the network: needs the extra [discovery]."""
     state: str | None = None
     """Folder for parameters and plans set by ground stations; without it the service's own, or one in your home."""
     identity: Identity = Identity()
+    signing: SigningSettings = SigningSettings()
     motors: dict[str, Any] = {}
     accessories: Accessories = Accessories()
     sensors: SensorSettings = SensorSettings()
@@ -176,12 +181,17 @@ def _contradictions(table: Mapping[str, Any]) -> list[str]:
     return find_conflicts(table)
 
 
+def _signing_problems(table: Mapping[str, Any]) -> list[str]:
+    return find_signing_problems(msgspec.convert(table, SigningSettings))
+
+
 def _accessory_problems(table: Mapping[str, Any]) -> list[str]:
     return accessory_settings.find_problems(msgspec.convert(table, Accessories))
 
 
 _CHECKS: dict[str, Callable[[Any], list[str]]] = {
     "endpoints": _endpoint_problems,
+    "signing": _signing_problems,
     "motors": _motor_problems,
     "accessories": _accessory_problems,
     "params": _param_problems,

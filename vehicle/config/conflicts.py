@@ -28,7 +28,7 @@ def find_conflicts(table: Mapping[str, Any]) -> list[str]:
     """Return one line for each conflict. `table` is the whole file, without errors in its sections."""
     owners: dict[str, tuple[str, str | None]] = {}
     problems = []
-    for owner, name, shared_as in _taken(table):
+    for owner, name, shared_as in iter_taken(table):
         first, first_shared_as = owners.setdefault(name, (owner, shared_as))
         if first == owner or (shared_as is not None and shared_as == first_shared_as):
             continue
@@ -49,8 +49,8 @@ def find_motor_conflicts(specs: Iterable[AccessorySpec], kind: DriveType) -> lis
     ]
 
 
-def _taken(table: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
-    """Yield section, name of its hardware, and the settings for it if it may be shared."""
+def iter_taken(table: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
+    """Yield section, name of its hardware, and the settings for it if it may be shared. `table` as above."""
     for index, text in enumerate(table.get("endpoints", ())):
         if path := parse_endpoint(text).path:
             yield f"endpoints[{index}]", port_name(path), None

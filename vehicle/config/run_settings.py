@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.accessories.settings import Accessories
+from vehicle.config.signing import SigningSettings
 from vehicle.sensors.suite import SensorSettings
 from vehicle.sim.body import SimulatedHome
 
@@ -51,6 +52,9 @@ class RunSettings:
     """State folder for parameters and plans; None: nothing is saved."""
     logs: Path | None = None
     """Folder of telemetry logs; None: nothing is recorded."""
+    signing: SigningSettings = field(default_factory=SigningSettings)
+    announce: bool = False
+    """Announce the endpoints that listen by multicast DNS."""
 
 
 class SettingsError(Exception):

@@ -15,6 +15,7 @@ from vehicle.accessories.drivers import FIRST_NUMBER, Kind
 from vehicle.accessories.settings import COMMON, Accessories
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
+from vehicle.config.signing import SigningSettings
 from vehicle.motors import MotorError
 from vehicle.motors.drivers import DRIVERS, DriverEntry, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
@@ -59,8 +60,10 @@ def build_template() -> str:
     parts = [
         HEAD,
         _line("endpoints", list(config.endpoints), Config, active=True),
+        _line("announce", config.announce, Config),
         _line("state", config.state, Config),
         "\n[identity]\n" + _body(config.identity, "identity"),
+        f"\n[signing]\n{_comment(first_paragraph(SigningSettings.__doc__))}" + _body(config.signing, "signing"),
         f"\n[motors]\n# One of {', '.join(DRIVERS)}; or your own as module:Class.\n"
         "# docs/pi.md describes the wiring of each.\n" + 'driver = "simulated"\n',
         *(_driver(name, entry) for name, entry in DRIVERS.items() if name != "simulated"),

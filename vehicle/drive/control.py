@@ -7,10 +7,11 @@ ground station that repeats an old demand, moves nothing. The last gate (vehicle
 
 from __future__ import annotations
 
-from dialects import axes
+from dialects.axes import FULL_DEFLECTION
 from dialects.enums import DriveType, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from link.core import Received
+from link.signing.role import Role
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.demand import Demand, RcOverride, from_manual_control
 from vehicle.drive.mixer import MIXERS
@@ -54,8 +55,8 @@ class Control:
         self.reset()
 
     def hear(self, received: Received, now: float) -> None:
-        """Note a message of anybody, before it is handled."""
-        if not received.introduced:
+        """Note a message of anybody, before it is handled; those whose key may not drive are no successors."""
+        if not received.introduced or received.role < Role.DRIVE:
             return
         if self.ownership.hear(received, now):
             self._begin_succession()
@@ -82,7 +83,7 @@ class Control:
         if self.demand and self.demand.sequence == received.sequence:
             return False  # a replay of the same packet
         demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
-        if any(abs(axis) > axes.FULL_DEFLECTION and axis != INVALID_AXIS for axis in (message.x, message.r)):
+        if _is_out_of_range(message.x) or _is_out_of_range(message.r):
             self._report_invalid(received, "axes outside -1000..1000 count as neutral", now)
         if demand is None:
             return False
@@ -102,7 +103,7 @@ class Control:
 
     def handle_operator_presence(self, received: Received, message: RoverOperatorPresence, now: float) -> bool:
         """Handle a ROVER_OPERATOR_PRESENCE; return True if it is the demand now. An ignored one is not reported."""
-        if message.target_system != self.system or not received.introduced:
+        if message.target_system != self.system or not received.introduced or received.role < Role.DRIVE:
             return False
         ownership, conversation = self.ownership, Conversation.of(received)
         proof = parse_proof(message, now - self._boot)
@@ -157,14 +158,14 @@ class Control:
 
     def is_demand_stale(self, now: float) -> bool:
         """Return True if the demand is older than `demand_timeout`; False without one."""
-        age = self.demand_age(now)
-        return age is not None and age > self.demand_timeout
+        demand = self.demand
+        return demand is not None and now - demand.time > self.demand_timeout
 
     @property
     def demand_timeout(self) -> float:
         """Age in s from which on the demand in use is stale: MAN_TIMEOUT, or sooner if its proof ends."""
         timeout: float = self._params["MAN_TIMEOUT"]
-        return timeout if self.demand is None else min(timeout, self.demand.lifetime)
+        return timeout if self.demand is None or self.demand.lifetime >= timeout else self.demand.lifetime
 
     def requests_motion(self) -> bool:
         """Return True if the demand, of any age, requests motion."""
@@ -197,7 +198,7 @@ class Control:
     def _use(self, demand: Demand, now: float, *, proof: bool = True) -> bool:
         self.expire_stale_demand(now)
         self.demand = demand
-        if proof and demand.is_neutral(self.deadband):
+        if proof and not self.neutral_seen and demand.is_neutral(self.deadband):
             self.neutral_seen = True
         return True
 
@@ -236,3 +237,7 @@ class Control:
 
     def _echo_is_stale(self) -> bool:
         return self.presence.known and self.presence.echo_age > self._params["OPR_ECHO_MAX"]
+
+
+def _is_out_of_range(axis: int) -> bool:
+    return abs(axis) > FULL_DEFLECTION and axis != INVALID_AXIS

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
 from link.core import Peer, Received
+from link.signing.role import Role
 
 FRAMES_REMEMBERED = 512
 """Frames of the driver's ids that are remembered: each packet number twice."""
@@ -46,6 +47,14 @@ class Sender(Protocol):
     def numbering(self) -> int:
         """Its run of packet numbers."""
 
+    @property
+    def role(self) -> Role:
+        """What its key allows."""
+
+    @property
+    def signed(self) -> bool:
+        """Whether it has signed."""
+
 
 class Conversation(NamedTuple):
     """One conversation of a ground station with this vehicle."""
@@ -58,12 +67,22 @@ class Conversation(NamedTuple):
     @classmethod
     def of(cls, sender: Sender) -> Conversation:
         """Return the conversation of the sender of a message or a command."""
-        return cls(sender.system, sender.component, sender.peer, sender.numbering)
+        return tuple.__new__(cls, (sender.system, sender.component, sender.peer, sender.numbering))
 
     @property
     def ids(self) -> Ids:
         """System id and component id."""
         return self.system, self.component
+
+    @property
+    def role(self) -> Role:
+        """What is asked of a conversation was checked with its message: a key has a role, an address has none."""
+        return Role.SET_UP
+
+    @property
+    def signed(self) -> bool:
+        """As for `role`: not known."""
+        return False
 
     @property
     def may_ask(self) -> bool:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from dialects.enums import DriveLimit, DriveType
 from vehicle.drive.demand import Demand
-from vehicle.drive.gate import Clearance, Gate, MotorTest, Outputs, Permit
+from vehicle.drive.gate import DRIVE, NONE, TEST, Clearance, Gate, MotorTest, Outputs
 from vehicle.drive.mixer import MIXERS, MixerLimits, clamp, deadband, expo, pivot_scale
-from vehicle.drive.output_scaling import build_output_scaling, scale_outputs
+from vehicle.drive.output_scaling import build_output_scaling, is_unscaled, scale_outputs
 from vehicle.drive.slew import Slew, SlewLimits
 from vehicle.params import Params
 
@@ -71,17 +71,16 @@ class Drive:
         self._limits = 0
         if self._params_generation != self._params.generation:
             self._load_params()
-        trial = clearance.motor_test if permit is Permit.TEST else None
+        trial = clearance.motor_test if permit is TEST else None
         motor = None if trial is None else trial.motor
-        if permit is Permit.NONE or motor != self._tested:  # a motor test ends without a ramp
+        if permit is NONE or motor != self._tested:  # a motor test ends without a ramp
             for slew in self._slews:
                 slew.reset()
         self._tested = motor
-        wanted = demand if permit is Permit.DRIVE else None
+        wanted = demand if permit is DRIVE else None
         wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._tested_motor(trial), dt)
-        self._note_limits()
-        motors = scale_outputs(wheels, self._driven, self._scalings)
-        self.outputs = self._gate.filter(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
+        motors = wheels if self._unscaled else scale_outputs(wheels, self._driven, self._scalings)
+        self.outputs = self._gate.filter(wheels, motors, permit, self._fall_time, now, trial)
         if self.wheels != wheels:  # rejected: no ramp continues from there
             for slew in self._slews:
                 slew.reset()
@@ -91,47 +90,46 @@ class Drive:
         if demand is None:
             return (0.0,) * len(self._slews)
         throttle, steering, sideways = shape_demand(demand, self._params)
-        throttle, sideways = self._cap(throttle, limited), self._cap(sideways, limited)
+        largest = min(self._largest, LIMITED_THROTTLE_MAX) if limited else self._largest
+        if abs(throttle) > largest or abs(sideways) > largest:
+            self._limits |= SPEED
+            throttle, sideways = clamp(throttle, largest), clamp(sideways, largest)
         mixed = self.mixer.mix(throttle, steering, sideways, self._at_limit)
         if mixed.saturated:
             self._limits |= SATURATED
         if self._driven < len(self._slews):
             return mixed.throttles
-        share = pivot_scale(throttle, steering, sideways, self._params["MOT_PIVOT_MAX"] / 100)
+        if self._pivot == 1.0 and not sideways:  # a share of one; one that is no number must spoil all values
+            return mixed.throttles
+        share = pivot_scale(throttle, steering, sideways, self._pivot)
         return tuple([share * value for value in mixed.throttles])
 
     def _tested_motor(self, trial: MotorTest) -> tuple[float, ...]:
         """Return the throttle of the tested motor and zero for the others."""
         return tuple(trial.throttle if index == trial.motor else 0.0 for index in range(len(self._slews)))
 
-    def _cap(self, throttle: float, limited: bool) -> float:
-        largest = self._params["MOT_THR_MAX"] / 100
-        if limited:
-            largest = min(largest, LIMITED_THROTTLE_MAX)
-        if abs(throttle) > largest:
-            self._limits |= SPEED
-        return clamp(throttle, largest)
-
     def _ramped(self, targets: Sequence[float], dt: float) -> tuple[float, ...]:
-        pairs = zip(self._slews, targets, self._rates, strict=True)
-        return tuple([slew.step(target, dt, rates) for slew, target, rates in pairs])
+        wheels = []
+        for slew, target, rates in zip(self._slews, targets, self._rates, strict=True):
+            wheels.append(slew.step(target, dt, rates))
+            if slew.limited:
+                self._limits |= SLEW
+            if slew.waiting:
+                self._limits |= REVERSE_DELAY
+        return tuple(wheels)
 
     def _load_params(self) -> None:
         """Cache what depends on parameters, until one of them changes."""
         params, self._params_generation = self._params, self._params.generation
         self._scalings = build_output_scaling(params)
+        self._unscaled = self._driven == len(self._slews) and is_unscaled(self._driven, self._scalings)
+        self._largest, self._pivot = params["MOT_THR_MAX"] / 100, params["MOT_PIVOT_MAX"] / 100
+        self._fall_time = 100 / params["MOT_DECEL"]
         self._at_limit = MixerLimits(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
         accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
         wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
         servo = SlewLimits(accel, decel)  # a servo may reverse at once, and a delay would delay the turn
         self._rates = [wheel if at < self._driven else servo for at in range(len(self._slews))]
-
-    def _note_limits(self) -> None:
-        for slew in self._slews:
-            if slew.limited:
-                self._limits |= SLEW
-            if slew.waiting:
-                self._limits |= REVERSE_DELAY
 
 
 def shape_demand(demand: Demand, params: Params) -> tuple[float, float, float]:
@@ -139,9 +137,9 @@ def shape_demand(demand: Demand, params: Params) -> tuple[float, float, float]:
     throttle, steering, sideways = demand.throttle or 0.0, demand.steering or 0.0, demand.sideways or 0.0
     if demand.direct:
         return throttle, steering, sideways
-    band = params["MAN_DEADBAND"] / 100
+    band, softness = params["MAN_DEADBAND"] / 100, params["MANUAL_EXPO"]
     return (
-        expo(deadband(throttle, band), params["MANUAL_EXPO"]),
+        expo(deadband(throttle, band), softness),
         expo(deadband(steering, band), params["MANUAL_STR_EXPO"]),
-        expo(deadband(sideways, band), params["MANUAL_EXPO"]),
+        expo(deadband(sideways, band), softness) if sideways else 0.0,
     )

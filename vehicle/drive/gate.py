@@ -44,6 +44,10 @@ class Permit(Enum):
     """Turn one motor slowly for a short time: the only motion of a vehicle that is not armed."""
 
 
+NONE, RAMP_DOWN, DRIVE, TEST = Permit
+"""Shortcuts for what runs with each demand: a lookup in the enum costs as much as three comparisons."""
+
+
 @dataclass(frozen=True, slots=True)
 class MotorTest:
     """A request to turn one motor."""
@@ -75,11 +79,11 @@ class Clearance(NamedTuple):
     def permit(self) -> Permit:
         """What the motors may do. A fact that is unknown or not a number forbids motion."""
         if self.late:
-            return Permit.NONE
+            return NONE
         if not self.armed:
-            return Permit.NONE if self.motor_test is None else Permit.TEST
+            return NONE if self.motor_test is None else TEST
         fresh = self.demand_age is not None and 0.0 <= self.demand_age <= self.timeout
-        return Permit.DRIVE if fresh and self.neutral_seen and not self.held else Permit.RAMP_DOWN
+        return DRIVE if fresh and self.neutral_seen and not self.held else RAMP_DOWN
 
 
 class Gate:
@@ -109,27 +113,29 @@ class Gate:
         `fall_time` is the longest time of a deceleration to zero, s; `trial` is the motor test that TEST permits.
         """
         self._note_ramp(permit, now)
-        test_permitted = self._test_timer.permits(wheels, trial if permit is Permit.TEST else None, now)
-        valid = permit is not Permit.NONE and self._is_valid(wheels, motors)
-        passed = valid and (test_permitted if permit is Permit.TEST else self._is_falling(wheels, fall_time, now))
+        test_permitted = self._test_timer.permits(wheels, trial if permit is TEST else None, now)
+        valid = permit is not NONE and self._is_valid(wheels, motors)
+        passed = valid and (test_permitted if permit is TEST else self._is_falling(wheels, fall_time, now))
         self.wheels = tuple(wheels) if passed else self._zero
-        self._before = self._zero if permit is Permit.TEST else self.wheels  # no ramp follows a motor test
-        enabled = passed and (permit in (Permit.DRIVE, Permit.TEST) or any(self.wheels))
+        self._before = self._zero if permit is TEST else self.wheels  # no ramp follows a motor test
+        enabled = passed and (permit is DRIVE or permit is TEST or any(self.wheels))
         return Outputs(tuple(motors) if enabled else self._zero, enabled)
 
     def _is_valid(self, wheels: Sequence[float], motors: Sequence[float]) -> bool:
         # NaN fails every comparison, so that it is rejected here, too.
-        count = len(self._zero)
-        valid = len(wheels) == len(motors) == count
-        for value in (*wheels, *motors):
+        valid = len(wheels) == len(motors) == len(self._zero)
+        for value in wheels:
             valid = valid and -1.0 <= value <= 1.0
-        for each in range(self._driven if valid else 0):
-            valid = valid and bool(wheels[each] or not motors[each])
+        if motors is not wheels:
+            for value in motors:
+                valid = valid and -1.0 <= value <= 1.0
+            for each in range(self._driven if valid else 0):
+                valid = valid and bool(wheels[each] or not motors[each])
         self.refused = 0 if valid else self.refused + 1
         return valid
 
     def _note_ramp(self, permit: Permit, now: float) -> None:
-        if permit is not Permit.RAMP_DOWN:
+        if permit is not RAMP_DOWN:
             self._ramp_began = None
         elif self._ramp_began is None:
             self._ramp_began = now

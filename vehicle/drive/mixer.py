@@ -52,6 +52,8 @@ def skid(throttle: float, steering: float, sideways: float, limit: MixerLimits) 
     ArduRover's rule (AP_MotorsUGV::output_skid_steering): a motor with less thrust backward gets a larger value there,
     so that throttle ends at -1/asymmetry. What does not fit is divided by `mix`.
     """
+    if limit.asymmetry == 1.0 and abs(throttle) + abs(steering) <= 1.0:  # all fits: nothing below changes it
+        return MixerOutput((throttle + steering, throttle - steering))
     lowest = -1.0 / limit.asymmetry
     best = (1.0 + lowest) / 2  # throttle with most room for steering
     room = 1.0 - best if throttle >= best else max(throttle, 0.0) - lowest

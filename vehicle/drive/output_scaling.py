@@ -67,6 +67,11 @@ def build_output_scaling(params: Params) -> list[OutputScaling]:
     return found
 
 
+def is_unscaled(driven: int, each: Sequence[OutputScaling]) -> bool:
+    """Return whether the value of each of `driven` motors is that of its wheel, because no parameter changes it."""
+    return all(fit == OutputScaling() for fit in each[:driven])
+
+
 def scale_outputs(wheels: Sequence[float], driven: int, each: Sequence[OutputScaling]) -> tuple[float, ...]:
     """Return the motor values; the first `driven` motors drive. Each is in -1..1 if its wheel value is."""
     pairs = enumerate(zip(wheels, each, strict=False))

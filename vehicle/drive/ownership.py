@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.enums import Severity
-from dialects.traits import COMMANDS, DEMANDS
+from dialects.traits import COMMANDS, DEMANDS, only_asks
 from link.core import Received
+from link.signing.role import Role
 from vehicle.drive.conversation import Conversation, FrameMemory, Newcomer, Sender
 from vehicle.drive.driver import CLASH_PAUSE, Driver
 from vehicle.drive.operator_session import DrivingSession, Proof, RecentProofs
+from vehicle.drive.roles import role_denial
 from vehicle.params import Params
 from vehicle.statustext import StatusTextQueue
 
@@ -24,7 +26,7 @@ _STREAMED = frozenset(DEMANDS | _SETPOINTS)
 """Message ids of demands: a driver that has sent some is soon missed."""
 _ACTS = (_STREAMED | COMMANDS) - {m.RoverOperatorPresence.id}
 """Message ids with which a program succeeds a silent driver: not a heartbeat, and not the proof of a session, which is
-checked first (vehicle/drive/control.py)."""
+checked first (vehicle/drive/control.py). A command that only asks does not count either: who looks is no driver."""
 
 
 class Ownership:
@@ -53,8 +55,8 @@ class Ownership:
         return self.driver.session if self.driver else None
 
     def is_driver(self, sender: Sender, now: float) -> bool:
-        """Return whether a message or command is from the driver."""
-        return self.driver is not None and self.driver.is_sender(sender, now)
+        """Return whether a message or command is from the driver, with a key that may drive."""
+        return self.driver is not None and sender.role >= Role.DRIVE and self.driver.is_sender(sender, now)
 
     def has_driver_ids(self, sender: Sender) -> bool:
         """Return whether a sender has the ids of the driver, and may yet be another program."""
@@ -84,19 +86,21 @@ class Ownership:
 
     def denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a sender may not command, or None if it is in control or no ground station is."""
+        if denial := role_denial(sender, Role.DRIVE):
+            return denial
         if self._is_excluded(sender):
             return f"only GCS {self._params['MAV_GCS_SYSID']:g} may control (MAV_GCS_SYSID)"
         driver = self.driver
         if driver is None:
             return None
         if not self.is_driver(sender, now):
-            return self._other_reason(driver, sender)
+            return self._other_reason(driver, sender, now)
         return f"two programs count as {driver.name}" if driver.is_barred(now) else None
 
     def takeover_denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a sender may not take control, or None if it may."""
         reason = self.denial_reason(sender, now)
-        if self._is_excluded(sender) or not (self.takeover_allowed or self.is_lost(now)):
+        if sender.role < Role.DRIVE or self._is_excluded(sender) or not (self.takeover_allowed or self.is_lost(now)):
             return reason
         return None
 
@@ -113,11 +117,13 @@ class Ownership:
     def _is_excluded(self, sender: Sender) -> bool:
         return self._params["MAV_GCS_SYSID"] not in (0, sender.system)
 
-    def _other_reason(self, driver: Driver, sender: Sender) -> str:
+    def _other_reason(self, driver: Driver, sender: Sender, now: float) -> str:
         """Return why a sender that is not the driver may not command."""
-        conversation = Conversation.of(sender)
-        if driver.session and conversation in driver.session.links:
-            return f"this link is {driver.session.links[conversation].age:.1f} s late"
+        link = driver.session.links.get(Conversation.of(sender)) if driver.session else None
+        if link is not None and link.age > self._params["OPR_ECHO_MAX"]:
+            return f"this link is {link.age:.1f} s late"
+        if link is not None:
+            return f"no proof on this link for {now - link.proven_at:.1f} s"
         if self.has_driver_ids(sender):
             return f"another program with your ids {driver.name} is in control, use other ids"
         return f"GCS {driver.conversation.system} is in control"
@@ -215,7 +221,7 @@ class Ownership:
     def _hear_newcomer(self, driver: Driver, received: Received, now: float) -> bool:
         """Handle a message of a sender that is not the driver; return True if it has succeeded it."""
         newcomer = self._memory.note_newcomer(received)
-        if not self.has_driver_ids(received) or type(received.message).id not in _ACTS:
+        if not self.has_driver_ids(received) or not _is_act(received.message):
             return False
         conversation = Conversation.of(received)
         session = self._proofs.session_of(conversation, now)
@@ -238,3 +244,8 @@ class Ownership:
             driver.clash_reported_at = now
             text = f"Two programs count as {driver.name} behind one address: stopped"
             self._texts.send_event(Severity.CRITICAL, text, now)
+
+
+def _is_act(message: m.Message) -> bool:
+    """Return whether a program succeeds a silent driver with this message."""
+    return type(message).id in _ACTS and not only_asks(message)

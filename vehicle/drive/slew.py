@@ -37,25 +37,24 @@ class Slew:
     def step(self, target: float, dt: float, limits: SlewLimits) -> float:
         """Move towards `target` for `dt` s; return the new value."""
         self.waiting = False
-        if math.isnan(target):  # a ramp would turn NaN into a number and hide it from the gate
+        if target != target:  # NaN: a ramp would turn it into a number and hide it from the gate
             self.value = target
             return target
-        self._rested = 0.0 if self.value else self._rested + dt
-        if self.value and target * self.value <= 0.0:
-            self._toward(0.0, limits.decel * dt)
-        elif self._must_wait(target, limits.reverse_delay):
+        value = self.value
+        self._rested = 0.0 if value else self._rested + dt
+        if value and target * value <= 0.0:
+            value = _toward(value, 0.0, limits.decel * dt)
+        elif target * self._direction < 0.0 and self._rested < limits.reverse_delay:
             self.waiting = True
         else:
-            rate = limits.decel if abs(target) < abs(self.value) else limits.accel
-            self._toward(target, rate * dt)
-        if self.value:
-            self._direction = math.copysign(1.0, self.value)
-        self.limited = self.value != target and not self.waiting
-        return self.value
+            value = _toward(value, target, (limits.decel if abs(target) < abs(value) else limits.accel) * dt)
+        if value:
+            self._direction = 1.0 if value > 0.0 else -1.0
+        self.value = value
+        self.limited = value != target and not self.waiting
+        return value
 
-    def _must_wait(self, target: float, delay: float) -> bool:
-        return target * self._direction < 0.0 and self._rested < delay
 
-    def _toward(self, target: float, step: float) -> None:
-        difference = target - self.value
-        self.value = target if abs(difference) <= step + ROUNDING else self.value + math.copysign(step, difference)
+def _toward(value: float, target: float, step: float) -> float:
+    difference = target - value
+    return target if abs(difference) <= step + ROUNDING else value + math.copysign(step, difference)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 
+from link.runtime.whole_file import PRIVATE
 from vehicle.motors import Motors
 
 
@@ -19,7 +20,7 @@ class MotorLog:
         """Open `path` to append. Raises OSError."""
         # Non-blocking: the file may be a pipe, whose reader must not be able to block the motors.
         flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
-        self._descriptor = os.open(path, flags, 0o644)
+        self._descriptor = os.open(path, flags, PRIVATE)
         self.fault: OSError | None = None
         """The first failed write, or None."""
 

@@ -16,7 +16,7 @@ SEND_QUEUE_MAX = 64
 """Bytes that may wait in the kernel: about eight frames. More would delay the newest demand behind old ones."""
 
 
-class SerialPort:
+class MotorPort:
     """A port that is opened again by its path after it was lost, as with a USB adapter. All methods raise OSError."""
 
     def __init__(self, path: str, baud: int) -> None:

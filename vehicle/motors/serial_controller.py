@@ -9,7 +9,7 @@ import msgspec
 
 from vehicle.motors import MotorError
 from vehicle.motors.error_budget import ErrorBudget
-from vehicle.motors.port import SerialPort
+from vehicle.motors.port import MotorPort
 from vehicle.motors.settings import port_name, uart_pins
 
 TIMEOUT_RESEND_PERIOD = 1.0
@@ -38,7 +38,7 @@ class SerialController:
 
     def __init__(self, name: str, path: str, baud: int, timeout: float, clock: Callable[[], float]) -> None:
         """`name` starts the error texts; `timeout` is the controller's, in s."""
-        self.port = SerialPort(path, baud)
+        self.port = MotorPort(path, baud)
         self.timeout_tenths = int(timeout * 10 + 1e-9)
         """The timeout in the unit of the controllers, 0.1 s, rounded down."""
         self.error_budget = ErrorBudget()

@@ -15,20 +15,27 @@ import time
 from collections.abc import Sequence
 
 from dialects.enums import Severity
-from link.endpoint import EndpointError
+from link.endpoint import SERIAL, EndpointError, Side, parse_endpoint
 from link.protocol.log_tap import LogTap
 from link.runner import Runner, open_links
 from link.runtime.command_line import USAGE_ERROR
 from link.runtime.event_loop import run_loop, running_loop
+from link.signing.key_file import FILE, KeyFileError
+from link.signing.memory_file import FILE as MEMORY_FILE
+from link.signing.memory_file import MemoryFileError
 from link.transport.transport import Link, LinkError
 from vehicle.commands.context import COMPONENT
+from vehicle.commands.signing import Pairing
 from vehicle.config.run_settings import RunSettings, SettingsError
 from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError, UnknownDriverError
 from vehicle.params import ParamError
 from vehicle.rover import Rover
+from vehicle.runtime.announcement import announce
 from vehicle.runtime.factory import build_accessories, build_control_loop, build_params, build_recorder
 from vehicle.runtime.host_info import HostMonitor, read_uid
+from vehicle.runtime.key_keeper import KeyKeeper
+from vehicle.runtime.link_guards import LinkGuards
 from vehicle.runtime.lock import lock_state_folder
 from vehicle.runtime.shutdown import CycleObserver, Shutdown
 from vehicle.runtime.systemd import Notifier
@@ -98,6 +105,32 @@ def _store(settings: RunSettings) -> Store | None:
     return None if settings.state is None else FileWriter(settings.state)
 
 
+def _open_keys(settings: RunSettings, opened: contextlib.ExitStack) -> KeyKeeper | None:
+    """Return the keys in the state folder, None if there is none. Raises SettingsError."""
+    if settings.state is None:
+        return None
+    try:
+        keeper = KeyKeeper(settings.state / FILE)
+    except KeyFileError as error:
+        raise SettingsError(str(error)) from None
+    opened.callback(keeper.close)
+    return keeper
+
+
+def _open_guards(settings: RunSettings, keys: KeyKeeper | None, now: float) -> LinkGuards:
+    """Return what guards the links. Raises SettingsError."""
+    memory = None if settings.state is None else settings.state / MEMORY_FILE
+    try:
+        return LinkGuards(settings.signing, settings.endpoints, keys, memory, now)
+    except MemoryFileError as error:
+        raise SettingsError(str(error)) from None
+
+
+def _find_cables(endpoints: Sequence[str]) -> frozenset[int]:
+    """Return the indexes of serial and USB links, over which a key is accepted."""
+    return frozenset(index for index, text in enumerate(endpoints) if parse_endpoint(text).scheme == SERIAL)
+
+
 async def _serve(settings: RunSettings) -> int:
     loop = running_loop()
     now, host = loop.time(), HostInfo(uid=read_uid())
@@ -107,6 +140,9 @@ async def _serve(settings: RunSettings) -> int:
         param_store, plan_store = ParamStore(_store(settings)), PlanStore(_store(settings))
         opened.callback(param_store.close)
         opened.callback(plan_store.close)
+        keeper = _open_keys(settings, opened)
+        guards = _open_guards(settings, keeper, now)
+        opened.callback(lambda: guards.close(loop.time()))
         params = build_params(settings, param_store)
         for damage in plan_store.damage.values():
             log.warning("%s: %s", settings.state, damage)
@@ -121,16 +157,25 @@ async def _serve(settings: RunSettings) -> int:
             param_store=param_store,
             plan_store=plan_store,
             recording=recorder,
+            pairing=None if keeper is None else Pairing(keeper, _find_cables(settings.endpoints)),
+            arming_note=guards.arming_note,
             host=host,
             on_text=_log_status_text,
             rack=rack,
         )
         host_monitor = HostMonitor(host, lambda: loop.idle_time, time.time, now)
-        cycles = CycleObserver(rover, notifier, host_monitor)
+        cycles = CycleObserver(rover, notifier, host_monitor, keeper, guards)
         control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
         log_tap = recorder.log_tap if recorder else None
         try:
-            links = open_links(settings.endpoints, system=system, component=COMPONENT, wanted=rover.message_ids)
+            links = open_links(
+                settings.endpoints, system=system, component=COMPONENT, wanted=rover.message_ids, side=Side.VEHICLE
+            )
+            guards.attach(links)
+            if guards.warning:
+                log.warning("%s", guards.warning)
+            if settings.announce:
+                announce(settings.endpoints, system, opened)
             status = f"system {system}, {', '.join(settings.endpoints)}"
             return await _drive(control_loop, links, status, notifier, cycles, log_tap)
         except BaseException as error:

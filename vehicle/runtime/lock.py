@@ -77,7 +77,7 @@ def lock_state_folder(folder: Path) -> Iterator[None]:
     A folder that cannot be created or opened is ignored here: writing to it reports the error.
     """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     except OSError:
         yield

@@ -6,6 +6,8 @@ import os
 import stat
 from pathlib import Path
 
+from link.runtime.whole_file import PRIVATE
+
 SIZE_MAX = 10_000_000
 """Bytes of one file: some weeks of a quiet vehicle, and little for the card of a Raspberry Pi. Strangers may cause up
 to 100 MB of texts a day."""
@@ -19,7 +21,7 @@ class LogFile:
     def __init__(self, path: str) -> None:
         """Open or create the file. Raises OSError."""
         self._path = Path(path).absolute()
-        self._descriptor = os.open(self._path, _FLAGS, 0o644)
+        self._descriptor = os.open(self._path, _FLAGS, PRIVATE)
         self._is_file = stat.S_ISREG(os.fstat(self._descriptor).st_mode)
 
     def write(self, line: bytes) -> None:
@@ -36,7 +38,7 @@ class LogFile:
         """Keep the full file as NAME.1 and begin a new one; where the folder forbids it, empty the file."""
         try:
             os.replace(self._path, f"{self._path}.1")
-            descriptor = os.open(self._path, _FLAGS, 0o644)
+            descriptor = os.open(self._path, _FLAGS, PRIVATE)
         except OSError:
             os.ftruncate(self._descriptor, 0)
             return

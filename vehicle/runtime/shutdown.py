@@ -13,6 +13,8 @@ from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError
 from vehicle.rover import Rover
 from vehicle.runtime.host_info import HostMonitor
+from vehicle.runtime.key_keeper import KeyKeeper
+from vehicle.runtime.link_guards import LinkGuards
 from vehicle.runtime.systemd import Notifier
 
 log = logging.getLogger(__name__)
@@ -71,18 +73,31 @@ class Shutdown:
 
 
 class CycleObserver:
-    """The daemon's work after a control cycle: feed the watchdog, update the host info, handle a reboot request."""
+    """The daemon's work after a control cycle: feed the watchdog, update host info and keys, obey a reboot request."""
 
-    def __init__(self, rover: Rover, notifier: Notifier, host_monitor: HostMonitor) -> None:
+    def __init__(
+        self,
+        rover: Rover,
+        notifier: Notifier,
+        host_monitor: HostMonitor,
+        keys: KeyKeeper | None = None,
+        guards: LinkGuards | None = None,
+    ) -> None:
         self.shutdown: Shutdown | None = None
         self._rover = rover
         self._notifier = notifier
         self._host_monitor = host_monitor
+        self._keys = keys
+        self._guards = guards
 
     def handle_cycle(self, now: float) -> None:
-        """Feed the watchdog, update the host info, and handle a reboot request."""
+        """Feed the watchdog, update host info and keys, and handle a reboot request."""
         self._notifier.alive(now)
         self._host_monitor.update(now)
+        if self._keys is not None:
+            self._keys.poll(now)
+        if self._guards is not None:
+            self._guards.poll(now)
         leave = self._rover.reboot_request(now)
         if leave is not None and self.shutdown is not None:
             self.shutdown.handle_reboot_request(leave)

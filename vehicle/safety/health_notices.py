@@ -25,6 +25,8 @@ class HealthNotices:
 
     def update(self, found: Mapping[str, str], now: float) -> None:
         """Set the problems present now (name -> text); report those that are new and those that are over."""
+        if not found and not self.since:  # nearly always
+            return
         for name, text in found.items():
             if name not in self.since:
                 self.since[name] = now

@@ -21,6 +21,7 @@ from vehicle.statustext import StatusTextQueue
 
 LATE_CYCLE_TIME = 0.1
 """s between two cycles of 20 ms from which on the outputs are zero for a cycle (docs/safety.md, control loop late)."""
+_NEUTRAL = FailsafeAction.NEUTRAL
 BAD_CYCLES_MAX = 3
 """Cycles in a row with values that are not numbers before the mode becomes HOLD."""
 
@@ -41,6 +42,10 @@ class SafetyMonitor:
         if self._safety.armed and gap > self._params["FS_LOOP_TIMEOUT"]:
             self._safety.handle_loop_overrun(gap, now)
         return gap > LATE_CYCLE_TIME
+
+    def skip_cycle(self, now: float) -> None:
+        """Note a cycle that came in time and was left out because nothing was under way."""
+        self._last_cycle = now
 
     def update(self, now: float, refused: int, motion: MotionInputs, *, driving: bool) -> None:
         """Evaluate the failsafes of this cycle and take their actions.
@@ -72,21 +77,14 @@ class SafetyMonitor:
         """
         safety = self._safety
         spec = MODES[safety.mode]
+        held = safety.failsafes.lasting_action(now) >= _NEUTRAL or not (spec.manual or spec.autonomous)
         if spec.autonomous:
             confirmed, timeout = safety.autonomy_confirmed, LATE_CYCLE_TIME
             age = None if own is None else now - own.time
         else:
             confirmed, timeout = self._control.neutral_seen, self._control.demand_timeout
             age = self._control.demand_age(now)
-        return Clearance(
-            armed=safety.armed,
-            late=late,
-            held=safety.failsafes.lasting_action(now) >= FailsafeAction.NEUTRAL or not spec.moves,
-            neutral_seen=confirmed,
-            demand_age=age,
-            timeout=timeout,
-            motor_test=trial,
-        )
+        return Clearance(safety.armed, late, held, confirmed, age, timeout, trial)
 
     def _update_failsafes(self, motion: MotionInputs, now: float) -> None:
         armed, failsafes = self._safety.armed, self._safety.failsafes

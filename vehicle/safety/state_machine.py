@@ -170,6 +170,8 @@ class Safety:
         blocking = self.failsafes.mode_blocking_conditions()
         if blocking and MODES[mode].moves:
             return " and ".join(RULES[cause].label for cause in Failsafe if cause & blocking)
+        if self.armed and MODES[mode].autonomous and self._ownership.driver is None:
+            return "no GCS is in control"  # nobody's silence would stop it
         unready = self._readiness.unready_reason(mode)
         if unready:
             return unready

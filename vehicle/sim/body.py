@@ -17,7 +17,8 @@ from vehicle.sim.chassis import Chassis, ChassisMotion, SkidChassis
 from vehicle.sim.noise import NoisySensors, SensorNoise, SimulatedFix
 
 LONGEST_STEP = 0.02
-"""s, one control cycle. Longer gaps are split into such steps, so that the lag of motors and servo is simulated."""
+"""s, one control cycle. Longer gaps are split into such steps, so that the lag of motors and servo is simulated; not
+while the rover stands."""
 
 LONGEST_GAP = 5.0
 """s; the simulation skips the rest of a longer pause of the process."""
@@ -91,8 +92,10 @@ class SimulatedBody:
         gap = 0.0 if self._time is None else min(now - self._time, LONGEST_GAP)
         self._time = now
         throttles = self._outputs()
+        at_rest = not any(throttles) and not any(self._chassis.motion.wheel_speeds)
         while gap > 1e-9:
-            dt = gap if gap < 1.5 * LONGEST_STEP else LONGEST_STEP  # a slightly late cycle is still one step
+            whole = at_rest or gap < 1.5 * LONGEST_STEP  # a slightly late cycle is still one step
+            dt = gap if whole else LONGEST_STEP
             self._step(throttles, dt)
             gap -= dt
         return self._measure()

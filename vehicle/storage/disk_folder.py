@@ -18,8 +18,8 @@ from link.runtime.worker import Worker
 from link.services.ftp.files import Content, Entry, NotReadyError, Query, ReadOnlyFolder
 from link.services.ftp.protocol import FtpError
 
-PIECE = 64 * 1024
-"""Bytes read at once: a sixth of a second of the fastest download."""
+PIECE = 256 * 1024
+"""Bytes read at once: a tenth of a second of the fastest download, two thirds of a second on a network."""
 MAX_ENTRIES = 1000
 """Number of files in a listing: the last ones by name."""
 MAX_NAME = 100

@@ -6,16 +6,20 @@ time: 00000012_2026-11-21T14-05-09Z.tlog sorts by number even if the clock was w
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import errno
 import os
 import re
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from link.tlog.recorder import RawFile
+from link.runtime.whole_file import PRIVATE, sync_folder
+from link.tlog.raw_file import RawFile
+from link.tlog.split_file import SYNC_INTERVAL, SplitFile
 
 SUFFIX = ".tlog"
 CLOCK_KNOWN = 1_767_225_600
@@ -24,8 +28,6 @@ FILE_SIZE_MAX = 32 * 1024 * 1024
 """Bytes after which a new file starts, about two hours: the largest file that the ground station downloads."""
 FREE_SPACE_MIN = 8 * 1024 * 1024
 """Bytes that stay free: parameters and the system log need space too (ArduPilot leaves as much)."""
-SYNC_INTERVAL = 5.0
-"""s between two syncs to the disk: the most that a power cut may lose."""
 MEGABYTE = 1024 * 1024
 _NAME = re.compile(r"(\d{8})(?:_(\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ))?\.tlog")
 _TIME = "%Y-%m-%dT%H-%M-%SZ"
@@ -84,15 +86,27 @@ class LogFiles:
 
     def require_writable(self) -> None:
         """Create the folder if needed. Raises OSError if nothing can be recorded."""
-        self._folder.mkdir(parents=True, exist_ok=True)
+        self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if not os.access(self._folder, os.W_OK | os.X_OK):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self._folder))
 
-    def open(self, limits: LogLimits) -> NumberedLog:
-        """Start a new log after removing the oldest ones as needed. Raises OSError."""
+    def open(self, limits: LogLimits) -> SplitFile:
+        """Start a new log after removing the oldest ones as needed; it does so for each file. Raises OSError."""
         self.require_writable()
+        return SplitFile(
+            partial(self._open_within, limits),
+            size_max=FILE_SIZE_MAX,
+            check=self.require_free_space,
+            closed=self._forget_current,
+            sync_interval=SYNC_INTERVAL,
+        )
+
+    def _open_within(self, limits: LogLimits) -> RawFile:
         self.remove_oldest(limits)
-        return NumberedLog(self, limits)
+        return self.open_next_file()
+
+    def _forget_current(self) -> None:
+        self.current = None
 
     def open_next_file(self) -> RawFile:
         """Create the file with the next number. Raises OSError."""
@@ -100,7 +114,10 @@ class LogFiles:
         self._last = max([self._last, *(log_number(name) or 0 for name in self._names())]) + 1
         self.current = log_name(self._last, self._clock())
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
-        return RawFile(os.open(self._folder / self.current, flags, 0o644))
+        file = RawFile(os.open(self._folder / self.current, flags, PRIVATE))
+        with contextlib.suppress(OSError):  # a file system that cannot
+            sync_folder(self._folder)
+        return file
 
     def require_free_space(self) -> None:
         """Raise OSError if the disk is nearly full."""
@@ -116,43 +133,3 @@ class LogFiles:
     def _names(self) -> list[str]:
         """Return the names of the logs, the oldest first."""
         return sorted(name for name in os.listdir(self._folder) if log_number(name) is not None)
-
-
-class NumberedLog:
-    """One log, split into files of FILE_SIZE_MAX bytes. Fits `link.tlog.recorder.LogFile`."""
-
-    def __init__(self, files: LogFiles, limits: LogLimits) -> None:
-        self._files = files
-        self._limits = limits
-        self._file = files.open_next_file()
-        self._size = 0
-        self._synced = time.monotonic()
-
-    def write(self, data: bytes) -> None:
-        """Append `data`. Raises OSError, also if the file was removed."""
-        if self._size and self._size + len(data) > FILE_SIZE_MAX:
-            self._open_next()
-        if time.monotonic() - self._synced >= SYNC_INTERVAL:
-            self._check()
-        self._file.write(data)
-        self._size += len(data)
-
-    def close(self) -> None:
-        """Sync and close the file. Raises OSError."""
-        self._files.current = None
-        try:
-            self._file.sync()
-        finally:
-            self._file.close()
-
-    def _open_next(self) -> None:
-        self._files.remove_oldest(self._limits)
-        full, self._file, self._size = self._file, self._files.open_next_file(), 0
-        full.close()  # last: if the next file cannot be opened, close() follows, and must not close a descriptor twice
-
-    def _check(self) -> None:
-        self._synced = time.monotonic()
-        self._file.sync()
-        self._files.require_free_space()
-        if self._file.is_removed():
-            raise FileNotFoundError(errno.ENOENT, "the file was removed")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from dialects import messages as m
 from dialects.enums import Severity
-from link.core import LinkReport
+from link.core import LinkReport, SigningCounts
 from vehicle.drive.control import Control
 from vehicle.statustext import StatusTextQueue
 from vehicle.telemetry.scaling import UINT8, UINT32, scale_to_int
@@ -46,13 +46,14 @@ class LinkStatusReporter:
             self._texts.send_once(f"own id {report.name}", Severity.WARNING, text, now)
 
     def _status(self, report: LinkReport) -> m.Message:
+        refused = report.refused or SigningCounts()
         return m.RoverLinkStatus(
             frames_ok=scale_to_int(report.frames, UINT32),
             crc_errors=scale_to_int(report.crc_errors, UINT32),
             resync_bytes=scale_to_int(report.resync_bytes, UINT32),
-            bad_signature=0,
-            replayed=scale_to_int(report.duplicates + report.late, UINT32),
-            unsigned_rejected=0,
+            bad_signature=scale_to_int(refused.bad, UINT32),
+            replayed=scale_to_int(report.duplicates + report.late + refused.replayed + refused.too_old, UINT32),
+            unsigned_rejected=scale_to_int(refused.unsigned, UINT32),
             not_in_control=scale_to_int(self._control.not_in_control_count, UINT32),
             rate_limited=scale_to_int(report.rate_limited, UINT32),
             rtt_ms=ROUND_TRIP_UNKNOWN,

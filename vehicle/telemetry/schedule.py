@@ -89,6 +89,11 @@ class StreamSchedule:
             self._begin([each for each in DialectLevel if self.level < each <= level], now)
             self.level = level
 
+    @property
+    def shortest(self) -> float:
+        """The shortest interval of a stream, s."""
+        return min((each.interval for each in self._clocks.values() if each.interval is not None), default=math.inf)
+
     def interval(self, message_id: int) -> float | None:
         """Return the interval of a stream in s, None without a rate. Raises KeyError if it is no stream."""
         return self._clocks[message_id].interval

@@ -8,6 +8,7 @@ from typing import Any
 
 from dialects import messages as m
 from link.core import RECORDER, Outgoing, Peer, Received
+from vehicle.pace import PERIOD
 from vehicle.telemetry.schedule import PEER_MESSAGE_RATE_MAX, BandwidthShare, StreamSchedule
 from vehicle.telemetry.streams import STREAM_BY_ID, STREAMS, DialectLevel, Stream, level_of_command
 from vehicle.telemetry.view import TelemetryView
@@ -19,6 +20,7 @@ MAX_PEERS = 64
 """Schedules kept. Another peer gets none until one of these is gone."""
 
 _CHANGING = tuple(stream for stream in STREAMS if stream.change_key is not None)
+_STEADY = tuple(stream for stream in _CHANGING if stream.steady)
 _FOLLOWING_DEMAND = tuple(stream for stream in STREAMS if stream.follows_demand)
 
 
@@ -34,6 +36,8 @@ class Telemetry:
             self._add(RECORDER, now)
             self._schedules[RECORDER].raise_level(DialectLevel.ROVER, now)
         self._rates: Mapping[int, float] = {}
+        self.fast = False
+        """Some peer gets a stream more often than every PERIOD (vehicle/pace.py). Updated once a second."""
         self._change_keys: dict[int, Hashable] = {}
         """Message -> the value that was compared last."""
 
@@ -47,6 +51,7 @@ class Telemetry:
         for peer in audience:
             self._add(peer, now)
         self._share_out()
+        self.fast = any(schedule.shortest < PERIOD for schedule in self._schedules.values())
 
     def observe(self, received: Received, now: float) -> None:
         """Note what a message shows of its sender: that it listens, and which messages it understands."""
@@ -57,6 +62,11 @@ class Telemetry:
     def peers_at_level(self, level: DialectLevel) -> tuple[Peer, ...]:
         """Return the peers that understand a level."""
         return tuple(peer for peer, each in self._schedules.items() if level <= each.level)
+
+    def has_level(self, peer: Peer, level: DialectLevel) -> bool:
+        """Return whether a peer understands a level."""
+        schedule = self._schedules.get(peer)
+        return schedule is not None and level <= schedule.level
 
     def schedule_of(self, peer: Peer) -> StreamSchedule | None:
         """Return the schedule of a peer; None if it receives no telemetry."""
@@ -94,9 +104,9 @@ class Telemetry:
 
     # ---- messages ----
 
-    def build_due(self, view: TelemetryView) -> list[Outgoing]:
-        """Build the messages that are due at the time of `view`."""
-        self._expedite_changes(_CHANGING, view)
+    def build_due(self, view: TelemetryView, *, all_changes: bool = True) -> list[Outgoing]:
+        """Build the messages that are due at the time of `view`. Without `all_changes` only steady ones go early."""
+        self._expedite_changes(_CHANGING if all_changes else _STEADY, view)
         wanted: dict[int, list[Peer]] = {}
         for peer, schedule in self._schedules.items():
             for stream in schedule.pop_due(view.now):

@@ -101,6 +101,26 @@ def test_a_lost_ground_station_ends_every_mode_in_hold(drive: Callable[[Field], 
     assert field.stands_for(1.0)  # a returning ground station starts nothing
 
 
+def test_an_armed_rover_without_a_driver_does_not_begin_to_drive_itself() -> None:
+    """Nobody's silence would end it: the failsafe of a lost ground station has acted before."""
+    field = Field()
+    auto(field)
+    assert field.turning
+    field.command(Command.REQUEST_OPERATOR_CONTROL, 0)
+    field.beat(6.0)
+    assert field.armed
+    for mode in (Mode.AUTO, Mode.RTL, Mode.LOITER, Mode.GUIDED):
+        assert field.set_mode(mode, OTHER) is Result.FAILED
+    assert field.command(Command.MISSION_START, system=OTHER) is Result.FAILED
+    assert any("no GCS is in control" in text for text in field.texts)
+    assert field.mode is Mode.HOLD
+    assert field.stands_for(1.0)
+    field.command(Command.REQUEST_OPERATOR_CONTROL, 1, system=OTHER)
+    assert field.set_mode(Mode.AUTO, OTHER) is Result.ACCEPTED
+    field.wait(1.0)
+    assert field.turning
+
+
 @pytest.mark.parametrize("drive", [place, auto, home, back], ids=lambda drive: drive.__name__)
 def test_a_lost_position_ends_modes_that_require_one(drive: Callable[[Field], None]) -> None:
     field = Field()

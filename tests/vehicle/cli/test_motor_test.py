@@ -23,6 +23,8 @@ from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.storage.param_file import encode
 
+pytestmark = pytest.mark.xdist_group("motor drivers")  # each driver can be used by one vehicle at a time
+
 ASKED: list[str] = []
 
 

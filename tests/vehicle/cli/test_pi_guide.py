@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import socket
 import subprocess
 import sys
 import tomllib
@@ -13,12 +12,15 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from tests.ports import free_port
 from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.settings import Accessories, build_specs
 from vehicle.config.config import Config, parse_config
 from vehicle.config.template import build_template
 from vehicle.motors.drivers import DRIVERS
 from vehicle.params import Params
+
+pytestmark = pytest.mark.xdist_group("motor drivers")  # each driver can be used by one vehicle at a time
 
 GUIDE = (Path(__file__).parents[3] / "docs" / "pi.md").read_text()
 TEXTS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)
@@ -45,9 +47,7 @@ def test_every_driver_has_its_wiring() -> None:
 
 def test_check_says_what_the_guide_shows(tmp_path: Path) -> None:
     shown = re.findall(r"^ {3}(ok    .*)$", GUIDE, re.MULTILINE)
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-        free.bind(("127.0.0.1", 0))
-        endpoint = f"udpin:127.0.0.1:{free.getsockname()[1]}"
+    endpoint = f"udpin:127.0.0.1:{free_port()}"
     file = tmp_path / "rover.toml"
     file.write_text(
         build_template().replace('"udpin:0.0.0.0:14550"', f'"{endpoint}"').replace('"simulated"', '"article-car"', 1)

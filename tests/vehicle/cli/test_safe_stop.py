@@ -22,6 +22,8 @@ from tests.vehicle.motors.filed_pins import PINS, installed
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
 
+pytestmark = pytest.mark.xdist_group("motor drivers")  # each driver can be used by one vehicle at a time
+
 
 class DeafToTime:
     """A controller whose own serial timeout does not work: only a command stops it."""

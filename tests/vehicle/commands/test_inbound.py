@@ -7,6 +7,7 @@ from pathlib import Path
 
 from dialects import codec
 from dialects import messages as m
+from dialects.traits import LOG_ONLY
 from tests.vehicle.bench import MESSAGE_IDS, OTHER, Bench
 from vehicle.commands.access import Access
 from vehicle.telemetry.streams import STREAMS
@@ -56,3 +57,7 @@ def test_a_message_that_needs_a_heartbeat_is_dropped_without_one() -> None:
 
 def test_only_these_handlers_check_their_sender_themselves() -> None:
     assert {row.message for row in ROWS if row.checks_sender} == {m.SetMode, m.LogErase}
+
+
+def test_notes_of_a_log_have_no_handler() -> None:
+    assert MESSAGE_IDS.isdisjoint(LOG_ONLY)

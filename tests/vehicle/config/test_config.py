@@ -68,7 +68,8 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ('endpont = ["a"]', "endpont: unknown key; did you mean endpoints?"),
         (
             "zebra = 1",
-            "zebra: unknown key; there are endpoints, state, identity, motors, accessories, sensors, params, log",
+            "zebra: unknown key; there are endpoints, announce, state, identity, signing, motors, accessories, "
+            "sensors, params, log",
         ),
         ("a =", "Invalid value (at end of document)"),
         ("[params]\n\n[params]", "[params] exists already, and again at line 3; move its lines below the first one"),

@@ -26,7 +26,7 @@ class Watched(SimulatedMotors):
         self.said: list[int] = []
 
     def set(self, throttles: Sequence[float]) -> None:
-        self.said.append(len(self._rover._outgoing))
+        self.said.append(len(self._rover._outbox._outgoing))
         super().set(throttles)
 
 

@@ -93,6 +93,13 @@ class TestQuestions:
             scene.hear(TWIN)
         assert not scene.told(GCS)
 
+    def test_a_link_of_the_driver_whose_proofs_have_ended_is_named(self) -> None:
+        scene = Scene(None)
+        scene.prove(GCS)
+        scene.ownership.take(GCS, scene.now)
+        assert scene.ownership.denial_reason(GCS, scene.now) is None
+        assert scene.ownership.denial_reason(GCS, scene.now + 1.5) == "no proof on this link for 1.5 s"
+
     def test_only_the_configured_ids(self) -> None:
         scene = Scene(None, MAV_GCS_SYSID=254)
         reason = "only GCS 254 may control (MAV_GCS_SYSID)"

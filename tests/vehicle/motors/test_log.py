@@ -73,7 +73,6 @@ def test_a_file_that_cannot_be_opened_is_the_callers_matter(tmp_path: Path) -> N
         MotorLog(str(tmp_path / "missing" / "motors"))
 
 
-@pytest.mark.timeout(20)
 def test_a_reader_who_stops_reading_does_not_hold_up_the_motors(tmp_path: Path) -> None:
     path = tmp_path / "motors"
     os.mkfifo(path)

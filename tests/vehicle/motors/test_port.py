@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle.motors.port import SerialPort
+from vehicle.motors.port import MotorPort
 
 FRAME = b"\x80\x00\x40\x40\x01"
 
@@ -45,8 +45,8 @@ def line(tmp_path: Path) -> Iterator[Line]:
     line.close()
 
 
-def opened(line: Line) -> SerialPort:
-    port = SerialPort(str(line.path), 9600)
+def opened(line: Line) -> MotorPort:
+    port = MotorPort(str(line.path), 9600)
     assert port.open()
     return port
 
@@ -65,7 +65,7 @@ def test_frames_go_out_and_replies_come_in(line: Line) -> None:
 
 
 def test_open_tells_whether_it_opened(line: Line) -> None:
-    port = SerialPort(str(line.path), 9600)
+    port = MotorPort(str(line.path), 9600)
     assert not port.is_open
     assert [port.open(), port.open()] == [True, False]
     assert port.is_open
@@ -76,7 +76,7 @@ def test_open_tells_whether_it_opened(line: Line) -> None:
     port.close()
 
 
-def fill(port: SerialPort) -> BlockingIOError:
+def fill(port: MotorPort) -> BlockingIOError:
     """Write until the line accepts no more; return the error."""
     for _ in range(1_000_000):
         try:
@@ -129,5 +129,5 @@ def test_a_line_that_is_gone_closes_the_port_which_opens_again_under_its_name(li
 def test_a_second_program_may_not_write_between_our_frames(line: Line) -> None:
     port = opened(line)
     with pytest.raises(OSError, match=str(line.path)):
-        SerialPort(str(line.path), 9600).open()
+        MotorPort(str(line.path), 9600).open()
     port.close()

@@ -145,3 +145,17 @@ def test_arming_reports_the_ground_station_and_the_mode() -> None:
     bench = Bench()
     bench.drive()
     assert said(bench, f"Armed by GCS {DRIVER}, mode MANUAL")
+
+
+class TestWithoutADriver:
+    def test_no_autonomous_mode_can_be_chosen_while_armed(self) -> None:
+        bench = Bench()
+        bench.arm()
+        assert bench.set_mode(Mode.GUIDED) is Result.ACCEPTED
+        assert bench.command(Command.REQUEST_OPERATOR_CONTROL, 0) is Result.ACCEPTED
+        assert bench.set_mode(Mode.GUIDED, OTHER) is Result.FAILED
+        assert said(bench, "Mode GUIDED refused: no GCS is in control")
+        assert bench.set_mode(Mode.MANUAL, OTHER) is Result.ACCEPTED  # it drives nothing without a driver
+
+    def test_disarmed_any_mode_can_be_chosen(self) -> None:
+        assert Bench().set_mode(Mode.GUIDED) is Result.ACCEPTED

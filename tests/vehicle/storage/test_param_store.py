@@ -65,7 +65,6 @@ def test_a_file_that_cannot_be_read_is_damage_too(tmp_path: Path) -> None:
     assert ParamStore(FileWriter(tmp_path)).damage == "parameter file cannot be read, Is a directory"
 
 
-@pytest.mark.timeout(20)
 @pytest.mark.parametrize("make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero")])
 def test_a_file_without_an_end_is_neither_waited_for_nor_read(make: Callable[[Path], None], tmp_path: Path) -> None:
     make(tmp_path / "parameters")

@@ -20,10 +20,11 @@ from link.services.mission.client import MissionClient, MissionOutcome
 from link.services.mission.items import Items, MissionItem
 from link.services.mission.plans import plan_id
 from tests.link.mission_vehicle import plain
-from tests.vehicle.bench import said
+from tests.vehicle.bench import CYCLE, said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running
 from tests.vehicle.missions import Item, do, send, upload, way
+from vehicle.pace import PERIOD
 from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.plan_store import PlanStore
 from vehicle.storage.store import PendingWrite
@@ -202,7 +203,7 @@ def test_a_slow_disk_delays_the_answer_and_the_plan() -> None:
     assert field.all(m.MissionAck)[before:] == []
     assert field.newest(m.MissionCurrent).mission_id == 0
     disk.end()
-    field.wait(0.1)
+    field.wait(PERIOD + 3 * CYCLE)
     (answer,) = field.all(m.MissionAck)[before:]
     assert (answer.type, answer.opaque_id) == (0, field.newest(m.MissionCurrent).mission_id)
     assert answer.opaque_id != 0

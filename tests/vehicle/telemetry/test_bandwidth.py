@@ -10,7 +10,7 @@ from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, DriveType, Result
 from link.core import LinkReport, Peer
-from link.services.pacing import DEFAULT_RATE
+from link.services.pacing import DEFAULT_RATE, LOCAL_FILE_RATE
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, Bench
 from tests.vehicle.conversations import conversation
 from vehicle.autonomy.navigator import Navigator
@@ -137,7 +137,8 @@ class Wire:
     def __init__(self) -> None:
         self.now = 0.0
         self._safety = build_safety()
-        self.bandwidth = Bandwidth(self._safety)
+        self.stations: set[Peer] = set()
+        self.bandwidth = Bandwidth(self._safety, self.stations.__contains__)
         self.bandwidth.update([report(SIK)])
 
     def bulk(self, seconds: float, size: int = 263) -> float:
@@ -159,13 +160,13 @@ class Wire:
         return self.bandwidth.telemetry_rates[0] / SIK
 
 
-@pytest.mark.parametrize(("size", "least"), [(37, 0.57), (263, 0.52)])
+@pytest.mark.parametrize(("size", "least"), [(37, 0.82), (263, 0.82)])
 def test_while_nobody_can_drive_bulk_gets_what_telemetry_gives_up(size: int, least: float) -> None:
     wire = Wire()
     assert wire.telemetry == pytest.approx(0.6)
     wire.bulk(1.0, size)
-    assert wire.telemetry == pytest.approx(0.3)
-    assert least < wire.bulk(20.0, size) <= 0.62
+    assert wire.telemetry == pytest.approx(0.12)
+    assert least < wire.bulk(20.0, size) <= 0.86
 
 
 def test_bulk_gains_nothing_before_telemetry_has_given_it_up() -> None:
@@ -182,6 +183,30 @@ def test_arming_takes_it_back_in_the_same_cycle_and_telemetry_follows() -> None:
     assert 0.25 < wire.bulk(20.0) <= 0.31
 
 
+SIMULATOR_STATION, ON_WIFI = Peer(1, ("127.0.0.1", 14550)), Peer(1, ("192.0.2.7", 14550))
+
+
+def test_files_go_faster_to_a_station_on_the_same_machine_and_no_more_once_it_is_armed() -> None:
+    wire = Wire()
+    files = wire.bandwidth.file_pacer
+    assert files.rate(SIMULATOR_STATION) == DEFAULT_RATE, "it may be MAVProxy, which loses frames"
+    wire.stations |= {SIMULATOR_STATION, ON_WIFI, STATION}
+    assert files.rate(SIMULATOR_STATION) == LOCAL_FILE_RATE
+    assert wire.bandwidth.pacer.rate(SIMULATOR_STATION) == files.rate(ON_WIFI) == DEFAULT_RATE
+    assert files.rate(STATION) < SIK
+    wire.arm()
+    assert files.rate(SIMULATOR_STATION) == DEFAULT_RATE
+
+
+def test_files_go_slower_again_where_frames_are_lost() -> None:
+    wire = Wire()
+    wire.stations.add(SIMULATOR_STATION)
+    files = wire.bandwidth.file_pacer
+    files.note_loss(SIMULATOR_STATION)
+    assert files.rate(SIMULATOR_STATION) == DEFAULT_RATE
+    assert files.rate(SIMULATOR_STATION._replace(conversation=1)) == DEFAULT_RATE, "it has not introduced itself"
+
+
 def test_when_bulk_has_ended_telemetry_has_all_again() -> None:
     wire = Wire()
     wire.bulk(3.0)
@@ -196,4 +221,4 @@ def test_bulk_on_a_network_slows_no_telemetry() -> None:
         wire.bandwidth.pacer.consume(Peer(1, "gcs"), 263, wire.now)
         wire.bandwidth.update([report(SIK), report(None, index=1)])
     assert wire.telemetry == pytest.approx(0.6)
-    assert wire.bandwidth.pacer._rate(Peer(1, "gcs")) == DEFAULT_RATE
+    assert wire.bandwidth.pacer.rate(Peer(1, "gcs")) == DEFAULT_RATE

@@ -1,0 +1,111 @@
+"""LinkGuards: which link is guarded, what is said at the start, and keys that come and go while the vehicle runs."""
+
+from __future__ import annotations
+
+import socket
+from pathlib import Path
+
+import pytest
+
+from link.endpoint import parse_endpoint
+from link.runner import open_links
+from link.signing.key_actions import make_key
+from link.signing.key_file import FILE
+from link.signing.memory_file import load_memory
+from link.signing.role import Role
+from link.transport.reach import is_private
+from tests.link.frames import heartbeat
+from tests.link.signing.signed import ARM, HERE, STRANGER, signed
+from tests.ports import free_port
+from vehicle.config.config import ConfigError, parse_config
+from vehicle.config.run_settings import SettingsError
+from vehicle.config.signing import SigningSettings
+from vehicle.runtime.key_keeper import KeyKeeper
+from vehicle.runtime.link_guards import NOBODY, LinkGuards
+
+
+@pytest.mark.parametrize(
+    ("endpoint", "private"),
+    [
+        ("serial:/dev/ttyAMA0:57600", True),
+        ("udpin:127.0.0.1:14550", True),
+        ("tcpin:[::1]:5760", True),
+        ("udpout:127.3.0.1:14550", True),
+        ("udpout:localhost:14550", True),
+        ("udpin:0.0.0.0:14550", False),
+        ("tcpin:[::]:5760", False),
+        ("udpin:192.0.2.7:14550", False),
+        ("udpout:no-such-host.invalid:14550", False),
+        ("udpout:\udcff:14550", False),
+    ],
+)
+def test_what_a_network_reaches(endpoint: str, private: bool) -> None:
+    assert is_private(parse_endpoint(endpoint)) is private
+
+
+def guards(settings: SigningSettings, endpoint: str, keys: KeyKeeper | None = None) -> LinkGuards:
+    return LinkGuards(settings, [endpoint], keys, None, 0.0)
+
+
+def test_the_start_says_what_to_do_in_one_line() -> None:
+    place = "udpin:0.0.0.0:14550"
+    assert guards(SigningSettings(), place).warning == f"{place}: {NOBODY}"
+    assert "everybody in the network may drive" in str(guards(SigningSettings(allow_unsigned=True), place).warning)
+    assert guards(SigningSettings(allow_unsigned=True), place).arming_note is not None
+    for settings in (SigningSettings(), SigningSettings(allow_unsigned=True)):
+        assert guards(settings, "udpin:127.0.0.1:14550").warning is None
+        assert guards(settings, "udpin:127.0.0.1:14550").arming_note is None
+
+
+def test_signing_that_is_required_without_a_key_does_not_start() -> None:
+    with pytest.raises(SettingsError, match="there is no key; make one with `vehicle key new NAME`"):
+        guards(SigningSettings(required=True), "udpin:127.0.0.1:14550")
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("required = true\nallow_unsigned = true", "required and allow_unsigned contradict each other"),
+        ("open_stops = false", "false needs required = true"),
+        ("open = true", "unknown key"),
+        ("required = 1", "required"),
+    ],
+)
+def test_a_section_that_cannot_hold_is_one_line(text: str, problem: str) -> None:
+    with pytest.raises(ConfigError, match=problem):
+        parse_config(f"[signing]\n{text}\n", "rover.toml")
+
+
+def test_without_keys_a_trusted_link_costs_nothing_and_the_first_key_guards_it(tmp_path: Path) -> None:
+    endpoint = f"udpin:127.0.0.1:{free_port()}"
+    keys = KeyKeeper(tmp_path / FILE)
+    made = LinkGuards(SigningSettings(), [endpoint], keys, tmp_path / "signing.json", 0.0)
+    links = open_links([endpoint], system=1, component=1)
+    try:
+        made.attach(links)
+        channel = links[0].channel
+        assert channel.guard is None
+        key = make_key(tmp_path / FILE, "laptop", Role.DRIVE)
+        keys.listeners[0](keys.ring.add(key))
+        assert channel.guard is not None
+        assert channel.receive(heartbeat(0), HERE, 0.0), "this computer needs no key"
+        stamp = made._keeper.signing.clock.stamp(0.0)
+        assert channel.receive(signed(ARM, STRANGER, stamp), HERE, 0.0) == []
+        assert channel.receive(signed(ARM, key, stamp), HERE, 0.0)[0].role is Role.DRIVE
+        made.close(1.0)
+        assert load_memory(tmp_path / "signing.json").newest
+    finally:
+        for link in links:
+            link.close()
+        keys.close()
+
+
+def test_the_address_of_a_tunnel_is_private(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """The computer's own interfaces, one of them declared a tunnel by its kind."""
+    name = next(name for _, name in socket.if_nameindex() if name == "lo")
+    (tmp_path / name).mkdir()
+    (tmp_path / name / "type").write_text("65534\n")
+    monkeypatch.setattr("link.transport.reach.INTERFACES", tmp_path)
+    monkeypatch.setattr("link.transport.reach.is_loopback", lambda host: False)
+    assert is_private(parse_endpoint("udpin:127.0.0.1:14550"))
+    assert not is_private(parse_endpoint("udpin:0.0.0.0:14550"))

@@ -1,0 +1,28 @@
+"""The row `signing` of `vehicle doctor`: who may send commands over a network."""
+
+from __future__ import annotations
+
+from link.runtime.diagnosis import Finding, fault, fault_of, ok, warn
+from vehicle.cli.doctor.check_rows import AFTER_CONFIG
+from vehicle.cli.doctor.facts import DoctorFacts
+
+NEW_KEY = "vehicle key new NAME, then install it at the ground station (docs/security.md)"
+
+
+def signing(facts: DoctorFacts) -> Finding:
+    """Judge keys, and the links that a whole network reaches."""
+    if not facts.readable:
+        return AFTER_CONFIG
+    if facts.key_problem:
+        return fault_of(facts.key_problem)
+    keys = f"keys: {', '.join(facts.keys)}" if facts.keys else "no key"
+    if facts.signing.required:
+        return ok(f"{keys}; nothing unsigned is obeyed") if facts.keys else fault("required, but no key", NEW_KEY)
+    if not facts.open_links:
+        return ok(f"{keys}; no link is open to a network")
+    links = ", ".join(facts.open_links)
+    if facts.signing.allow_unsigned:
+        return warn(f"{links}: everybody in the network may drive (allow_unsigned)", NEW_KEY)
+    if facts.keys:
+        return ok(f"{keys}; {links}: others may watch and stop")
+    return warn(f"{links}: nobody may drive over the network, there is no key", NEW_KEY)

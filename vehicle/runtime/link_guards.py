@@ -1,0 +1,99 @@
+"""LinkGuards: gives each link the guard that [signing] and the keys of now ask for, and says what follows from it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from pathlib import Path
+
+from link.endpoint import parse_endpoint
+from link.protocol.signing_guard import SigningGuard, SigningPolicy
+from link.signing.keys import KeyRing
+from link.signing.role import Role
+from link.signing_keeper import SigningKeeper
+from link.transport.reach import is_private
+from link.transport.transport import Link
+from vehicle.config.run_settings import SettingsError
+from vehicle.config.signing import SigningSettings, build_policy
+from vehicle.runtime.key_keeper import KeyKeeper
+
+log = logging.getLogger(__name__)
+
+PERIOD = 1.0
+"""s between two looks at the clock of the computer."""
+
+NOBODY = (
+    "everybody in the network can send here, so nobody may drive: make a key with `vehicle key new NAME`, "
+    "or set allow_unsigned = true under [signing]"
+)
+"""What is said of a link that is open to a network, while there is neither a key nor a permission."""
+
+
+class LinkGuards:
+    """The guards of all links. Without keys, a link that is trusted has none, and costs nothing."""
+
+    def __init__(
+        self,
+        settings: SigningSettings,
+        endpoints: Sequence[str],
+        keys: KeyKeeper | None,
+        memory: Path | None,
+        now: float,
+    ) -> None:
+        """Prepare. `memory`: file of the signing clock. Raises SettingsError, and MemoryFileError."""
+        ring = keys.ring if keys is not None else KeyRing()
+        if settings.required and not ring.keys:
+            raise SettingsError("signing.required: there is no key; make one with `vehicle key new NAME`")
+        private = [is_private(parse_endpoint(text)) for text in endpoints]
+        self._policies = [build_policy(settings, private=each) for each in private]
+        self._open = [text for text, each in zip(endpoints, private, strict=True) if not (each or settings.required)]
+        self._allowed = settings.allow_unsigned
+        self._keeper = SigningKeeper(ring, memory, now)
+        self._links: Sequence[Link] = ()
+        self._due = now
+        if keys is not None:
+            keys.listeners.append(self._take_keys)
+
+    @property
+    def arming_note(self) -> str | None:
+        """What is said at each arming, or None."""
+        return "Unsigned links: anybody in the network may drive" if self._open and self._allowed else None
+
+    @property
+    def warning(self) -> str | None:
+        """What is said at the start: what who may do, and what to do about it; None if nobody unsigned comes in."""
+        if not self._open:
+            return None
+        place = ", ".join(self._open)
+        if self._allowed:
+            return f"{place}: everybody in the network may drive (allow_unsigned); `vehicle key new NAME` closes it"
+        if self._keeper.signing.ring.keys:
+            return None
+        return f"{place}: {NOBODY}"
+
+    def attach(self, links: Sequence[Link]) -> None:
+        """Guard these links, in the order of the endpoints."""
+        self._links = links
+        for link, policy in zip(links, self._policies, strict=False):
+            link.channel.guard = self._guard(link, policy)
+
+    def poll(self, now: float) -> None:
+        """Follow the clock of the computer and store what is due. Call it in each control cycle."""
+        if now >= self._due and self._keeper.signing.ring.keys:
+            self._due = now + PERIOD
+            self._keeper.update(now)
+
+    def close(self, now: float) -> None:
+        """Store for the last time."""
+        if self._keeper.signing.ring.keys:
+            self._keeper.close(now)
+
+    def _guard(self, link: Link, policy: SigningPolicy) -> SigningGuard | None:
+        if not self._keeper.signing.ring.keys and policy.unsigned is Role.SET_UP:
+            return None
+        return SigningGuard(self._keeper.signing, policy, link.channel.index)
+
+    def _take_keys(self, ring: KeyRing) -> None:
+        """Use other keys from now on. The last one may be gone: then unsigned senders have what the file grants."""
+        self._keeper.signing.set_ring(ring)
+        self.attach(self._links)
