@@ -12,21 +12,24 @@ from pathlib import Path
 
 import msgspec
 
-from groundstation.intents.session import Quit
+from groundstation.intents.session import Detach, Quit
 from groundstation.intents.union import AnyIntent
 from groundstation.ipc import (
     MAX_PACKET,
-    SOCKET_BUFFER,
     IntentBatch,
-    StationFailed,
     StationReady,
     clock,
     decode_from_station,
     encode,
+    protocol_version,
 )
-from groundstation.processes import end_process, start_module
+from groundstation.recording.options import RecordOptions
 from groundstation.snapshot import Snapshot, StationOutage
+from groundstation.station_socket.connect import SOCKET_BUFFER, NoStationError, connect
+from groundstation.station_socket.folder import FolderError
+from groundstation.station_socket.hello import HELLO_WITHIN, SCREEN, Hello, StationFailed
 from groundstation.views.base import View
+from link.runtime.child_process import end_process, start_module
 
 START_TIMEOUT = 15.0
 """s for the station to open its links: Python's start on a slow Pi (3 s) and a host name to resolve (10 s)."""
@@ -37,9 +40,8 @@ CLOSE_TIMEOUT = 1.0
 MAX_PENDING = 256
 """Intents kept for a station that does not read. Only those that are `valid_when_late` are kept."""
 
-
-OUTAGE_TAG, TAG_BYTES = StationOutage.__name__.encode(), 32
-"""The tag of a StationOutage, and where it stands in a packet: snapshots in between are not even decoded."""
+_STATION, _REPLAY = "groundstation.host.station_process", "groundstation.host.replay_process"
+"""Modules of the processes that a client starts."""
 
 
 class StationError(RuntimeError):
@@ -49,10 +51,13 @@ class StationError(RuntimeError):
 class StationClient:
     """One station process, and the pipe to it. `send` may be called from any thread, the rest from one."""
 
-    def __init__(self, pipe: socket.socket, process: subprocess.Popen[bytes], endpoints: tuple[str, ...]) -> None:
-        self.endpoints = endpoints
+    def __init__(self, pipe: socket.socket, process: subprocess.Popen[bytes] | None, ready: StationReady) -> None:
+        """`process`: None for a station that was there before."""
+        self.endpoints = ready.endpoints
+        self.first_request = ready.first_request
         self._pipe = pipe
         self._process = process
+        self._keep = False
         self._lock = threading.Lock()
         self._pending: deque[AnyIntent] = deque(maxlen=MAX_PENDING)
         self._open = True
@@ -72,42 +77,101 @@ class StationClient:
         sitl: bool = False,
         log_file: Path | None = None,
         dialect: str | None = None,
+        sign_key: str | None = None,
+        require_signing: bool = False,
         param_docs: Path | None = None,
+        record: RecordOptions | None = None,
         terminal: str | None = None,
+        keep: bool = False,
         meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
         """Start the station process and wait until its links are open. Raises StationError.
 
         `dialect` is an XML file that the station reads. `terminal` is the path of the terminal that is reset if this
-        process is killed. `meanwhile` is called first: the process takes 0.2 s to import its modules.
+        process is killed. `keep`: the station goes on then. `meanwhile` is called first: the process takes 0.2 s to
+        import its modules.
         """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
+        options += ["--keep"] if keep else []
         if log_file is not None:
             options.append(f"--log-file={log_file}")
         if dialect is not None:
             options.append(f"--dialect={dialect}")
+        if sign_key is not None:
+            options.append(f"--sign-key={sign_key}")
+        options += ["--require-signing"] if require_signing else []
         if param_docs is not None:
             options.append(f"--param-docs={param_docs}")
+        if record is not None:
+            options += record.arguments
         if terminal is not None:
             options.append(f"--terminal={terminal}")
+        client = cls._open_process(_STATION, [*options, "--", *endpoints], meanwhile, new_session=keep)
+        client._keep = keep
+        return client
+
+    @classmethod
+    def start_replay(
+        cls,
+        file: Path,
+        *,
+        at: str = "",
+        speed: float = 1.0,
+        log_file: Path | None = None,
+        dialect: str | None = None,
+        param_docs: Path | None = None,
+        meanwhile: Callable[[], object] = lambda: None,
+    ) -> StationClient:
+        """Start a process that replays a telemetry log in place of a station: it has no links. Raises StationError.
+
+        `at`: time at which it begins, as a text; `speed`: factor. The others as for start().
+        """
+        given = {"--log-file": log_file, "--dialect": dialect, "--param-docs": param_docs}
+        options = [f"{name}={value}" for name, value in given.items() if value is not None]
+        return cls._open_process(_REPLAY, [*options, f"--at={at}", f"--speed={speed}", "--", str(file)], meanwhile)
+
+    @classmethod
+    def _open_process(
+        cls, module: str, arguments: Sequence[str], meanwhile: Callable[[], object], *, new_session: bool = False
+    ) -> StationClient:
+        """Start a process with a pipe to it, and wait until it is ready. Raises StationError."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             for half in (ours, theirs):
                 half.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
-            process = _spawn(theirs.fileno(), options, endpoints)
+            process = _spawn(module, theirs.fileno(), arguments, new_session=new_session)
         try:
             meanwhile()
-            hello = _hello(ours)
+            ready = _read_ready(ours, START_TIMEOUT)
         except BaseException:
             end_process(process, CLOSE_TIMEOUT)
             ours.close()
             raise
         ours.setblocking(False)
-        return cls(ours, process, hello.endpoints)
+        return cls(ours, process, ready)
+
+    @classmethod
+    def attach(cls, pid: int, name: str, *, watches: bool = False) -> StationClient:
+        """Connect to a station that runs, as one more screen of this name. Raises StationError.
+
+        `watches`: it does not drive unless its operator asks to.
+        """
+        try:
+            pipe = connect(pid, Hello(SCREEN, protocol_version(), name, watches=watches))
+        except (NoStationError, FolderError, OSError) as error:
+            raise StationError(str(error)) from error
+        try:
+            ready = _read_ready(pipe, HELLO_WITHIN)
+        except BaseException:
+            pipe.close()
+            raise
+        pipe.setblocking(False)
+        return cls(pipe, None, ready)
 
     @property
     def pid(self) -> int:
-        """Process id of the station."""
+        """Process id of the station that this screen has started."""
+        assert self._process is not None
         return self._process.pid
 
     def send(self, *intents: AnyIntent) -> None:
@@ -134,13 +198,7 @@ class StationClient:
         The watchdog writes to the same pipe; its newest report becomes `outage`.
         """
         snapshot: Snapshot | None = None
-        while True:
-            try:
-                packet = self._pipe.recv(MAX_PACKET)
-            except BlockingIOError:
-                break
-            except OSError:
-                packet = b""
+        while (packet := self._read_packet()) is not None:
             if not packet:
                 self._open = False
                 break
@@ -154,6 +212,17 @@ class StationClient:
                     snapshot = message
         self._newest = snapshot or self._newest
         return snapshot
+
+    def _read_packet(self) -> bytes | None:
+        """Return the next packet, b"" at the end, None if none has arrived."""
+        try:
+            return self._pipe.recv(MAX_PACKET)
+        except BlockingIOError:
+            return None
+        except ConnectionResetError:  # raised once, if intents were unread at the end; the last report follows
+            return self._read_packet()
+        except OSError:
+            return b""
 
     def pop_views(self) -> list[View]:
         """Return the newest view of each kind that `receive` has read since the last call."""
@@ -184,12 +253,17 @@ class StationClient:
     @property
     def alive(self) -> bool:
         """The station runs. False once its end of the pipe is closed: intents can no longer be sent."""
-        return self._open and self._process.poll() is None
+        return self._open and (self._process is None or self._process.poll() is None)
 
-    def close(self) -> int | None:
-        """Let the station send neutral and exit, within about a second. Returns its exit code (negative: signal)."""
-        self.send(Quit())
-        code = end_process(self._process, CLOSE_TIMEOUT)
+    def close(self, *, quits: bool = True) -> int | None:
+        """End the connection: a station that this screen has started sends neutral and exits, within about a second.
+
+        `quits`: the operator wants that; else one that is to be kept goes on. Returns the exit code of the station
+        (negative: signal), None while it runs.
+        """
+        self.send(Quit() if quits else Detach())
+        goes_on = self._process is None or (self._keep and not quits)
+        code = None if goes_on or self._process is None else end_process(self._process, CLOSE_TIMEOUT)
         self.receive()
         with self._lock:
             self._open = False
@@ -197,20 +271,19 @@ class StationClient:
         return code
 
 
-def _spawn(descriptor: int, options: Sequence[str], endpoints: Sequence[str]) -> subprocess.Popen[bytes]:
+def _spawn(module: str, descriptor: int, arguments: Sequence[str], *, new_session: bool) -> subprocess.Popen[bytes]:
     try:
-        arguments = [f"--fd={descriptor}", *options, "--", *endpoints]
-        return start_module("groundstation.station_process", arguments, pass_fds=[descriptor])
+        return start_module(module, [f"--fd={descriptor}", *arguments], pass_fds=[descriptor], new_session=new_session)
     except OSError as error:
         raise StationError(f"the station process did not start: {error.strerror}") from error
 
 
-def _hello(pipe: socket.socket) -> StationReady:
-    pipe.settimeout(START_TIMEOUT)
+def _read_ready(pipe: socket.socket, within: float) -> StationReady:
+    pipe.settimeout(within)
     try:
         packet = pipe.recv(MAX_PACKET)
     except TimeoutError as error:
-        raise StationError(f"the station process did not answer within {START_TIMEOUT:.0f} s") from error
+        raise StationError(f"the station process did not answer within {within:.0f} s") from error
     except OSError as error:
         raise StationError(f"the station process ended: {error.strerror}") from error
     first = (

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import time
+import zlib
 
 import msgspec
 
 from groundstation.intents.session import LEASE_TIMEOUT
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, StationOutage
+from groundstation.station_socket.hello import StationFailed
 from groundstation.views.union import AnyView
-
-SOCKET_BUFFER = 1 << 20
-"""Bytes requested each way, so that a snapshot (< 60 kB) or a second of keys fits; the kernel may grant less."""
 
 MAX_PACKET = 1 << 18
 
@@ -33,12 +32,8 @@ class StationReady(msgspec.Struct, frozen=True, tag=True):
     """From the station, first: the links are open."""
 
     endpoints: tuple[str, ...]
-
-
-class StationFailed(msgspec.Struct, frozen=True, tag=True):
-    """From the station, first and last: the station could not start; one line for the user."""
-
-    line: str
+    first_request: int = 1
+    """Number of the first request of this screen; screens of one station share the numbers."""
 
 
 FromStation = StationReady | StationFailed | Snapshot | StationOutage | AnyView
@@ -46,6 +41,18 @@ FromStation = StationReady | StationFailed | Snapshot | StationOutage | AnyView
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(FromStation).decode
 decode_from_screen = msgspec.msgpack.Decoder(IntentBatch).decode
+
+
+_SPOKEN = tuple(f"groundstation.{each}" for each in ("ipc", "intents", "views", "snapshot"))
+
+
+def protocol_version() -> int:
+    """Return a number that changes with any field of any packet: a screen and a station of two versions do not talk."""
+    kinds = [msgspec.Struct]
+    for kind in kinds:
+        kinds += [each for each in kind.__subclasses__() if each.__module__.startswith(_SPOKEN)]
+    lines = sorted(f"{kind.__qualname__} {kind.__annotations__}" for kind in kinds[1:])
+    return zlib.crc32("\n".join(lines).encode())
 
 
 def clock() -> float:

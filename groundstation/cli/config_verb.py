@@ -10,10 +10,11 @@ from enum import IntEnum
 
 import msgspec
 
-from groundstation.cli.options import add_config, add_settings, given_settings
+from groundstation.cli.local_verb import load_settings
+from groundstation.cli.options import add_config, add_settings
 from groundstation.cli.verb_help import RESERVED
 from groundstation.config.config_file import ConfigError, choose_path, read_config
-from groundstation.config.effective import build_keymap, load_config, merge, resolve_endpoints
+from groundstation.config.effective import build_keymap, resolve_endpoints
 from groundstation.config.settings import ROWS, format_value
 from groundstation.config.template import build_template
 from groundstation.input.keymap import KeymapError
@@ -61,7 +62,7 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _show(options: argparse.Namespace) -> int:
-    effective = merge(load_config(options.config, os.environ, RESERVED), os.environ, given_settings(options))
+    effective = load_settings(options)
     build_keymap(effective.settings)
     resolve_endpoints(effective.settings.open, effective.settings)
     values = msgspec.to_builtins(effective.settings)

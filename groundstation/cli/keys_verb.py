@@ -15,9 +15,9 @@ from contextlib import suppress
 from types import FrameType
 
 from groundstation.input.keymap import SPLIT, KeyEvent
-from groundstation.ui.key_parser import UNKNOWN, KeyEventParser
-from groundstation.ui.keynames import format_key
-from groundstation.ui.terminal import REQUEST_KEY_RELEASES
+from groundstation.ui.keys.keynames import format_key
+from groundstation.ui.terminal.console_driver import REQUEST_KEY_RELEASES
+from groundstation.ui.terminal.key_parser import UNKNOWN, KeyEventParser
 from link.runtime.command_line import CommandLineParser
 
 BEGIN = f"\x1b[?2004h\x1b[>25u{REQUEST_KEY_RELEASES}"
@@ -29,7 +29,7 @@ QUIT = ("q", "ctrl+c", "ctrl+d")
 
 
 class KeyPrinter:
-    """Takes the keys of one read (groundstation/ui/key_parser.py: KeySink)."""
+    """Takes the keys of one read (groundstation/ui/terminal/key_parser.py: KeySink)."""
 
     def __init__(self) -> None:
         self.names: list[str] = []

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import msgspec
 
 from groundstation.cli.verb_help import verb_help
-from groundstation.config.settings import DEFAULT_ENDPOINT, ROWS, SettingRow
+from groundstation.config.defaults import DEFAULT_ENDPOINT
+from groundstation.config.settings import ROWS, SettingRow, Settings
 from link.endpoint import endpoint_help
 from link.runtime.command_line import CommandLineParser
 
@@ -23,6 +24,7 @@ examples:
   groundstation --style latch --speed 0.3  a key drives until the next key, slowly
   groundstation --keys teleop              the keys of teleop_twist_keyboard
   groundstation --keys my.toml             your own keys; see below
+  groundstation --gamepad any              a gamepad drives as well; docs/gamepad.md
   groundstation --dialect mine.xml         name the messages of your vehicle's dialect; see below
 
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
@@ -57,6 +59,9 @@ With that protocol a Cyrillic or Greek keyboard drives by the position of its ke
 
 exit codes: 0 after a session, 1 if the station crashed, 2 for wrong arguments, 128 + n after signal n
 """
+
+REPLAY_SETTINGS = ("theme", "ascii", "reduce_motion", "keymap", "log_file", "folder", "dialect", "param_docs")
+"""Settings that mean something without a vehicle."""
 
 
 class _Version(argparse.Action):
@@ -95,9 +100,9 @@ def add_config(parser: argparse.ArgumentParser) -> argparse.Action:
     return parser.add_argument("--config", metavar="FILE", help="config file (`groundstation config path` prints it)")
 
 
-def add_settings(parser: argparse.ArgumentParser) -> list[argparse.Action]:
-    """Add the options of the table of settings. What is not given is None."""
-    return [_add_setting(parser, row) for row in ROWS.values() if row.option is not None]
+def add_settings(parser: argparse.ArgumentParser, names: Collection[str] = tuple(ROWS)) -> list[argparse.Action]:
+    """Add the options of the table of settings, or of some of them. What is not given is None."""
+    return [_add_setting(parser, row) for name, row in ROWS.items() if row.option is not None and name in names]
 
 
 def _add_setting(parser: argparse.ArgumentParser, row: SettingRow) -> argparse.Action:
@@ -134,3 +139,20 @@ def given_settings(options: argparse.Namespace) -> Mapping[str, Any]:
     found = {name: getattr(options, name, None) for name, row in ROWS.items() if row.option is not None}
     found["open"] = getattr(options, "endpoints", None) or None
     return {name: value for name, value in found.items() if value is not None}
+
+
+def option_words(settings: Settings, names: Collection[str]) -> list[str]:
+    """Return options that give another run of the program the same settings, as far as they differ from the defaults.
+
+    Keys of the config file are left to that run: --keys would replace them.
+    """
+    found = {name: getattr(settings, name) for name in names if not (name == "keymap" and settings.keys)}
+    changed = {name: value for name, value in found.items() if value != getattr(Settings(), name)}
+    return [_option_word(ROWS[name], value) for name, value in changed.items() if value is not None]
+
+
+def _option_word(row: SettingRow, value: Any) -> str:
+    assert row.option is not None
+    if row.is_switch:
+        return row.option.flag if value else f"--no-{row.option.flag.removeprefix('--')}"
+    return f"{row.option.flag}={value}"

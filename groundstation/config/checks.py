@@ -12,6 +12,7 @@ import msgspec
 from groundstation.config.settings import ROWS, TEXTS
 from groundstation.input.keymap import KeymapError
 from groundstation.input.keymap_file import load_keymap, parse_bindings, rebind
+from groundstation.input.pad_mapping import find_pad_conflict, find_pad_problems
 from link.endpoint import EndpointError, parse_endpoint, parse_endpoints
 from link.runtime.toml_errors import suggest
 
@@ -49,7 +50,10 @@ def _entry_problems(table: str, key: str, value: Any, reserved: Collection[str])
 
 
 def _together(values: Mapping[str, Any]) -> Iterator[Problem]:
-    """Check the key map with the changes of [keys]. What is wrong with one of them alone is reported elsewhere."""
+    """Check [pad] as a whole, and the key map with the changes of [keys]. What is wrong alone is reported elsewhere."""
+    pad = values.get("pad")
+    if isinstance(pad, dict) and (conflict := find_pad_conflict(pad)):
+        yield ("pad",), f"pad: {conflict}"
     keys, base = values.get("keys"), values.get("keymap", "standard")
     if not isinstance(keys, dict) or not isinstance(base, str):
         return
@@ -124,8 +128,13 @@ def _keymap_problems(name: str) -> Iterator[str]:
         yield str(error)
 
 
+def _pad_problems(name: str, value: Any, reserved: Collection[str]) -> Iterator[str]:
+    yield from find_pad_problems(name, value)
+
+
 TABLES: dict[str, Callable[[str, Any, Collection[str]], Iterator[str]]] = {
     "endpoints": _endpoint_problems,
     "keys": _key_problems,
+    "pad": _pad_problems,
 }
 """Table in the file -> the check of one entry."""

@@ -25,7 +25,7 @@ FILE = "groundstation.toml"
 MAX_SIZE = 256 * 1024
 """Bytes of a file that is read: far more than all settings need."""
 
-PATHS = ("keymap", "folder", "log_file", "dialect", "param_docs")
+PATHS = ("keymap", "folder", "log_file", "dialect", "param_docs", "record_folder")
 """Settings with a path, which is relative to the folder of the file."""
 
 _AT_LINE = re.compile(r" \(?at line (\d+)(, column \d+\))?")

@@ -9,14 +9,12 @@ from typing import Any
 import msgspec
 
 from groundstation.config.config_file import ConfigFile, choose_path, read_config
-from groundstation.config.settings import DEFAULT_ENDPOINT, ROWS, Settings, ThemeName
+from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
+from groundstation.config.settings import ROWS, Settings, ThemeName
 from groundstation.input.keymap import Keymap
 from groundstation.input.keymap_file import load_keymap, rebind
 from link.endpoint import EndpointError, parse_endpoint
 from link.runtime.toml_errors import suggest
-
-ENDPOINT_VARIABLE = "MAVHELM_ENDPOINT"
-"""Endpoints or their names, separated by spaces."""
 
 
 @dataclass(frozen=True, slots=True)

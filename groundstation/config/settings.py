@@ -7,24 +7,23 @@ file and of the command line, and Option the option of the command line. To add 
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import msgspec
 
+from groundstation.config.defaults import DEFAULT_ENDPOINT
+from groundstation.input.pad_mapping import OFF
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
 from link.runtime.docstrings import field_docs
-
-DEFAULT_ENDPOINT = "udpin:127.0.0.1:14550"
-"""The port that vehicles and simulators usually send to; this machine only, because MAVLink has no password."""
-
 
 TEXTS = 'text in "quotes", or a list of texts'
 
 
 class ThemeName(StrEnum):
-    """The themes; groundstation/ui/themes.py has their colours."""
+    """The themes; groundstation/ui/look/themes.py has their colours."""
 
     DARK = "dark"
     LIGHT = "light"
@@ -56,24 +55,48 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Limit of the sticks."""
     keymap: Annotated[str, Option("--keys", "NAME|FILE")] = "standard"
     """Key map: standard, teleop, or a TOML file."""
+    gamepad: Annotated[str, Option("--gamepad", "NAME|any|off")] = OFF
+    """Drive with a gamepad as well: part of its name, or any; needs the extra [gamepad]. docs/gamepad.md."""
     theme: Annotated[ThemeName | None, Option("--theme", None, "dark; no-colour if NO_COLOR is set")] = None
     """Colours of the screen."""
     ascii: Annotated[bool | None, Option("--ascii", None, "where the locale is not UTF-8, and with TERM=linux")] = None
     """Draw with ASCII characters only."""
     reduce_motion: Annotated[bool, Option("--reduce-motion")] = False
     """Nothing on the screen moves by itself: no spinners, no animations, no blinking cursor."""
+    keep: Annotated[bool, Option("--keep")] = False
+    """Keep the station when the screen is killed or hung up, as by SSH: it goes neutral; `groundstation attach`."""
     folder: Annotated[str | None, Option("--folder", "FOLDER", "that of the log file")] = None
     """Folder in which the screens save files."""
     log_file: Annotated[str | None, Option("--log-file", "FILE", "groundstation.log in the user's log folder")] = None
     """Log of the program itself."""
     dialect: Annotated[str | None, Option("--dialect", "FILE.xml", "the built-in one alone")] = None
     """MAVLink definitions of a vehicle that sends messages of its own."""
+    sign_key: Annotated[str | None, Option("--sign-key", "NAME", "the one that `groundstation sign use` chose")] = None
+    """Key that signs what we send; `groundstation sign list` shows all."""
+    require_signing: Annotated[bool, Option("--require-signing")] = False
+    """Ignore everything that is not signed with a key of ours. Else only what has the ids of a system that signs."""
     param_docs: Annotated[str | None, Option("--param-docs", "FILE", "those in the configuration folder")] = None
     """Texts of parameters: apm.pdef.xml, apm.pdef.json or PX4's parameters.json."""
+    record: Annotated[bool, Option("--record")] = True
+    """Record each session: what is received and sent, keys, decisions."""
+    record_folder: Annotated[str | None, Option("--record-to", "FOLDER", "that of --folder")] = None
+    """Folder of the recordings."""
+    record_file_size: Annotated[int, msgspec.Meta(ge=1, le=10_000)] = 100
+    """MB after which a recording goes on in the next file."""
+    record_folder_size: Annotated[int, msgspec.Meta(ge=1, le=1_000_000)] = 2000
+    """MB of all recordings in the folder; the oldest are removed."""
     endpoints: dict[str, str | tuple[str, ...]] = {}
     """Names for endpoints: `groundstation field` opens what `field` names, one endpoint or a list."""
     keys: dict[str, Any] = {}
     """Keys of single actions, in place of those of the key map. --keys on the command line leaves them out."""
+
+    pad: dict[str, Any] = {}
+    """Axes and buttons of the gamepad, in place of the usual ones; docs/gamepad.md lists their names."""
+
+    @property
+    def dialect_path(self) -> str | None:
+        """The path of the further dialect."""
+        return os.path.expanduser(self.dialect) if self.dialect else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,12 +18,15 @@ HEAD = """\
 """
 
 EXAMPLES: dict[str, Any] = {
+    "gamepad": "any",
     "theme": "light",
     "ascii": True,
     "folder": "~/rover",
     "log_file": "~/rover/groundstation.log",
     "dialect": "mine.xml",
+    "sign_key": "laptop",
     "param_docs": "apm.pdef.xml",
+    "record_folder": "~/rover/logs",
 }
 """Setting without a default -> what the file shows."""
 
@@ -32,6 +35,7 @@ TABLE_EXAMPLES = {
         'field = "udpout:192.168.1.20:14550"',
         'radio = ["serial:/dev/ttyUSB0:57600", "udpin:0.0.0.0:14550"]',
     ),
+    "pad": ('deadman = "leftshoulder"', 'throttle = "triggers"', "expo = 0.5", 'y = "vehicle.control"'),
     "keys": ('drive.forward = ["e", "up"]', 'app.log = "f2"'),
 }
 """Table -> its example lines."""

@@ -6,13 +6,14 @@ import logging
 import math
 
 from dialects.enums import Severity
+from groundstation.connect.discovery import Discovery
 from groundstation.connect.keeper import LinkKeeper
-from groundstation.connect.listener import Listener
+from groundstation.connect.listener import VehicleListener
 from groundstation.connect.port_scan import PortScan
 from groundstation.intents.links import AddLink, CloseLink
 from groundstation.intents.session import StartSimulator
 from groundstation.intents.union import AnyIntent
-from groundstation.sitl import SimulatorControl, free_port
+from groundstation.sitl.sitl import SimulatorControl, free_port
 from groundstation.station.station import Station
 from groundstation.station.view_feed import ViewSource
 from groundstation.views.connect import ConnectRequest, ConnectView, HeardRow
@@ -37,8 +38,9 @@ class ConnectDesk:
         self._runner = runner
         self._station = station
         self._keeper = LinkKeeper(runner, station, ids, sent)
-        self._listener = Listener(ids)
+        self._listener = VehicleListener(ids)
         self._ports = PortScan()
+        self._discovery = Discovery()
         self._simulators = SimulatorControl()
         self._listen_until = -math.inf
         station.views.add(ConnectRequest, ViewSource(self._build_view, PERIOD))
@@ -65,6 +67,7 @@ class ConnectDesk:
         self._keeper.tick(now)
         if now >= self._listen_until:
             self._listener.close()
+            self._discovery.pause()
         exited = self._simulators.pop_exit()
         if exited is not None:
             text, output = exited
@@ -75,6 +78,7 @@ class ConnectDesk:
     def close(self) -> None:
         """Free what was opened, and end the simulators."""
         self._listener.close()
+        self._discovery.close()
         self._ports.close()
         self._simulators.close()
 
@@ -113,12 +117,16 @@ class ConnectDesk:
         ends = [*(link.endpoint for link in self._runner.links), *map(parse_endpoint, coming)]
         self._listener.listen({each.port for each in ends if _is_udpin(each)})
         self._ports.look(now)
+        (self._discovery.look if request.search else self._discovery.pause)()
+        names = tuple(link.channel.name for link in self._runner.links)
         return ConnectView(
-            heard=(*self._open_heard(now), *self._listener.heard(now)),
+            heard=(*self._open_heard(now), *self._listener.heard(now), *self._discovery.found(frozenset(names))),
             ports=self._ports.rows,
             listening=self._listener.listening,
             attempts=attempts,
-            endpoints=tuple(link.channel.name for link in self._runner.links),
+            endpoints=names,
+            searching=request.search,
+            search_problem=self._discovery.problem,
         )
 
     def _open_heard(self, now: float) -> tuple[HeardRow, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
-from groundstation.vehicles.fleet import is_vehicle
+from groundstation.vehicles.vehicle_heartbeat import is_vehicle
 from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.views.connect import HeardRow
 from link.core import Received

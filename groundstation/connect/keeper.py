@@ -16,7 +16,7 @@ from groundstation.station.station import Station
 from groundstation.vehicles.fleet import PLACES
 from groundstation.views.connect import LinkAttempt
 from link.core import LinkReport
-from link.endpoint import EndpointError, parse_endpoint, parse_endpoints
+from link.endpoint import EndpointError, Side, parse_endpoint, parse_endpoints
 from link.protocol.sent_frames import SentFrames
 from link.runner import Runner, build_link
 from link.runtime.worker import Worker
@@ -96,7 +96,7 @@ class LinkKeeper:
 
     def open_now(self, endpoint: str) -> None:
         """Open a link that needs no name lookup. Raises LinkError."""
-        self._open(open_transports([endpoint])[0], watch_only=False)
+        self._open(open_transports([endpoint], Side.GROUND_STATION)[0], watch_only=False)
 
     # ---- time ----
 
@@ -129,7 +129,7 @@ class LinkKeeper:
         def open_it() -> None:
             result: Transport | str
             try:
-                result = open_transports([attempt.endpoint])[0]
+                result = open_transports([attempt.endpoint], Side.GROUND_STATION)[0]
             except (LinkError, EndpointError) as error:
                 result = str(error)
             with contextlib.suppress(RuntimeError):  # the loop has ended
@@ -166,6 +166,7 @@ class LinkKeeper:
                 sent=self._sent,
                 watch_only=watch_only,
                 places=PLACES,
+                downloads=True,
             )
         )
         return index

@@ -1,4 +1,4 @@
-"""Listener: hears vehicles on the usual ports of this machine, without ever sending."""
+"""VehicleListener: hears vehicles on the usual ports of this machine, without ever sending."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ENDPOINTS = ("udpin:127.0.0.1:14550", "udpin:127.0.0.1:14551")
 """Where vehicles and simulators of this machine usually send to, and where MAVProxy forwards to."""
 
 
-class Listener:
+class VehicleListener:
     """Open sockets while somebody wants to know. `ids` are our system and component id."""
 
     def __init__(self, ids: tuple[int, int], endpoints: Sequence[str] = ENDPOINTS) -> None:

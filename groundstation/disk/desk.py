@@ -7,7 +7,15 @@ import contextlib
 from collections.abc import Callable
 from functools import partial
 
-from groundstation.disk.local_file import LocalFileError, check_new_file, keep_part, read_bytes, read_part, store
+from groundstation.disk.local_file import (
+    LocalFileError,
+    check_new_file,
+    checksum_of,
+    keep_part,
+    read_bytes,
+    read_part,
+    store,
+)
 from groundstation.station.station import Station
 from groundstation.vehicles.disk_jobs import DiskJob, DiskResult, DiskWork
 from link.runtime.worker import Worker
@@ -25,6 +33,8 @@ def run_job(job: DiskJob) -> DiskResult:
             data = read_part(job.path)
         elif job.work is DiskWork.READ:
             data = read_bytes(job.path)
+        elif job.work is DiskWork.CHECKSUM:
+            return DiskResult(job.number, job.work, checksum=checksum_of(job.path))
         elif job.work is DiskWork.KEEP:
             keep_part(job.path, job.data)
         else:

@@ -6,14 +6,17 @@ A download that was interrupted leaves FILE.part, with which the next one resume
 from __future__ import annotations
 
 import contextlib
-import os
-import tempfile
 from pathlib import Path
 
+from link.runtime.whole_file import replace_file
 from link.services.ftp.job import MAX_SIZE as MAX_DOWNLOAD
+from link.services.ftp.protocol import crc32
 
 MAX_SIZE = 16 * 1024 * 1024
 """Bytes of a file that is read: more is no parameter file and no plan, and takes hours to upload."""
+
+PIECE = 1024 * 1024
+"""Bytes that are read at once for a checksum."""
 
 
 class LocalFileError(Exception):
@@ -40,6 +43,18 @@ def read_bytes(path: str) -> bytes:
     return data
 
 
+def checksum_of(path: str) -> int:
+    """Return MAVLink's CRC-32 of a file of any size. Raises LocalFileError."""
+    checksum = 0
+    try:
+        with Path(path).open("rb") as file:
+            while piece := file.read(PIECE):
+                checksum = crc32(piece, checksum)
+    except OSError as error:
+        raise LocalFileError(f"{path}: {error.strerror}") from error
+    return checksum
+
+
 def check_new_file(path: str, *, overwrite: bool) -> None:
     """Raise LocalFileError if a file cannot be created there, before the work begins."""
     target = Path(path)
@@ -62,16 +77,9 @@ def write_bytes(path: str, data: bytes) -> None:
     if target.exists() and not target.is_file():  # a device or a pipe cannot be replaced
         _write_directly(target, path, data)
         return
-    temporary = ""
     try:
-        descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
-        Path(temporary).chmod(0o666 & ~_umask())
-        Path(temporary).replace(target)
+        replace_file(target, data)
     except OSError as error:
-        with contextlib.suppress(OSError):
-            Path(temporary).unlink()
         raise LocalFileError(f"{path}: {error.strerror}") from error
 
 
@@ -110,10 +118,3 @@ def _write_directly(target: Path, path: str, data: bytes) -> None:
         target.write_bytes(data)
     except OSError as error:
         raise LocalFileError(f"{path}: {error.strerror}") from error
-
-
-def _umask() -> int:
-    """Return the process's umask, which can only be read by setting it."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -2,53 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 from groundstation.doctor import link_rows, stop_rows, vehicle_rows
 from groundstation.doctor.facts import DoctorFacts
-from groundstation.doctor.finding import Finding
-from groundstation.views.doctor import DoctorRow, Health
+from groundstation.doctor.finding import ChainFinding
+from groundstation.views.doctor import DoctorRow
+from link.runtime.diagnosis import Check, Health, Row, run_checks
 
-
-@dataclass(frozen=True, slots=True)
-class ChainRow:
-    """One link of the chain."""
-
-    id: str
-    title: str
-    find: Callable[[DoctorFacts], Finding]
-
-
-CHAIN: tuple[ChainRow, ...] = (
-    ChainRow("keys", "keys", link_rows.keys),
-    ChainRow("station", "station", link_rows.station),
-    ChainRow("link", "link", link_rows.link),
-    ChainRow("vehicle", "vehicle", link_rows.vehicle),
-    ChainRow("dialect", "dialect", link_rows.dialect),
-    ChainRow("our_id", "our id", link_rows.our_id),
-    ChainRow("control", "control", vehicle_rows.control),
-    ChainRow("pre_arm", "pre-arm", vehicle_rows.pre_arm),
-    ChainRow("mode", "mode", vehicle_rows.mode),
-    ChainRow("armed", "armed", vehicle_rows.armed),
-    ChainRow("stop_bound", "stop bound", stop_rows.stop_bound),
-    ChainRow("gcs_failsafe", "GCS failsafe", stop_rows.gcs_failsafe),
-    ChainRow("failsafes", "failsafes", vehicle_rows.failsafes),
-    ChainRow("fence", "fence", vehicle_rows.fence),
-    ChainRow("battery", "battery", vehicle_rows.battery),
-    ChainRow("motors", "motors", vehicle_rows.motors),
+CHAIN: tuple[Check[DoctorFacts, ChainFinding], ...] = (
+    Check("keys", "keys", link_rows.keys),
+    Check("station", "station", link_rows.station),
+    Check("link", "link", link_rows.link),
+    Check("vehicle", "vehicle", link_rows.vehicle),
+    Check("dialect", "dialect", link_rows.dialect),
+    Check("our_id", "our id", link_rows.our_id),
+    Check("control", "control", vehicle_rows.control),
+    Check("pre_arm", "pre-arm", vehicle_rows.pre_arm),
+    Check("mode", "mode", vehicle_rows.mode),
+    Check("armed", "armed", vehicle_rows.armed),
+    Check("stop_bound", "stop bound", stop_rows.stop_bound),
+    Check("gcs_failsafe", "GCS failsafe", stop_rows.gcs_failsafe),
+    Check("failsafes", "failsafes", vehicle_rows.failsafes),
+    Check("fence", "fence", vehicle_rows.fence),
+    Check("battery", "battery", vehicle_rows.battery),
+    Check("motors", "motors", vehicle_rows.motors),
 )
 
 
 def examine(facts: DoctorFacts) -> tuple[DoctorRow, ...]:
     """Return all rows."""
-    return tuple(_row(each, each.find(facts)) for each in CHAIN)
+    return tuple(map(_to_view, run_checks(CHAIN, facts)))
 
 
-def _row(link: ChainRow, found: Finding) -> DoctorRow:
+def _to_view(row: Row[ChainFinding]) -> DoctorRow:
+    found = row.found
     return DoctorRow(
-        id=link.id,
-        title=link.title,
+        id=row.id,
+        title=row.title,
         health=found.health,
         evidence=found.evidence,
         advice=found.advice,

@@ -63,7 +63,9 @@ class DoctorFacts:
     clash: bool = False
     """Two programs send with the ids of the driver."""
     signs: bool = False
-    """The vehicle signs its frames."""
+    """The vehicle signs its frames, with a key that we do not have."""
+    verified: bool = False
+    """It signs them with a key of ours."""
     sensors: SensorBits | None = None
     texts: tuple[PreArmText, ...] = ()
     settings: tuple[SettingFact, ...] = ()
@@ -71,7 +73,5 @@ class DoctorFacts:
     """Settings that the vehicle did not report."""
     params: Mapping[str, float] = field(default_factory=dict)
     """Further parameters that are known."""
-    manual_timeout: float | None = None
-    """s after which a vehicle of our dialect is neutral without demands."""
     motors_tested: frozenset[int] = frozenset()
     """Numbers of the motors that were turned in this session."""

@@ -1,14 +1,15 @@
-"""Finding: what one row of the chain found."""
+"""ChainFinding: what one row of the chain found, and the key or the parameter that mends it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from groundstation.views.doctor import Health, ParamFix
+from groundstation.views.doctor import ParamFix
+from link.runtime.diagnosis import Health
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class ChainFinding:
     """How a link of the chain stands, why, and what to do."""
 
     health: Health
@@ -19,21 +20,21 @@ class Finding:
     fix: ParamFix | None = None
 
 
-def ok(evidence: str) -> Finding:
+def ok(evidence: str) -> ChainFinding:
     """Return that all is well."""
-    return Finding(Health.OK, evidence)
+    return ChainFinding(Health.OK, evidence)
 
 
-def warn(evidence: str, advice: str = "", action: str = "", fix: ParamFix | None = None) -> Finding:
+def warn(evidence: str, advice: str = "", action: str = "", fix: ParamFix | None = None) -> ChainFinding:
     """Return something to look at."""
-    return Finding(Health.WARNING, evidence, advice, action, fix)
+    return ChainFinding(Health.WARNING, evidence, advice, action, fix)
 
 
-def fault(evidence: str, advice: str = "", action: str = "", fix: ParamFix | None = None) -> Finding:
+def fault(evidence: str, advice: str = "", action: str = "", fix: ParamFix | None = None) -> ChainFinding:
     """Return what keeps keys from driving, or the vehicle from stopping."""
-    return Finding(Health.FAULT, evidence, advice, action, fix)
+    return ChainFinding(Health.FAULT, evidence, advice, action, fix)
 
 
-def unknown(evidence: str, advice: str = "", action: str = "") -> Finding:
+def unknown(evidence: str, advice: str = "", action: str = "") -> ChainFinding:
     """Return that it is not known, does not apply, or comes later."""
-    return Finding(Health.UNKNOWN, evidence, advice, action)
+    return ChainFinding(Health.UNKNOWN, evidence, advice, action)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from groundstation.doctor.facts import DoctorFacts
-from groundstation.doctor.finding import Finding, fault, ok, unknown, warn
+from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
 from groundstation.snapshot import LinkView
 
 SLOW_TERMINAL = 0.25
@@ -25,7 +25,7 @@ CRC_SHARE = 0.01
 """Bad share of the frames from which on the line is worth a look."""
 
 
-def keys(facts: DoctorFacts) -> Finding:
+def keys(facts: DoctorFacts) -> ChainFinding:
     """Judge what the terminal reports."""
     terminal, operator = facts.terminal, facts.operator
     if terminal is None:
@@ -48,17 +48,17 @@ def _ping(seconds: float | None) -> str:
     return f"{seconds * 1000:.0f} ms" if seconds else "below 5 ms"
 
 
-def station(facts: DoctorFacts) -> Finding:
+def station(facts: DoctorFacts) -> ChainFinding:
     """Judge this station."""
     if facts.terminal is None:
-        return unknown("does not apply: a ground station does not run here")
+        return unknown("does not apply: there is no screen")
     if facts.operator.gate_reason in ("screen not responding", "screen was frozen"):
         return warn(facts.operator.gate_reason, "wait 1 s; a busy computer is too slow to drive with")
     sends = f", sends {facts.operator.rate:.0f} demands/s" if facts.operator.sending else ""
     return ok(f"runs as system {facts.system}{sends}")
 
 
-def link(facts: DoctorFacts) -> Finding:
+def link(facts: DoctorFacts) -> ChainFinding:
     """Judge the link of the vehicle, both ways."""
     where = ", ".join(facts.endpoints) or "no link"
     heard = facts.vehicle is not None and facts.vehicle.alive
@@ -82,7 +82,7 @@ def _link_of(facts: DoctorFacts) -> LinkView:
     return min(carrying, key=lambda each: 1.0 if each.loss is None else each.loss)
 
 
-def _judge(each: LinkView, facts: DoctorFacts) -> Finding:
+def _judge(each: LinkView, facts: DoctorFacts) -> ChainFinding:
     loss = each.loss or 0.0
     trip = "not answered" if each.round_trip is None else f"{each.round_trip * 1000:.0f} ms"
     text = f"{each.name}: round trip {trip}, {loss:.1%} lost, {each.crc_errors} bad"
@@ -98,7 +98,7 @@ def _judge(each: LinkView, facts: DoctorFacts) -> Finding:
     return ok(text)
 
 
-def vehicle(facts: DoctorFacts) -> Finding:
+def vehicle(facts: DoctorFacts) -> ChainFinding:
     """Judge whether the vehicle is heard."""
     view = facts.vehicle
     if view is None:
@@ -110,7 +110,7 @@ def vehicle(facts: DoctorFacts) -> Finding:
     return ok(f"{view.name}{firmware}, heard {view.silence:.0f} s ago")
 
 
-def dialect(facts: DoctorFacts) -> Finding:
+def dialect(facts: DoctorFacts) -> ChainFinding:
     """Judge whether both ends mean the same by a message."""
     if facts.vehicle is None:
         return unknown("after the vehicle is heard")
@@ -124,7 +124,7 @@ def dialect(facts: DoctorFacts) -> Finding:
     return ok(("rover.xml, with proofs of each demand" if facts.rover_dialect else "common messages") + extra)
 
 
-def our_id(facts: DoctorFacts) -> Finding:
+def our_id(facts: DoctorFacts) -> ChainFinding:
     """Judge whether we are who the vehicle obeys, and alone with our id."""
     if facts.id_conflict is not None:
         return fault(facts.id_conflict, "end the other one, or use --system")
@@ -138,8 +138,8 @@ def our_id(facts: DoctorFacts) -> Finding:
             f"the vehicle obeys ground station {wanted} only, this is {facts.system}", f"use --system {wanted}"
         )
     if facts.signs:
-        return warn("the vehicle signs its frames, and this station cannot", "switch signing off at the vehicle")
-    return ok(f"{facts.system}, nobody else has it")
+        return warn("the vehicle signs with a key that is not here", "groundstation sign install NAME --words")
+    return ok(f"{facts.system}, nobody else has it{', signed both ways' if facts.verified else ''}")
 
 
 def _obeyed(facts: DoctorFacts) -> int | None:

@@ -6,9 +6,9 @@ import ipaddress
 import re
 from collections.abc import Iterable, Iterator
 
-from groundstation.views.doctor import DoctorView, Health
+from groundstation.views.doctor import DoctorView
+from link.runtime.diagnosis import MARKS, TITLE_WIDTH, Health
 
-MARKS = {Health.OK: "ok", Health.WARNING: "!", Health.FAULT: "X", Health.UNKNOWN: "-"}
 HIDDEN = "(hidden)"
 
 _ENDPOINT = re.compile(r"\b(udpin|udpout|udp|tcpin|tcpout|tcp|tcpserver|tcpclient):(\[[^\]]*\]|[^\s:,]+)")
@@ -64,6 +64,6 @@ def _sections(view: DoctorView, lines: Iterable[tuple[str, str]], log: Iterable[
 def format_chain(view: DoctorView) -> Iterator[str]:
     """Return a line for each link of the chain, and what to do below those that need it."""
     for row in view.rows:
-        yield f"{MARKS[row.health]:<3}{row.title:<13}{row.evidence}"
+        yield f"{MARKS[row.health]:<3}{row.title:<{TITLE_WIDTH}}{row.evidence}"
         if row.advice and row.health in (Health.WARNING, Health.FAULT):
-            yield f"{'':<16}-> {row.advice}"
+            yield f"{'':<{TITLE_WIDTH + 3}}-> {row.advice}"

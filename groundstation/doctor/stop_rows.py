@@ -1,10 +1,11 @@
-"""Rows of the chain about what stops the vehicle without us: stop bound, settings that switch a failsafe off."""
+"""Rows of the chain about what stops the vehicle without us: the bounds that Drive shows, and settings to change."""
 
 from __future__ import annotations
 
 from groundstation.doctor.facts import DoctorFacts, SettingFact
-from groundstation.doctor.finding import Finding, fault, ok, unknown, warn
+from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
 from groundstation.doctor.vehicle_rows import AFTER_VEHICLE
+from groundstation.snapshot.drive import StopBound
 from groundstation.views.doctor import ParamFix
 
 REMEDIES = {
@@ -23,40 +24,78 @@ STOP_BOUNDS = ("RC_OVERRIDE_TIME", "FS_THR_ENABLE", "COM_RC_LOSS_T", "NAV_RCL_AC
 """Parameters that decide when the motors stop without demands; the others decide on the ground station failsafe."""
 
 
-def stop_bound(facts: DoctorFacts) -> Finding:
+ENABLE, AUTO_GOES_ON = "FS_GCS_ENABLE", 2
+"""The parameter of our rover and of ArduPilot; its value with which AUTO continues."""
+
+COMMAND, STATION = ("no command", "... no RC"), "no station"
+"""Names of the bounds that the Drive screen shows (vehicles/stop_bounds.py)."""
+
+
+def stop_bound(facts: DoctorFacts) -> ChainFinding:
     """Judge what the motors do when demands end."""
     if facts.vehicle is None:
         return AFTER_VEHICLE
     wrong = [each for each in facts.settings if each.warning and each.name in STOP_BOUNDS]
     if wrong:
         return _wrong(wrong[0])
-    if facts.rover_dialect and facts.manual_timeout is not None:
-        return ok(f"neutral {facts.manual_timeout:g} s after the last demand (MAN_TIMEOUT)")
+    stops = tuple(each for each in facts.vehicle.stops if each.name in COMMAND)
+    never = next((each for each in stops if each.never), None)
+    if never is not None:
+        return _never(never, stops, facts)
     if facts.unread:
         return warn(f"could not read {', '.join(facts.unread)}", "drive slowly: it is not known when it stops")
-    return ok(facts.vehicle.without_link) if facts.vehicle.without_link else unknown("not known yet")
+    known = [_words(each) for each in stops if each.bound is not None]
+    return ok(f"{', '.join(known)} after the last demand") if known else unknown("not known yet")
 
 
-def gcs_failsafe(facts: DoctorFacts) -> Finding:
+def gcs_failsafe(facts: DoctorFacts) -> ChainFinding:
     """Judge what the vehicle does when the ground station is lost."""
     if facts.vehicle is None:
         return AFTER_VEHICLE
     wrong = [each for each in facts.settings if each.warning and each.name not in STOP_BOUNDS]
     if wrong:
         return _wrong(wrong[0])
-    enable, timeout = facts.params.get("FS_GCS_ENABLE"), facts.params.get("FS_GCS_TIMEOUT")
+    stop = next((each for each in facts.vehicle.stops if each.name == STATION), None)
+    enable = facts.params.get(ENABLE)
+    if stop is not None and stop.never:
+        return _no_failsafe(stop, enable)
+    if stop is None or stop.bound is None:
+        return unknown("not known yet")
+    except_auto = " except in AUTO" if enable == AUTO_GOES_ON else ""
+    return ok(f"{stop.does} {stop.bound:g} s after the ground station is lost{except_auto}")
+
+
+def _words(stop: StopBound) -> str:
+    """Return a bound in words. ArduPilot's bounds without RC follow the one before."""
+    without_rc = " later without RC" if stop.name != COMMAND[0] else ""
+    return f"{stop.does} {stop.bound:g} s{without_rc} ({stop.source})"
+
+
+def _never(never: StopBound, stops: tuple[StopBound, ...], facts: DoctorFacts) -> ChainFinding:
+    """Return a bound that is switched off. Where another one still stops the motors, nothing follows it."""
+    value = facts.params.get(never.source)
+    before = [each for each in stops[: stops.index(never)] if each.name == never.name and each.bound is not None]
+    if before:
+        return warn(f"{_words(before[-1])}, then nothing", "select an action on the Params screen", "app.params")
+    remedy = REMEDIES.get(never.source)
+    fix = None if value is None or remedy is None else ParamFix(never.source, value, remedy)
+    return fault(f"{never.source}: never stops when the link is lost", "change it on the Params screen",
+                 "app.params", fix)  # fmt: skip
+
+
+def _no_failsafe(stop: StopBound, enable: float | None) -> ChainFinding:
+    """Return that nothing follows when the ground station is lost."""
+    if enable == AUTO_GOES_ON:
+        return warn(f"{ENABLE} 2: AUTO goes on when the ground station is lost", "set it to 1", "app.params",
+                    ParamFix(ENABLE, enable, 1.0))  # fmt: skip
     if enable == 0:
-        fix = ParamFix("FS_GCS_ENABLE", 0.0, 1.0)
-        return warn("FS_GCS_ENABLE 0: no failsafe when the ground station is lost", "set it to 1", "app.params", fix)
-    if enable is not None and timeout is not None:
-        except_auto = " except in AUTO" if enable == 2 else ""
-        return ok(f"HOLD {timeout:g} s after the ground station is lost{except_auto}")
-    if facts.settings:
-        return ok("on")
-    return unknown("not known yet")
+        text = f"{ENABLE} 0: no failsafe when the ground station is lost"
+        return warn(text, "set it to 1", "app.params", ParamFix(ENABLE, enable, 1.0))
+    text = f"{stop.source}: its action is switched off, no failsafe when the ground station is lost"
+    return warn(text, "select an action on the Params screen", "app.params")
 
 
-def _wrong(setting: SettingFact) -> Finding:
+def _wrong(setting: SettingFact) -> ChainFinding:
     """Return a setting to change. One by which the vehicle never stops is a fault."""
     evidence, _, _ = setting.warning.partition(";")
     value = REMEDIES.get(setting.name)

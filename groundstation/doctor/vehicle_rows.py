@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects.enums import Sensor
 from groundstation.doctor.facts import DoctorFacts
-from groundstation.doctor.finding import Finding, fault, ok, unknown, warn
+from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
 from groundstation.doctor.prearm_advice import find_advice
 from groundstation.snapshot import VehicleView
 
@@ -14,7 +14,7 @@ LOW_CHARGE = 0.2
 """Share of the charge from which on to go home."""
 
 
-def control(facts: DoctorFacts) -> Finding:
+def control(facts: DoctorFacts) -> ChainFinding:
     """Judge who is in control."""
     view = facts.vehicle
     if view is None:
@@ -35,7 +35,7 @@ def control(facts: DoctorFacts) -> Finding:
     return ok("nobody: arming takes it" if view.driver == 0 else "not managed by this vehicle: arming takes it")
 
 
-def pre_arm(facts: DoctorFacts) -> Finding:
+def pre_arm(facts: DoctorFacts) -> ChainFinding:
     """Judge the pre-arm checks."""
     view = facts.vehicle
     if view is None:
@@ -54,7 +54,7 @@ def pre_arm(facts: DoctorFacts) -> Finding:
     return fault(f"{texts[0].text}{more}", advice or "put it right, then check again", "setup.checks")
 
 
-def mode(facts: DoctorFacts) -> Finding:
+def mode(facts: DoctorFacts) -> ChainFinding:
     """Judge whether the mode lets sticks drive."""
     view = facts.vehicle
     if view is None:
@@ -68,7 +68,7 @@ def mode(facts: DoctorFacts) -> Finding:
     return fault(f"{view.mode}: the vehicle drives itself, keys do not", "set MANUAL", "vehicle.manual")
 
 
-def armed(facts: DoctorFacts) -> Finding:
+def armed(facts: DoctorFacts) -> ChainFinding:
     """Judge the emergency stop and the arming."""
     view = facts.vehicle
     if view is None:
@@ -82,7 +82,7 @@ def armed(facts: DoctorFacts) -> Finding:
     return unknown("no", "arm it on Drive", "app.drive")
 
 
-def failsafes(facts: DoctorFacts) -> Finding:
+def failsafes(facts: DoctorFacts) -> ChainFinding:
     """Judge which failsafes act now."""
     view = facts.vehicle
     if view is None:
@@ -95,7 +95,7 @@ def failsafes(facts: DoctorFacts) -> Finding:
     return ok("none acts")
 
 
-def fence(facts: DoctorFacts) -> Finding:
+def fence(facts: DoctorFacts) -> ChainFinding:
     """Judge the fence."""
     view, bits = facts.vehicle, facts.sensors
     if view is None:
@@ -109,7 +109,7 @@ def fence(facts: DoctorFacts) -> Finding:
     return ok("on, and inside") if bits.health & Sensor.GEOFENCE else fault("breached", "drive back", "app.log")
 
 
-def battery(facts: DoctorFacts) -> Finding:
+def battery(facts: DoctorFacts) -> ChainFinding:
     """Judge the battery."""
     view = facts.vehicle
     if view is None:
@@ -126,7 +126,7 @@ def battery(facts: DoctorFacts) -> Finding:
     return ok(f"{text}, above BATT_LOW_VOLT {low:g}" if low else text)
 
 
-def motors(facts: DoctorFacts) -> Finding:
+def motors(facts: DoctorFacts) -> ChainFinding:
     """Judge the outputs."""
     view, bits = facts.vehicle, facts.sensors
     if view is None:

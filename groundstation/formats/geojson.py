@@ -9,12 +9,12 @@ from typing import Any
 
 from dialects.enums import Command, FenceItem, command_name
 from groundstation.formats.plan import Plan
+from groundstation.geo import LocalFrame, Place
 from link.services.mission.items import GLOBAL_FRAMES, UNSET_COORDINATE, Items, MissionItem
 from link.services.param.float32 import shortest_float32
 
 ARC = 64
 """Corners of a circle, which GeoJSON lacks."""
-METRES_PER_DEGREE = 111_319.5
 _POLYGONS = (FenceItem.POLYGON_INCLUSION, FenceItem.POLYGON_EXCLUSION)
 _CIRCLES = (FenceItem.CIRCLE_INCLUSION, FenceItem.CIRCLE_EXCLUSION)
 _INCLUSIONS = (FenceItem.POLYGON_INCLUSION, FenceItem.CIRCLE_INCLUSION)
@@ -59,10 +59,10 @@ def _fence(items: Items) -> Iterator[dict[str, Any]]:
 
 
 def _circle(item: MissionItem) -> list[list[float]]:
-    north = item.params[0] / METRES_PER_DEGREE
-    east = north / max(1e-6, math.cos(math.radians(item.latitude)))
+    radius, frame = item.params[0], LocalFrame(Place(item.latitude, item.longitude))
     angles = [math.tau * step / ARC for step in range(ARC)]
-    return [[item.longitude + east * math.cos(each), item.latitude + north * math.sin(each)] for each in angles]
+    corners = (frame.to_place((radius * math.sin(each), radius * math.cos(each))) for each in angles)
+    return [[corner.longitude, corner.latitude] for corner in corners]
 
 
 def _polygon(corners: list[list[float]], inclusion: bool) -> dict[str, Any]:

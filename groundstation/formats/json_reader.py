@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import Any, NoReturn, TypeVar
 
@@ -11,6 +12,28 @@ from link.services.param.float32 import is_float32
 
 T = TypeVar("T")
 _NAMES: dict[type, str] = {str: "a text", bool: "true or false", dict: "an object", list: "a list"}
+
+
+def load_object(text: str, source: str, kind: str, *, constants: bool = False) -> dict[str, Any]:
+    """Return the object of a file of this kind. Raises FileFormatError.
+
+    `constants`: NaN and Infinity are read, for a reader that names where they are. Else they are refused.
+    """
+
+    def refuse(constant: str) -> NoReturn:
+        raise FileFormatError(f"{source}: {constant} is not a number of JSON")
+
+    try:
+        value = json.loads(text.removeprefix("\ufeff"), parse_constant=float if constants else refuse)
+    except FileFormatError:
+        raise
+    except json.JSONDecodeError as error:
+        raise FileFormatError(f"{source}:{error.lineno}: this is no JSON: {error.msg}") from None
+    except (RecursionError, ValueError):
+        raise FileFormatError(f"{source}: this is no {kind}: nested too deeply, or a number too long") from None
+    if not isinstance(value, dict):
+        raise FileFormatError(f"{source}: this is no {kind}: it is no JSON object")
+    return value
 
 
 @dataclass(frozen=True, slots=True)

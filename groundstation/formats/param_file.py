@@ -11,23 +11,15 @@ import math
 import struct
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from enum import Enum
 
 from groundstation.formats.errors import FileFormatError, shown
+from groundstation.formats.param_form import ParamForm
 from link.services.param.client import Param
 from link.services.param.float32 import is_float32, same_float32, value_text
 from link.services.param.values import NAME_SIZE, REAL32, name_to_wire
 
 MAX_LINES = 20_000
 """Lines of a file; ten times the parameters of the largest autopilot. More is not a parameter file."""
-
-
-class ParamForm(Enum):
-    """Whose form a file has."""
-
-    MAVPROXY = "mavproxy"
-    QGROUNDCONTROL = "qgc"
-    MISSION_PLANNER = "mp"
 
 
 @dataclass(frozen=True, slots=True)

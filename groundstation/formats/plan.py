@@ -18,7 +18,7 @@ GLOBAL = 0
 
 
 @dataclass(frozen=True, slots=True)
-class Home:
+class PlannedHome:
     """A planned home position."""
 
     latitude: float
@@ -35,7 +35,7 @@ class Plan:
     mission: Items = ()
     fence: Items = ()
     rally: Items = ()
-    home: Home | None = None
+    home: PlannedHome | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     """Fields of a .plan's mission that only QGroundControl uses, such as cruiseSpeed."""
 
@@ -67,16 +67,16 @@ def from_vehicle(items: Items, kind: MissionType, autopilot: int) -> Plan:
     return Plan(mission=move_jumps(items[1:], -1), home=as_home(items[0]))
 
 
-def home_item(home: Home | None) -> MissionItem:
+def home_item(home: PlannedHome | None) -> MissionItem:
     """Return home as an item; ArduPilot replaces a home that is not known (0, 0) by its own."""
-    place = home or Home(0.0, 0.0, 0.0)
+    place = home or PlannedHome(0.0, 0.0, 0.0)
     x, y = to_int32(place.latitude, DEGREES_SCALE), to_int32(place.longitude, DEGREES_SCALE)
     return MissionItem(Command.NAV_WAYPOINT, GLOBAL, (0.0, 0.0, 0.0, 0.0), x, y, place.altitude)
 
 
-def as_home(item: MissionItem) -> Home | None:
+def as_home(item: MissionItem) -> PlannedHome | None:
     """Return an item's position as home; None for 0, 0."""
-    return Home(item.latitude, item.longitude, shortest_float32(item.z)) if (item.x, item.y) != (0, 0) else None
+    return PlannedHome(item.latitude, item.longitude, shortest_float32(item.z)) if (item.x, item.y) != (0, 0) else None
 
 
 def looks_like_home(item: MissionItem) -> bool:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, NoReturn
+from typing import Any
 
 from dialects.enums import Command, FenceItem
-from groundstation.formats.errors import FileFormatError, shown
-from groundstation.formats.json_reader import JsonReader
-from groundstation.formats.plan import Home, Plan
+from groundstation.formats.errors import shown
+from groundstation.formats.json_reader import JsonReader, load_object
+from groundstation.formats.plan import Plan, PlannedHome
 from link.services.mission.items import (
     DEGREES_SCALE,
     FRAME_MISSION,
@@ -38,7 +38,7 @@ _SETTINGS = {"cruiseSpeed": 15, "firmwareType": 0, "globalPlanAltitudeMode": 1, 
 
 def parse_plan(text: str, source: str) -> Plan:
     """Parse a file. Raises FileFormatError, with `source` and the place in it."""
-    root = JsonReader(_load(text, source), source)
+    root = JsonReader(load_object(text, source, "plan"), source)
     if root.get("fileType", str) != "Plan":
         root.fail(f'"fileType" is {shown(str(root.value["fileType"]))}, not "Plan"')
     mission = root.at("mission")
@@ -49,26 +49,9 @@ def parse_plan(text: str, source: str) -> Plan:
         mission=_jumps_by_index([pair for item in items for pair in _mission_items(item)]),
         fence=_fence(root.at("geoFence")) if "geoFence" in root.value else (),
         rally=_rally(root.at("rallyPoints")) if "rallyPoints" in root.value else (),
-        home=Home(*home) if home else None,
+        home=PlannedHome(*home) if home else None,
         settings=settings,
     )
-
-
-def _load(text: str, source: str) -> dict[str, Any]:
-    def refuse(constant: str) -> NoReturn:
-        raise FileFormatError(f"{source}: {constant} is not a number of JSON")
-
-    try:
-        value = json.loads(text.removeprefix("\ufeff"), parse_constant=refuse)
-    except FileFormatError:
-        raise
-    except json.JSONDecodeError as error:
-        raise FileFormatError(f"{source}:{error.lineno}: this is no JSON: {error.msg}") from None
-    except (RecursionError, ValueError):
-        raise FileFormatError(f"{source}: this is no plan: nested too deeply, or a number too long") from None
-    if not isinstance(value, dict):
-        raise FileFormatError(f"{source}: this is no plan: it is no JSON object")
-    return value
 
 
 def _mission_items(item: JsonReader) -> list[tuple[int | None, MissionItem]]:
@@ -177,11 +160,11 @@ def format_plan(plan: Plan) -> str:
     return json.dumps(document, indent=4, sort_keys=True) + "\n"
 
 
-def _first_place(plan: Plan) -> Home:
+def _first_place(plan: Plan) -> PlannedHome:
     """Return where the plan begins: QGroundControl does not read a plan without home."""
     places = (each for each in (*plan.mission, *plan.rally, *plan.fence) if each.frame in GLOBAL_FRAMES)
     first = next((each for each in places if (each.x, each.y) != (0, 0) and each.x != UNSET_COORDINATE), None)
-    return Home(first.latitude, first.longitude, 0.0) if first else Home(0.0, 0.0, 0.0)
+    return PlannedHome(first.latitude, first.longitude, 0.0) if first else PlannedHome(0.0, 0.0, 0.0)
 
 
 def _item_json(number: int, item: MissionItem) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The key maps, and what one read of key events means. What the intents then do is station/intent_handler.py's matter.
+"""The key maps, and what one read of key events means. station/intent_handler.py carries the intents out.
 
 The actions and their usual keys are in groundstation/actions.py. Key names are Textual's ("i", "comma", "ctrl+q").
 """

@@ -1,4 +1,4 @@
-"""Keys as two sticks: drive-key intents and time in, axes out. Timers return them to neutral. Knows no vehicle."""
+"""Keys and the gamepad as two sticks: intents and time in, axes out. Timers return them to neutral."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from dialects.axes import NEUTRAL, Axes
 from groundstation.input.key_repeat import PRESS_WINDOW, REPEAT_GAP, KeyTrace, RepeatWindows
+from groundstation.input.pad_stick import PadStick
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
-from groundstation.intents.driving import DriveKeyDown, ScaleLimits
+from groundstation.intents.driving import PAD, DriveKeyDown, DrivePad, ScaleLimits
 
 STEP = 0.1
 """What one press adds in the style "step", as a fraction of full deflection."""
@@ -26,7 +27,7 @@ class _Held:
 
 
 class Sticks:
-    """The keys as two sticks. Times are of one monotonic clock, s."""
+    """The keys, or the gamepad, as two sticks: the one that begins last drives. Times are of one monotonic clock, s."""
 
     def __init__(self, style: Style = Style.HOLD, limit: float = 0.6) -> None:
         self.style = style
@@ -45,6 +46,7 @@ class Sticks:
         """When the newest drive key was seen, also one that did not count."""
         self._latched = NEUTRAL
         """State of the styles latch (a direction) and step (a level)."""
+        self.pad = PadStick()
 
     def press(self, push: DriveKeyDown, now: float) -> bool:
         """Handle a drive key that went down or repeats. Returns False if it must be released first."""
@@ -54,6 +56,7 @@ class Sticks:
             return True
         if self._is_held_over(now) or self._is_blocked(push, now):
             return False
+        self.pad.release()
         if self.style is Style.HOLD:
             self._hold(push, now)
         elif self.style is Style.STEP:
@@ -61,6 +64,14 @@ class Sticks:
         elif not push.repeat:
             self._latched = Axes(float(push.throttle), float(push.steering))
         return True
+
+    def push_pad(self, push: DrivePad, now: float) -> bool:
+        """Handle a demand of the gamepad; keys that are held no longer count. Returns False as PadStick.push."""
+        began = not self.pad.held(now)
+        counts = self.pad.push(push, now)
+        if counts and began:
+            self._block_keys(now)
+        return counts
 
     def release(self, key: str) -> None:
         """Handle a drive key that went up."""
@@ -72,17 +83,33 @@ class Sticks:
         """Stop using timers: the terminal has shown that it reports releases."""
         self.reports_releases = True
 
+    def change_keyboard(self, now: float, *, reports_releases: bool) -> None:
+        """Go neutral and forget the keys: others follow, of another terminal. One that is held there does not count."""
+        self.stop()
+        self.reports_releases = reports_releases
+        self._windows = RepeatWindows()
+        self._traces.clear()
+        self._blocked_until.clear()
+        self.require_quiet()
+        self._seen_at = now
+
     def stop(self) -> None:
         """Go neutral; the next press drives again."""
         self._held.clear()
         self._latched = NEUTRAL
+        self.pad.release()
 
     def block(self, now: float) -> None:
-        """Go neutral; the keys that are held now must be released before they drive again."""
+        """Go neutral; what is held now must be released before it drives again."""
+        self._block_keys(now)
+        self.pad.release()
+
+    def _block_keys(self, now: float) -> None:
         for key, held in self._held.items():
             window = self._windows.repeat_window if held.trace.repeating else self._windows.press_window
             self._blocked_until[key] = now + window
-        self.stop()
+        self._held.clear()
+        self._latched = NEUTRAL
 
     def require_quiet(self) -> None:
         """Ignore drive keys until none was seen for a while: without reported releases a repeat looks like a press.
@@ -120,6 +147,9 @@ class Sticks:
 
     def axes(self, now: float) -> Axes:
         """Return the demand now, within the limits."""
+        if self.pad.held(now):
+            pad = self.pad.axes
+            return Axes(pad.throttle * self.throttle_limit, pad.steering * self.steering_limit)
         if self.style is Style.HOLD:
             throttle, steering = self._directions(now)
         elif self.style is Style.LATCH:
@@ -132,9 +162,9 @@ class Sticks:
         return Axes(throttle * self.throttle_limit, steering * self.steering_limit)
 
     def held_keys(self, now: float) -> tuple[str, ...]:
-        """Return the keys that count as held."""
+        """Return the keys that count as held; the gamepad is one of them while it drives."""
         self._expire(now)
-        return tuple(self._held)
+        return (*self._held, *([PAD] if self.pad.held(now) else []))
 
     @property
     def stop_bound(self) -> float:

@@ -15,3 +15,6 @@ class Intent(msgspec.Struct, frozen=True, tag=True):
 
     valid_when_late: ClassVar[bool] = False
     """Handled even when older than ipc.MAX_INTENT_AGE: the intent only ever stops, or reports a state."""
+
+    open_to_all: ClassVar[bool] = False
+    """Also carried out for a screen that does not drive: it stops, or reads what the vehicle has."""

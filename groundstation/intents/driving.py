@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from groundstation.intents.base import Intent
 
+PAD = "gamepad"
+"""What the held keys name while the gamepad drives."""
+
 HOLD_TIME = 1.0
 """s for which the key of an action with `confirm` must be held (input/hold_to_confirm.py); the station checks it."""
 
@@ -28,6 +31,24 @@ class DriveKeyUp(Intent, frozen=True):
     key: str
 
 
+class DrivePad(Intent, frozen=True):
+    """The dead-man button of the gamepad is held, and its sticks are there; sent again and again while it is held."""
+
+    throttle: float
+    """-1..1, as steering."""
+    steering: float
+    read_at: float
+    """When the gamepad was read, CLOCK_MONOTONIC, s: what is older than PAD_WINDOW is neutral (input/pad_stick.py)."""
+    repeat: bool = False
+    """The button was held in the reading before, too."""
+
+
+class ReleasePad(Intent, frozen=True):
+    """The dead-man button of the gamepad was released, or there is no gamepad any more."""
+
+    valid_when_late = True
+
+
 class Stop(Intent, frozen=True):
     """Neutral at once; also ends latched driving. A stop key puts a vehicle in an autonomous mode into HOLD as well."""
 
@@ -38,7 +59,7 @@ class Stop(Intent, frozen=True):
 class EmergencyStop(Intent, frozen=True):
     """Motors off at once and locked: a command, repeated until acknowledged."""
 
-    valid_when_late = True
+    valid_when_late = open_to_all = True
 
 
 class ClearEmergencyStop(Intent, frozen=True):

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from groundstation.intents.services import ServiceIntent
 
+SAME, DIFFERS = "same", "differs"
+"""With which the detail of a CompareFile that was accepted begins."""
+
 
 class ListFolder(ServiceIntent, frozen=True, tag=True, kw_only=True):
     """List a folder of the vehicle by MAVLink FTP."""
+
+    open_to_all = True
 
     path: str
 
@@ -38,8 +43,19 @@ class RemoveFile(ServiceIntent, frozen=True, tag=True, kw_only=True):
     path: str
 
 
+class CompareFile(ServiceIntent, frozen=True, tag=True, kw_only=True):
+    """Compare the checksum of a file of the vehicle with that of a file of this machine."""
+
+    path: str
+    """On the vehicle."""
+    file: str
+    """On this machine."""
+
+
 class ListLogs(ServiceIntent, frozen=True, tag=True, kw_only=True):
     """List the logs of the vehicle."""
+
+    open_to_all = True
 
 
 class GetLog(ServiceIntent, frozen=True, tag=True, kw_only=True):

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from groundstation.geo import Place
 from groundstation.intents.services import ServiceIntent
-from groundstation.views.plan import PlanItem, PlanPlace
+from groundstation.views.plan import PlanItem
 
 
 class DownloadPlan(ServiceIntent, frozen=True, tag=True):
     """Download a plan."""
+
+    open_to_all = True
 
     kind: int = 0
     """PlanKind."""
@@ -18,7 +21,7 @@ class UploadPlan(ServiceIntent, frozen=True, tag=True):
 
     kind: int = 0
     items: tuple[PlanItem, ...] = ()
-    home: PlanPlace | None = None
+    home: Place | None = None
     """Planned home, for an autopilot that keeps home as an item."""
     home_altitude: float = 0.0
     """m above sea level."""
@@ -48,13 +51,13 @@ class JumpToItem(ServiceIntent, frozen=True, tag=True):
 class GoTo(ServiceIntent, frozen=True, tag=True):
     """Drive to a place now."""
 
-    place: PlanPlace = PlanPlace(0.0, 0.0)
+    place: Place = Place(0.0, 0.0)
 
 
 class SetHome(ServiceIntent, frozen=True, tag=True):
     """Move home to a place."""
 
-    place: PlanPlace = PlanPlace(0.0, 0.0)
+    place: Place = Place(0.0, 0.0)
 
 
 class ChooseMode(ServiceIntent, frozen=True, tag=True):

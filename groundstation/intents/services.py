@@ -22,6 +22,8 @@ class ServiceIntent(Intent, frozen=True, tag=False):
 class FetchParams(ServiceIntent, frozen=True, tag=True):
     """Fetch all parameters."""
 
+    open_to_all = True
+
 
 class WriteParams(ServiceIntent, frozen=True, tag=True):
     """Set parameters, one after the other; stops at the first that is not set."""

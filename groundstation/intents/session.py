@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from groundstation.intents.base import Intent
-from groundstation.views.union import AnyRequest
 
 LEASE_TIMEOUT = 0.3
 """s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz, and longer than its longest
@@ -32,19 +31,26 @@ class RenewLease(Intent, frozen=True):
     is_input = False
 
 
-class Watch(Intent, frozen=True):
-    """Send these views from now on, and no others: what the screen on top needs beside the snapshot."""
+class ReportScreen(Intent, frozen=True):
+    """Another screen came up. The station only notes it in the telemetry log."""
 
     is_input = False
-    valid_when_late = True
-    requests: tuple[AnyRequest, ...] = ()
+    screen: str
+    """Its id."""
 
 
 class StartSimulator(Intent, frozen=True):
     """Start simulated rovers as children of the station process and let them connect to us."""
 
     kind: str = "rover"
-    """A row of groundstation.simulators.SIMULATORS."""
+    """A row of groundstation.sitl.simulators.SIMULATORS."""
+
+
+class Detach(Intent, frozen=True):
+    """The screen ends in order, but its operator did not quit: a station that is kept goes on, neutral."""
+
+    is_input = False
+    valid_when_late = True
 
 
 class Quit(Intent, frozen=True):

@@ -20,6 +20,12 @@ class Calibrate(ServiceIntent, frozen=True, tag=True):
     kind: str = ""
 
 
+class EndCalibration(ServiceIntent, frozen=True, tag=True):
+    """End the calibration of the compass: write its result (`accept`), or cancel it."""
+
+    accept: bool = False
+
+
 class TurnMotor(Intent, frozen=True):
     """The key of a motor went down, or repeats: turn the motor while it is held, 2 s at most."""
 
@@ -36,7 +42,7 @@ class TurnMotor(Intent, frozen=True):
 class StopMotorTest(Intent, frozen=True):
     """The key of the motor went up, another key was pressed, or the screen is left."""
 
-    valid_when_late = True
+    valid_when_late = open_to_all = True
 
 
 class ConfirmPosition(Intent, frozen=True):
@@ -45,12 +51,12 @@ class ConfirmPosition(Intent, frozen=True):
     system: int
 
 
-class EndCalibration(Intent, frozen=True):
-    """End the calibration of the compass: accept and write its result, or cancel it."""
+class WatchSticks(Intent, frozen=True):
+    """Begin the calibration of the RC sticks, or end it: the values are the screen's matter then."""
 
     system: int
-    accept: bool = False
+    on: bool = True
 
 
-SETUP_INTENTS: tuple[type[Intent], ...] = (TurnMotor, StopMotorTest, ConfirmPosition, EndCalibration)
+SETUP_INTENTS: tuple[type[Intent], ...] = (TurnMotor, StopMotorTest, ConfirmPosition, WatchSticks)
 """Those that station/doctor_desk.py carries out; the others are requests to services."""

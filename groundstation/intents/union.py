@@ -8,12 +8,15 @@ from groundstation.intents import (  # noqa: F401 - defines the classes
     charts,
     driving,
     files,
+    line,
     links,
     plan,
+    replay,
     services,
     session,
     setup,
     vehicle,
+    watch,
 )
 from groundstation.intents.base import Intent
 from groundstation.intents.services import ServiceIntent

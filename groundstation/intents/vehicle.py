@@ -15,7 +15,7 @@ class Arm(Intent, frozen=True):
 class Disarm(Intent, frozen=True):
     """Disarm the vehicle."""
 
-    valid_when_late = True
+    valid_when_late = open_to_all = True
 
 
 class SetMode(Intent, frozen=True):

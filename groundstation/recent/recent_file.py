@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,6 +13,7 @@ from platformdirs import user_state_path
 
 from groundstation.recent.recent import RecentEndpoints, RecentError, decode, encode
 from link.runtime.regular_file import read_regular_file
+from link.runtime.whole_file import PRIVATE, replace_file
 
 FILE = "recent.json"
 
@@ -62,7 +62,7 @@ class RecentFile:
                 before = self.load()
                 after = change(before)
                 if after != before or self.warning:
-                    self._write(encode(after))
+                    replace_file(self.path, encode(after), mode=PRIVATE)
                 return after
         except OSError as error:
             after = change(self.load())
@@ -82,15 +82,3 @@ class RecentFile:
             yield
         finally:
             os.close(folder)
-
-    def _write(self, data: bytes) -> None:
-        """Write the file, readable by its user only, whole or not at all."""
-        descriptor, temporary = tempfile.mkstemp(dir=self.path.parent, prefix=f".{FILE}.")  # mode 0600
-        try:
-            with os.fdopen(descriptor, "wb") as file:
-                file.write(data)
-            Path(temporary).replace(self.path)
-        except OSError:
-            with contextlib.suppress(OSError):
-                Path(temporary).unlink()
-            raise

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from dialects.enums import Command, Result, Severity, result_name
+from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.emergency import DANGEROUS
 from groundstation.vehicles.message_log import MessageLog
 from link.services.command.client import CommandOutcome
@@ -44,24 +45,24 @@ class CommandResults:
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
         """Log how a command ended."""
-        label = self._label(outcome)
+        label, origin = self._label(outcome), LogOrigin(outcome.target_system, result=outcome.number)
         if outcome.result is Result.ACCEPTED:
             self._refusals.pop(outcome.target_system, None)
-            self._log.add(now, "ack", f"{label} accepted", Severity.INFO)
+            self._log.add(now, "ack", f"{label} accepted", Severity.INFO, origin=origin)
         elif outcome.command == Command.REQUEST_OPERATOR_CONTROL and outcome.result is Result.UNSUPPORTED:
             self._refusals.pop(
                 outcome.target_system, None
             )  # no refusal: ArduPilot and PX4 take demands from any station
             whose = "you drive" if outcome.params[0] == 1 else "it gets no more demands from here"
-            self._log.add(now, "ack", f"this vehicle does not manage control, {whose}", Severity.INFO)
+            self._log.add(now, "ack", f"this vehicle does not manage control, {whose}", Severity.INFO, origin=origin)
         elif outcome.number is None:
             self.add_refusal(outcome.target_system, f"{label}: no answer", now)
         else:
-            self.add_refusal(outcome.target_system, f"{label} {result_name(outcome.number)}", now)
+            self.add_refusal(outcome.target_system, f"{label} {result_name(outcome.number)}", now, outcome.number)
 
-    def add_refusal(self, system: int, text: str, now: float) -> None:
-        """Log a refusal, and keep it with the vehicle's reason."""
-        self._log.add(now, "ack", text, Severity.WARNING)
+    def add_refusal(self, system: int, text: str, now: float, result: int | None = None) -> None:
+        """Log a refusal, and keep it with the vehicle's reason. `result`: MAV_RESULT of its COMMAND_ACK."""
+        self._log.add(now, "ack", text, Severity.WARNING, origin=LogOrigin(system, result=result))
         reason = self._reasons.get(system)
         if reason is not None and now - reason[1] <= REASON_WITHIN and ": " not in text:
             text = f"{text}: {reason[0]}"
@@ -82,6 +83,6 @@ class CommandResults:
             case Command.COMPONENT_ARM_DISARM:
                 return "arm" if first == 1 else "disarm"
             case Command.DO_SET_SAFETY_SWITCH_STATE:
-                return "clear emergency stop" if first == DANGEROUS else "emergency stop"
+                return "release the emergency stop" if first == DANGEROUS else "emergency stop"
             case _:
                 return self._labels.get((outcome.target_system, outcome.command), f"command {outcome.command}")

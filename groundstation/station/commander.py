@@ -128,6 +128,10 @@ class Commander:
         """Return whether this vehicle has not acknowledged a command of this kind yet."""
         return self._client.is_waiting(command, vehicle.system)
 
+    def claim(self, vehicle: VehicleState, now: float) -> None:
+        """Note that a vehicle has accepted arming from a verb that goes through this station."""
+        self._claims.add(vehicle, now, by_arming=True)
+
     def is_claimed(self, system: int) -> bool:
         """Return whether this vehicle accepted arming or a control request from us and has not disarmed since.
 

@@ -14,7 +14,7 @@ from dialects.messages import Heartbeat, ManualControl, Message
 from groundstation.station.driven import DEMAND_MEMORY
 from groundstation.station.station import Station
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
-from groundstation.vehicles.fleet import is_vehicle
+from groundstation.vehicles.vehicle_heartbeat import is_vehicle
 from link.core import LinkReport, Outgoing, Received
 
 
@@ -43,6 +43,11 @@ class CrashNeutral:
         """All final neutrals are sent, by the station or in its place."""
         return not (self._left or self._outbox) if self._active else self._station.finished
 
+    @property
+    def may_rest(self) -> bool:
+        """No vehicle was heard yet, so that there is nobody to send anything to."""
+        return not self._active and not self._station.fleet.system_ids
+
     # ---- Core ----
 
     def receive(self, received: Received, now: float) -> None:
@@ -60,6 +65,16 @@ class CrashNeutral:
             self._left -= 1
             self._due = now + DRIVING_PERIOD
             self._outbox += [Outgoing(self._neutral(system)) for system in self._driven]
+
+    @property
+    def due_at(self) -> float | None:
+        """When the station has something to do before the next tick."""
+        return None if self._active else self._station.due_at
+
+    def act(self, now: float) -> None:
+        """Let the station do it."""
+        if not self._active:
+            self._station.act(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Pass the link reports on."""

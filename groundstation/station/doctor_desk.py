@@ -9,7 +9,14 @@ from typing import Any
 from groundstation.doctor.chain import count_faults, examine
 from groundstation.doctor.prearm_advice import find_advice
 from groundstation.intents.base import Intent
-from groundstation.intents.setup import Calibrate, ConfirmPosition, EndCalibration, StopMotorTest, TurnMotor
+from groundstation.intents.setup import (
+    Calibrate,
+    ConfirmPosition,
+    EndCalibration,
+    StopMotorTest,
+    TurnMotor,
+    WatchSticks,
+)
 from groundstation.snapshot import Snapshot
 from groundstation.station.doctor_facts import VehicleReport, collect, sensor_rows
 from groundstation.station.link_stats import LinkStats
@@ -96,11 +103,21 @@ class DoctorDesk:
         self.tester.tick(now, watched=watched)
         chosen = self._fleet.selected
         for contact in self._fleet:
+            self._follow_sticks(contact)
             if contact.lost_at is not None and contact.state.system in self._reports:
                 self._reports[contact.state.system].params.restart()  # it may come back with other values
         for system, report in self._reports.items():
             wanted = watched and chosen is not None and chosen.state.system == system
             self._outbox += report.params.tick(now, watched=wanted)
+
+    def _follow_sticks(self, contact: Contact) -> None:
+        """Read the parameters of the channels that are moved; end the calibration in an armed vehicle."""
+        report = self._reports.get(contact.state.system)
+        if report is None or not report.calibration.sticks.running:
+            return
+        contact.drive.params.want(report.calibration.sticks.values)
+        if contact.state.armed:
+            report.calibration.end_sticks("RC sticks: ended, the vehicle is armed")
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
@@ -143,7 +160,18 @@ class DoctorDesk:
     def _begin_calibration(self, intent: Calibrate, now: float) -> None:
         self.tester.stop("stopped: calibration", now)
         if intent.system in self._reports:
-            self._reports[intent.system].calibration.begin()
+            self._reports[intent.system].calibration.begin(intent.kind)
+
+    def _watch_sticks(self, intent: WatchSticks, now: float) -> None:
+        self.tester.stop("stopped: calibration", now)
+        contact = self._fleet.selected
+        if contact is None or contact.state.system != intent.system:
+            return
+        calibration = self._report(contact).calibration
+        if not intent.on:
+            calibration.end_sticks("")
+        elif not contact.state.armed:
+            calibration.begin_sticks()
 
     # ---- the view ----
 
@@ -171,6 +199,7 @@ class DoctorDesk:
             return DoctorView(rows=self._rows)
         self._queries.request_version(contact, now)
         report, requests = self._report(contact), self._requests(contact.state.system)
+        sticks, values = report.calibration.sticks, contact.drive.params.values
         checked = next((line for line in reversed(requests) if line.what == CHECKS), None)
         return DoctorView(
             system=contact.state.system,
@@ -189,6 +218,11 @@ class DoctorDesk:
             calibrations=report.calibration.rows(contact.state.autopilot, requests),
             calibration=report.calibration.text,
             waits_for_position=report.calibration.position is not None,
+            calibration_share=report.calibration.compass.share,
+            compass_ready=report.calibration.compass.ready,
+            sticks=sticks.rows if sticks.running else None,
+            stick_changes=sticks.changes(values) if sticks.running else (),
+            sticks_unread=sticks.unread(values) if sticks.running else (),
             facts=_vehicle_facts(contact),
             requests=requests,
         )
@@ -245,7 +279,7 @@ def _vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
         "demands": axes,
         "motors": ", ".join(servo_names(values).values()) if servo_functions(values) else "",
         "params": f"{known} known" if known else "",
-        "signing": "signs its frames" if contact.signs else "",
+        "signing": "on, verified" if contact.verified else "with a key that is not here" if contact.signs else "",
     }
     return tuple((name, text) for name, text in lines.items() if text)
 
@@ -256,5 +290,6 @@ _HANDLERS: dict[type[Intent], Callable[[DoctorDesk, Any, float], None]] = {
     StopMotorTest: DoctorDesk._stop,
     ConfirmPosition: DoctorDesk._confirm,
     EndCalibration: DoctorDesk._end_calibration,
+    WatchSticks: DoctorDesk._watch_sticks,
 }
 """Intent -> method. Other inputs of the operator end a motor test."""

@@ -13,7 +13,8 @@ from groundstation.vehicles.arming_checks import ArmingChecks
 from groundstation.vehicles.calibration import CalibrationState
 from groundstation.vehicles.doctor_params import DoctorParams
 from groundstation.vehicles.fleet import Contact
-from groundstation.views.doctor import Health, SensorRow, TerminalFacts
+from groundstation.views.doctor import SensorRow, TerminalFacts
+from link.runtime.diagnosis import Health
 
 SENSOR_NAMES: Mapping[Sensor, str] = {
     Sensor.GYRO: "gyros",
@@ -54,7 +55,6 @@ def collect(
     frames = sum(each.frames for each in newest)
     state = None if contact is None else contact.state
     settings = None if contact is None else contact.settings_check
-    info = None if state is None else state.drive_info
     return DoctorFacts(
         system=system,
         vehicle=snapshot.vehicle,
@@ -70,14 +70,24 @@ def collect(
         own_id=any(each.own_id for each in newest),
         clash=bool(state and state.control.clash),
         signs=bool(contact and contact.signs),
+        verified=bool(contact and contact.verified),
         sensors=report.checks.bits if report else None,
         texts=report.checks.texts(now) if report else (),
         settings=tuple(SettingFact(*each) for each in settings.findings) if settings else (),
         unread=settings.missing if settings else (),
-        params=report.params.values if report else {},
-        manual_timeout=None if info is None else info.manual_timeout_ms / 1000,
+        params=_params(contact, report),
         motors_tested=tested,
     )
+
+
+def _params(contact: Contact | None, report: VehicleReport | None) -> Mapping[str, float]:
+    """Return what is known; where a parameter was read twice, the value that the Drive screen shows."""
+    settings = contact.settings_check.values if contact is not None and contact.settings_check is not None else {}
+    return {
+        **(report.params.values if report is not None else {}),
+        **settings,
+        **(contact.drive.params.values if contact is not None else {}),
+    }
 
 
 def sensor_rows(bits: SensorBits | None) -> tuple[SensorRow, ...]:

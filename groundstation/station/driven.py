@@ -26,9 +26,11 @@ class DrivenVehicle(msgspec.Struct, frozen=True, kw_only=True):
     """Our session, for a vehicle that takes its demands from ROVER_OPERATOR_PRESENCE; else None."""
     boot_time: int = 0
     """Newest time_boot_ms of the vehicle that we have seen."""
+    verified: bool = False
+    """It signs with a key of ours: what is not signed is not of it."""
 
     @classmethod
-    def of(cls, state: VehicleState, session: int) -> DrivenVehicle:
+    def of(cls, state: VehicleState, session: int, *, verified: bool = False) -> DrivenVehicle:
         """Return what the watchdog must know of a vehicle."""
         return cls(
             system=state.system,
@@ -37,4 +39,5 @@ class DrivenVehicle(msgspec.Struct, frozen=True, kw_only=True):
             autopilot=state.autopilot,
             session=session if state.has_rover_dialect else None,
             boot_time=state.boot_time or 0,
+            verified=verified,
         )

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 
 from dialects.axes import NEUTRAL, Axes, build_manual_control
-from dialects.messages import ManualControl, Message, RoverOperatorPresence
+from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverOperatorPresence
 from dialects.modes import DRIVABLE_MODES
 from groundstation.station.commander import Commander
 from groundstation.station.driven import DEMAND_MEMORY, DrivenVehicle
-from groundstation.station.operator import OperatorSession
+from groundstation.station.link_stats import LinkStats
+from groundstation.station.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.latency import SentDemand
 from link.core import Outgoing
-
-IDLE_PROOF_PERIOD = 0.3
-"""s between proofs of this session to the selected vehicle of our dialect while it gets no demand: arming, and every
-other command, counts only of a session that was proven in the last second, and two proofs in a row may get lost."""
 
 
 class DrivingController:
@@ -32,12 +29,15 @@ class DrivingController:
         self._demands: dict[int, list[Message]] = {}
         """Newest demand of each vehicle, with its operator presence: state, so a newer one replaces it."""
         self._changed: tuple[Message, ...] = ()
+        """The newest demand that was changed, and its copies."""
         self._proven_at = -math.inf
         """When the selected vehicle got the newest proof of this session."""
         self._changed_at = 0.0
         """When the demand in `_changed` was made: the time until it is sent is part of the latency."""
         self._changed_key: float | None = None
         """When the key was read that made it; None: a timer made it."""
+        self.due_at: float | None = None
+        """When `update` is due even if nothing happens before; None: at the next tick."""
         self.key_read_at: float | None = None
         """When the key was read that is handled just now; None: there is none."""
 
@@ -45,6 +45,7 @@ class DrivingController:
         """Queue the demands that are due."""
         self.update_permission(now)
         demand = self._operator.demand(now)
+        self.due_at = None
         for contact in self._fleet:
             self._update_ours(contact)
             chosen = contact is self._fleet.selected
@@ -53,6 +54,8 @@ class DrivingController:
             )
             if axes is not None:
                 self._queue_demand(contact, axes, now)
+            if (due := contact.demand_stream.due_at) is not None:
+                self.due_at = due if self.due_at is None else min(due, self.due_at)
         self._queue_idle_proof(now)
 
     def update_permission(self, now: float) -> None:
@@ -66,15 +69,21 @@ class DrivingController:
         demands, self._demands = self._demands, {}
         return [Outgoing(message) for messages in demands.values() for message in messages]
 
+    def adapt(self, links: LinkStats) -> None:
+        """Adapt the copies of demands to the links of their vehicles. The loss is that of the other direction."""
+        for contact in self._fleet:
+            loss = links.loss(contact.link, contact.state.system)
+            contact.demand_stream.adapt(loss, links.capacity(contact.link))
+
     def drop_demands(self) -> None:
         """Drop the demands that were made and not sent: they are from before a freeze."""
         self._demands.clear()
 
     def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
-        if isinstance(message, ManualControl):
+        if isinstance(message, ManualControl | RcChannelsOverride):
             self._operator.demand_rate.add(now)
-            target = message.target
+            target = message.target if isinstance(message, ManualControl) else message.target_system
             self._record_demand(target, now)
         elif isinstance(message, RoverOperatorPresence):
             target = message.target_system
@@ -95,7 +104,7 @@ class DrivingController:
     def driven_vehicles(self, now: float) -> tuple[DrivenVehicle, ...]:
         """Return the vehicles that may still hold a demand of ours."""
         return tuple(
-            DrivenVehicle.of(contact.state, self._operator.session)
+            DrivenVehicle.of(contact.state, self._operator.session, verified=contact.verified)
             for contact in self._fleet
             if now - contact.demanded_at <= DEMAND_MEMORY
         )
@@ -177,7 +186,9 @@ class DrivingController:
             contact.ours = False
 
     def _queue_demand(self, contact: Contact, axes: Axes, now: float) -> None:
-        state = contact.state
+        state, copying = contact.state, contact.demand_stream.copying
+        if copying and state.system in self._demands:
+            return  # what it would copy is not sent yet
         message = build_manual_control(axes, state.system, contact.choose_axes(axes))
         messages: list[Message] = [message]
         if state.has_rover_dialect:
@@ -186,7 +197,9 @@ class DrivingController:
             self._proven_at = now
         if contact is self._fleet.selected and self._operator.record_demand(axes):
             self._changed, self._changed_at, self._changed_key = tuple(messages), now, self.key_read_at
-            messages *= 2  # if lost, it would be 50 ms late; both are lost once in 400 at 5 % loss
+        elif copying:
+            messages = messages[:1]  # a vehicle of our dialect ignores MANUAL_CONTROL from a driver with a session
+            self._changed += tuple(messages) if contact is self._fleet.selected else ()
         self._demands[state.system] = messages
 
     def _queue_idle_proof(self, now: float) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.folder_cache import ListedFolder
-from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow, LogRow
+from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow, VehicleLog
 
 MAX_ROWS = 2000
 """Entries of all folders of one view, which is a packet of at most 256 kB."""
@@ -18,7 +18,7 @@ def build_files(contact: Contact, request: FilesRequest) -> FilesView:
     return FilesView(
         system=contact.state.system,
         name=contact.state.name,
-        logs=None if logs is None else tuple(LogRow(each.number, each.begun, each.size) for each in logs),
+        logs=None if logs is None else tuple(VehicleLog(each.number, each.begun, each.size) for each in logs),
         folders=tuple(_folders(request.folders, listed)),
     )
 

@@ -21,14 +21,17 @@ from groundstation.intents.driving import (
     ClearEmergencyStop,
     DriveKeyDown,
     DriveKeyUp,
+    DrivePad,
     EmergencyStop,
+    ReleasePad,
     ScaleLimits,
     SetStyle,
     Stop,
 )
+from groundstation.intents.line import RunLine
 from groundstation.intents.links import CloseLink
 from groundstation.intents.services import CancelRequest, ServiceIntent
-from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, SetKeyGate, Watch
+from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, ReportScreen, SetKeyGate
 from groundstation.intents.setup import SETUP_INTENTS
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import (
@@ -42,6 +45,7 @@ from groundstation.intents.vehicle import (
     SelectVehicle,
     SetMode,
 )
+from groundstation.intents.watch import Watch
 from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
@@ -144,6 +148,12 @@ class IntentHandler:
     def _release(self, intent: DriveKeyUp, now: float) -> None:
         self._operator.sticks.release(intent.key)
 
+    def _push_pad(self, intent: DrivePad, now: float) -> None:
+        self._operator.push_pad(intent, now)
+
+    def _release_pad(self, intent: ReleasePad, now: float) -> None:
+        self._operator.sticks.pad.release()
+
     def _stop(self, intent: Stop, now: float) -> None:
         self._operator.sticks.stop()
         selected = self._fleet.selected
@@ -224,6 +234,12 @@ class IntentHandler:
     def _leave_to_doctor(self, intent: Intent, now: float) -> None:
         """Do nothing more: station/doctor_desk.py has carried it out."""
 
+    def _leave_to_line_desk(self, intent: Intent, now: float) -> None:
+        """Do nothing more: verbs/line/desk.py carries it out."""
+
+    def _leave_to_notes(self, intent: ReportScreen, now: float) -> None:
+        """Do nothing more: station/station_notes.py notes it."""
+
     def _quit(self, intent: Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -249,6 +265,8 @@ arming, which must not start with a key held."""
 HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     DriveKeyDown: IntentHandler._press,
     DriveKeyUp: IntentHandler._release,
+    DrivePad: IntentHandler._push_pad,
+    ReleasePad: IntentHandler._release_pad,
     Stop: IntentHandler._stop,
     EmergencyStop: IntentHandler._emergency_stop,
     ScaleLimits: IntentHandler._scale_limits,
@@ -259,6 +277,7 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     SelectVehicle: IntentHandler._select,
     SelectNextVehicle: IntentHandler._select_next,
     Watch: IntentHandler._watch,
+    ReportScreen: IntentHandler._leave_to_notes,
     RequestControl: IntentHandler._request_control,
     ReleaseControl: IntentHandler._release_control,
     GiveControl: IntentHandler._give_control,
@@ -267,6 +286,7 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     PinSeries: IntentHandler._pin_series,
     CloseLink: IntentHandler._close_link,
     Quit: IntentHandler._quit,
+    RunLine: IntentHandler._leave_to_line_desk,
     **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),
     **dict.fromkeys(SETUP_INTENTS, IntentHandler._leave_to_doctor),
 }

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from groundstation.snapshot import LinkView
 from groundstation.views.links import LinkRow
-from link.core import LinkReport, Peer, SourceCount
+from link.core import LinkReport, Peer, SigningCounts, SourceCount
 from link.protocol.link_events import link_problem
 
 LOSS_WINDOW = 5.0
@@ -89,6 +89,11 @@ class LinkStats:
         report = samples[-1].report if samples else None
         return None if report is None or report.capacity is None else report.capacity * report.headroom
 
+    def loss(self, link: int, system: int) -> float | None:
+        """Return the lost fraction of the frames of a vehicle on a link; None if unknown."""
+        samples = self._samples.get(link)
+        return _loss(samples, (system,)) if samples else None
+
     @property
     def has_traffic(self) -> bool:
         """Any link received bytes within the window."""
@@ -147,8 +152,18 @@ def _row(samples: deque[_Sample], vehicles: Collection[int], round_trip: float |
         jitter=jitter,
         capacity=report.capacity,
         headroom=report.headroom,
+        unverified=_refused(report.refused),
         problem=link_problem(report),
     )
+
+
+def _refused(counts: SigningCounts | None) -> str:
+    """Return what signing has refused, in words."""
+    if counts is None:
+        return ""
+    named = {"not signed": counts.unsigned, "wrong key": counts.bad, "replayed": counts.replayed,
+             "clock behind": counts.too_old}  # fmt: skip
+    return ", ".join(f"{number} {what}" for what, number in named.items() if number)
 
 
 def _address(peer: Peer) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from dialects.enums import state_name
+from groundstation.geo import Place, find_way
 from groundstation.station.commander import Commander
 from groundstation.station.driving import DrivingController
 from groundstation.station.ground_stations import GroundStations
@@ -14,7 +15,6 @@ from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.control_report import ControlReport
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.vehicles.vehicle_details import Place, find_way
 from groundstation.views.base import ViewRequest
 from groundstation.views.links import (
     ControlRequest,
@@ -77,6 +77,7 @@ class LinkViews:
         state, details = contact.state, contact.details
         view = state.build_view(now)
         way = find_way(self._origin(contact), details.place)
+        signing = self._fleet.signing_of(contact, now)
         return VehicleRow(
             system=state.system,
             name=state.name,
@@ -93,6 +94,7 @@ class LinkViews:
             bearing=None if way is None else round(way.bearing) % 360,
             has_position=details.place is not None,
             in_control=self._driving.is_in_control(contact),
+            signing=signing.state.value if signing else "",
             driver=state.driver,
             components=details.components(now),
         )
@@ -118,7 +120,13 @@ class LinkViews:
         stations, signing = self.stations.build_rows(now), self._links.signing
         contact = self._fleet.selected
         if contact is None:
-            return ControlView(vehicle="", ours=self._ours, stations=stations, signing=signing)
+            return ControlView(
+                vehicle="",
+                ours=self._ours,
+                stations=stations,
+                signing=self._fleet.signing_of(None, now),
+                signing_systems=signing,
+            )
         control, at = contact.state.control, contact.details.control_at
         waits = self._handover.waits_for(contact, now)
         return ControlView(
@@ -133,8 +141,8 @@ class LinkViews:
             silent=control.silent,
             waits=None if waits is None else round(waits),
             stations=stations,
-            signs=contact.signs,
-            signing=signing,
+            signing=self._fleet.signing_of(contact, now),
+            signing_systems=signing,
         )
 
 

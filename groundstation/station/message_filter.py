@@ -26,7 +26,7 @@ def parse_filter(text: str) -> Matches:
     """Return a filter. All of its words must match.
 
     A word is a part of a message's name or pieces of its words (fuzzy.py), or ">5Hz", "<1Hz", "age>3" (s), "src:1" or
-    "src:1/1", "field:volt" (the same for the name of a field), "sent".
+    "src:1/1", "field:volt" (the same for the name of a field), "sent", "lost" (of a source that has lost frames).
     """
     tests = [_parse_word(word) for word in text.lower().split()]
     return lambda row, fields: all(test(row, fields) for test in tests)
@@ -43,6 +43,8 @@ def _parse_word(word: str) -> Matches:
         return lambda row, _: ((row.age if age else row.rate) > limit) == above
     if word == "sent":
         return lambda row, _: row.sent
+    if word == "lost":
+        return lambda row, _: row.lost > 0
     if word.startswith("src:"):
         system, _, component = word.removeprefix("src:").partition("/")
         return lambda row, _: str(row.system) == system and component in ("", str(row.component))

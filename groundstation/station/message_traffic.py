@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
+import msgspec
+
 from dialects.enum_names import enum_names
-from dialects.messages import Message
+from dialects.messages import Message, hide_key
 from groundstation.station.message_filter import parse_filter, sorted_rows
 from groundstation.station.message_kind import BUCKET, BUCKETS, WINDOW, MessageKind, Tap
 from groundstation.station.unknown_messages import UnknownMessages
@@ -68,7 +70,8 @@ class MessageTraffic:
                 return
             self._size += not known
             taps = self._taps_of((source, name))
-            kind = self._kinds.setdefault(source, {})[name] = MessageKind(message, taps=taps)
+            kind = self._kinds.setdefault(source, {})[name] = MessageKind(hide_key(message), taps=taps)
+        message = hide_key(message)
         kind.newest, kind.at = message, now
         kind.count += 1
         for tap in kind.taps:
@@ -146,7 +149,7 @@ class MessageTraffic:
 
     def _arrange(self, request: MessagesRequest, every: list[MessageRow], now: float) -> list[MessageRow]:
         matches = parse_filter(request.text)
-        rows = [row for row in every if matches(row, self._field_names(row))]
+        rows = [row for row in map(self._with_lost, every) if matches(row, self._field_names(row))]
         if request.order == "source":
             return self._tree(rows, request.closed)
         at, what, order = self._order
@@ -155,6 +158,10 @@ class MessageTraffic:
             self._order = now, (request.order, request.text), order
         found = {(_source(row), row.name): row for row in rows}
         return [found[key] for key in order if key in found]
+
+    def _with_lost(self, row: MessageRow) -> MessageRow:
+        counted = None if row.sent else self._losses.get((row.system, row.component))
+        return row if counted is None or not counted.lost else msgspec.structs.replace(row, lost=counted.lost)
 
     def _field_names(self, row: MessageRow) -> Sequence[str]:
         return () if row.unknown else type(self._kinds[_source(row)][row.name].newest).fieldnames

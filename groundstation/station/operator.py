@@ -15,7 +15,7 @@ from dialects.enums import OperatorFlag as Flag
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence, boot_ms
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.driving import DriveKeyDown, DrivePad
 from groundstation.intents.session import LEASE_TIMEOUT, SetKeyGate
 from groundstation.snapshot import OperatorView
 from groundstation.station.stall import StallMonitor
@@ -28,6 +28,10 @@ THAW = 0.5
 NEUTRAL_LEAD = 0.15
 """s of neutral demands (three frames or four) before keys drive: the vehicle requires neutral after arming, a new mode
 or a new driver, and a key pressed in that moment would otherwise have to be released and pressed again."""
+
+IDLE_PROOF_PERIOD = 0.3
+"""s between proofs of this session to the selected vehicle of our dialect while it gets no demand: arming, and every
+other command, counts only of a session that was proven in the last second, and two proofs in a row may get lost."""
 
 OLDEST_AGE = 0xFFFF
 """Largest last_input_age_ms: older, or no input yet."""
@@ -90,6 +94,12 @@ class OperatorSession:
         lapse, self._unreported_lapse = self._unreported_lapse, None
         return lapse
 
+    def change_screen(self, gate: SetKeyGate, now: float, *, reports_releases: bool) -> None:
+        """Take the keys from one screen and give them to another, or to none. Nothing drives before it renews."""
+        self._live = False
+        self._gate = gate
+        self.sticks.change_keyboard(now, reports_releases=reports_releases)
+
     @property
     def live(self) -> bool:
         """The screen renews its lease."""
@@ -127,6 +137,21 @@ class OperatorSession:
             self._ignored = _Ignored()
         else:
             self._ignored.record(self._ignored.shown(now) or "it was held before", now)
+
+    def push_pad(self, push: DrivePad, now: float) -> None:
+        """Handle a demand of the gamepad, by the rules of a drive key."""
+        reason = self.blocked_reason(now)
+        if reason is not None:
+            self.sticks.pad.release()
+            self._ignored.record(reason, now)
+        elif self.sticks.push_pad(push, now):
+            self._ignored = _Ignored()
+        else:
+            self._ignored.record(self._ignored.shown(now) or "the gamepad's button was held before", now)
+
+    def ignored(self, now: float) -> str:
+        """Return why the newest drive key does not count; "" if it does, or some time after it."""
+        return self._ignored.shown(now)
 
     def reset_demand(self, now: float) -> None:
         """Go neutral for another vehicle; the demand of the previous vehicle is not that of the new one."""
@@ -206,6 +231,11 @@ class OperatorSession:
             r=demand.r if demand else INVALID_AXIS,
         )
 
+    def adopt_presence(self, message: RoverOperatorPresence, now: float) -> None:
+        """Make the proof of a verb that goes through this station one of this session."""
+        message.session_id = self.session
+        message.time_boot_ms = self._next_clock(now)
+
     def _next_clock(self, now: float) -> int:
         """Return the sender's time for a new proof, in ms: larger than the one before, also within the same ms."""
         self._clock = max(self._clock + 1, boot_ms(now))
@@ -226,7 +256,7 @@ class OperatorSession:
             steering_limit=sticks.steering_limit,
             gate_open=reason is None,
             gate_reason=reason or "",
-            ignored=self._ignored.shown(now),
+            ignored=self.ignored(now),
             sending=sending,
             rate=self.demand_rate.rate(now),
         )

@@ -7,7 +7,16 @@ from typing import Any
 
 from dialects.axes import Axes
 from groundstation.intents.base import Intent
-from groundstation.intents.driving import STOP_KEY, ClearEmergencyStop, DriveKeyDown, EmergencyStop, SetStyle, Stop
+from groundstation.intents.driving import (
+    PAD,
+    STOP_KEY,
+    ClearEmergencyStop,
+    DriveKeyDown,
+    DrivePad,
+    EmergencyStop,
+    SetStyle,
+    Stop,
+)
 from groundstation.intents.links import AddLink, CloseLink
 from groundstation.intents.session import Quit, StartSimulator
 from groundstation.intents.setup import Calibrate, RebootVehicle, RunChecks
@@ -74,6 +83,8 @@ class OperatorLog:
             if len(self._keys) < MAX_KEYS:
                 self._keys[intent.key] = None
             return
+        if isinstance(intent, DrivePad) and len(self._keys) < MAX_KEYS:
+            self._keys[PAD] = None
         text = TEXTS.get(type(intent), lambda _: "")(intent)
         if text:
             self._log.add(now, OPERATOR, text)

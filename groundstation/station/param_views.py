@@ -8,7 +8,8 @@ from dialects.enums import Autopilot
 from groundstation.formats.docs_files import DocsFile
 from groundstation.formats.param_compare import compare
 from groundstation.formats.param_docs import ParamDocs
-from groundstation.formats.param_file import ParamForm, format_params
+from groundstation.formats.param_file import format_params
+from groundstation.formats.param_form import ParamForm
 from groundstation.station.param_filter import ParamRanks, choose, count_groups, groups_of, is_changed
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewSource

@@ -11,7 +11,6 @@ from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.services import VehicleServices
-from groundstation.vehicles.vehicle_details import Place
 from groundstation.views.base import ViewRequest
 from groundstation.views.plan import (
     PAGE,
@@ -21,7 +20,6 @@ from groundstation.views.plan import (
     PlanMode,
     PlanPage,
     PlanPageRequest,
-    PlanPlace,
     PlanRequest,
     PlanSummary,
     PlanTrackRequest,
@@ -61,8 +59,8 @@ class PlanViews:
             system=state.system,
             name=state.name,
             autopilot=state.autopilot,
-            place=_place(details.place),
-            home=_place(details.home),
+            place=details.place,
+            home=details.home,
             neighbours=tuple(self._neighbours(contact)),
             running=tuple(each for each in requests.running if _ours(each.service, each.system, contact)),
             ended=tuple(each for each in requests.ended if _ours(each.service, each.system, contact)),
@@ -86,10 +84,10 @@ class PlanViews:
         if contact is None:
             return None
         details = contact.details
-        return PlanTrackView(contact.state.system, _place(details.origin), details.track.points)
+        return PlanTrackView(contact.state.system, details.origin, details.track.points)
 
     def _neighbours(self, selected: Contact) -> list[Neighbour]:
-        others = ((each.state.system, _place(each.details.place)) for each in self._fleet if each is not selected)
+        others = ((each.state.system, each.details.place) for each in self._fleet if each is not selected)
         return [Neighbour(system, place) for system, place in others if place is not None]
 
 
@@ -106,7 +104,6 @@ def _plan_fields(services: VehicleServices | None, now: float) -> dict[str, Any]
         "current": current - first if known and current is not None else None,
         "reached": tuple(seq - first for seq in progress.reached if seq >= first),
         "state": progress.state,
-        "to_go": None if nav is None else float(nav.wp_dist),
         "off_line": None if nav is None else round(nav.xtrack_error, 2),
         "home_altitude": progress.home_altitude,
         "modes": tuple(PlanMode(mode.name, mode.moves_itself) for mode in services.modes.modes if mode.selectable),
@@ -133,10 +130,6 @@ def _is_changed(has_items: bool, known: int, reported: tuple[int, int, int] | No
 
 def _ours(service: str, system: int, contact: Contact) -> bool:
     return service == "plan" and system == contact.state.system
-
-
-def _place(place: Place | None) -> PlanPlace | None:
-    return None if place is None else PlanPlace(*place)
 
 
 def _item(item: MissionItem) -> PlanItem:

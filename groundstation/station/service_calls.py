@@ -7,8 +7,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from dialects.enums import Command, MissionType
-from groundstation.formats.plan import Home, Plan, for_vehicle
-from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
+from groundstation.formats.plan import Plan, PlannedHome, for_vehicle
+from groundstation.intents.files import (
+    CompareFile,
+    EraseLogs,
+    GetFile,
+    GetLog,
+    ListFolder,
+    ListLogs,
+    PutFile,
+    RemoveFile,
+)
 from groundstation.intents.plan import (
     ChooseMode,
     ClearPlan,
@@ -30,8 +39,8 @@ from groundstation.intents.services import (
     StoreParams,
     WriteParams,
 )
-from groundstation.intents.setup import Calibrate, RebootVehicle, RunChecks
-from groundstation.vehicles.calibration import KINDS, REQUEST
+from groundstation.intents.setup import Calibrate, EndCalibration, RebootVehicle, RunChecks
+from groundstation.vehicles.calibration import CANCEL, KINDS, REQUEST, WRITE
 from groundstation.vehicles.services import VehicleServices
 from link.services.mission.items import Items, MissionItem
 
@@ -67,18 +76,27 @@ def _calibrate(services: VehicleServices, intent: Calibrate, now: float) -> None
     services.commands.send(intent.request, kind.command, kind.params, f"{REQUEST}{intent.kind}", now)
 
 
+def _end_calibration(services: VehicleServices, intent: EndCalibration, now: float) -> None:
+    command, what = (Command.DO_ACCEPT_MAG_CAL, WRITE) if intent.accept else (Command.DO_CANCEL_MAG_CAL, CANCEL)
+    services.commands.send(intent.request, command, (0,), f"{REQUEST}{what}", now)
+
+
 def _upload(services: VehicleServices, intent: UploadPlan, now: float) -> None:
     items = tuple(
         MissionItem(each.command, each.frame, each.params, each.x, each.y, each.z, each.autocontinue)
         for each in intent.items
     )
-    home = Home(intent.home.latitude, intent.home.longitude, intent.home_altitude) if intent.home is not None else None
+    home = (
+        PlannedHome(intent.home.latitude, intent.home.longitude, intent.home_altitude)
+        if intent.home is not None
+        else None
+    )
     kind = MissionType(intent.kind)
     plan = _PLANS[kind](items, home)
     services.plans.upload(intent.request, kind, for_vehicle(plan, kind, services.autopilot), now)
 
 
-_PLANS: dict[MissionType, Callable[[Items, Home | None], Plan]] = {
+_PLANS: dict[MissionType, Callable[[Items, PlannedHome | None], Plan]] = {
     MissionType.MISSION: lambda items, home: Plan(mission=items, home=home),
     MissionType.FENCE: lambda items, _: Plan(fence=items),
     MissionType.RALLY: lambda items, _: Plan(rally=items),
@@ -168,6 +186,11 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "remove a file",
         lambda services, intent, now: services.files.remove(intent.request, intent.path, now),
     ),
+    CompareFile: ServiceCall(
+        "files",
+        "compare a file",
+        lambda services, intent, now: services.comparing.compare(intent.request, intent.path, intent.file, now),
+    ),
     ListLogs: ServiceCall(
         "folders", "list logs", lambda services, intent, now: services.logs.list_logs(intent.request, now)
     ),
@@ -198,5 +221,6 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
     RunChecks: _command("pre-arm checks", Command.RUN_PREARM_CHECKS),
     RebootVehicle: _command("reboot", Command.PREFLIGHT_REBOOT_SHUTDOWN, AUTOPILOT),
     Calibrate: ServiceCall(SETUP, "calibrate", _calibrate),
+    EndCalibration: ServiceCall(SETUP, "end a calibration", _end_calibration),
 }
 """Intent -> call."""

@@ -10,10 +10,25 @@ from collections.abc import Callable, Mapping, MutableMapping
 
 from dialects.enums import Command, Severity
 from groundstation.intents.services import ServiceIntent
+from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.commander import Commander
 from groundstation.station.file_view import build_files
 from groundstation.station.service_calls import SERVICE_CALLS
 from groundstation.station.view_feed import ViewSource
+from groundstation.vehicles import (  # noqa: F401 - VehicleServices would import them while the operator drives
+    file_comparing,
+    folder_cache,
+    log_requests,
+    message_requests,
+    metadata_requests,
+    mission_requests,
+    param_comparing,
+    param_requests,
+    param_storage,
+    param_writer,
+    plan_requests,
+    transfer_requests,
+)
 from groundstation.vehicles.disk_jobs import DiskJob, DiskResult
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
@@ -54,6 +69,8 @@ class ServiceDesk:
         self._service_of: dict[int, str] = {}
         """Number of a request -> name of its service."""
         self._ended: dict[str, deque[RequestLine]] = {}
+        self._awaited: dict[int, Callable[[RequestReport], None]] = {}
+        """Number of a request -> what is reported of its end."""
 
     # ---- requests ----
 
@@ -66,15 +83,15 @@ class ServiceDesk:
             report = RequestReport(intent.request, call.what, RequestState.REFUSED, "no vehicle yet")
             self._end(report, 0, "station", now)
             return
-        call.make(self._services(contact), intent, now)
-        self._collect(now)
+        call.make(self.services_of(contact), intent, now)
+        self.collect(now)
 
     def cancel(self, number: int, now: float) -> None:
         """Cancel a request to any vehicle."""
         for contact in self._fleet:
             if contact.services is not None:
                 contact.services.cancel(number, now)
-        self._collect(now)
+        self.collect(now)
 
     # ---- core ----
 
@@ -96,7 +113,7 @@ class ServiceDesk:
                 pending = self._commander.is_pending(Command.REQUEST_MESSAGE, contact.state)
                 alive, held = contact.state.monitor.is_alive(now), self._is_held(contact, now)
                 contact.services.tick(now, may_query=not pending, alive=alive, held=held)
-        self._collect(now)
+        self.collect(now)
 
     def is_querying(self, contact: Contact) -> bool:
         """Return whether a REQUEST_MESSAGE to this vehicle is under way: another would be taken for it."""
@@ -114,16 +131,16 @@ class ServiceDesk:
     # ---- the disk ----
 
     def pop_disk_jobs(self) -> list[DiskJob]:
-        """Return what the disk shall do for the transfers, once."""
+        """Return what the disk shall do for the vehicles, once."""
         found = (contact.services for contact in self._fleet if contact.services is not None)
-        return [job for services in found for job in services.transfers.pop_disk_jobs()]
+        return [job for services in found for job in services.pop_disk_jobs()]
 
     def handle_disk(self, result: DiskResult, now: float) -> None:
         """Take what the disk has answered."""
         for contact in self._fleet:
             if contact.services is not None:
-                contact.services.transfers.handle_disk(result, now)
-        self._collect(now)
+                contact.services.handle_disk(result, now)
+        self.collect(now)
 
     def cancel_transfers(self, now: float) -> None:
         """Cancel all transfers when the station ends; what has arrived is kept."""
@@ -175,13 +192,18 @@ class ServiceDesk:
             if report.number >= 0
         ]
 
-    def _services(self, contact: Contact) -> VehicleServices:
+    def services_of(self, contact: Contact) -> VehicleServices:
+        """Return the services of a vehicle."""
         if contact.services is None:
             contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component), self._texts)
             contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
         return contact.services
 
-    def _collect(self, now: float) -> None:
+    def await_end(self, number: int, tell: Callable[[RequestReport], None]) -> None:
+        """Call `tell` when the request with this number has ended, in place of keeping its report for screens."""
+        self._awaited[number] = tell
+
+    def collect(self, now: float) -> None:
         """Log what has ended."""
         for contact in self._fleet:
             if contact.services is None:
@@ -191,8 +213,11 @@ class ServiceDesk:
                     self._end(report, contact.state.system, contact.state.name, now)
 
     def _end(self, report: RequestReport, system: int, name: str, now: float) -> None:
-        self._log.add(now, "ack", f"{name}: {report.text}", _SEVERITIES.get(report.state, Severity.INFO))
-        if report.number >= 0:
+        severity = _SEVERITIES.get(report.state, Severity.INFO)
+        self._log.add(now, "ack", f"{name}: {report.text}", severity, origin=LogOrigin(system))
+        if (tell := self._awaited.pop(report.number, None)) is not None:
+            tell(report)
+        elif report.number >= 0:
             line = self._line(report, system)
             self._ended.setdefault(line.service, deque(maxlen=KEPT_REPORTS)).append(line)
             self._service_of.pop(report.number, None)

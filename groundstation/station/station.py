@@ -17,6 +17,7 @@ from groundstation.station.drive_display import DriveDisplay
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
+from groundstation.station.heard_params import HeardParams
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
@@ -31,10 +32,12 @@ from groundstation.station.param_texts import ParamTexts
 from groundstation.station.param_views import ParamViews
 from groundstation.station.plan_views import PlanViews
 from groundstation.station.service_desk import ServiceDesk
+from groundstation.station.station_notes import StationNotes
 from groundstation.station.surroundings import Surroundings
 from groundstation.station.transfer_hold import TransferHold
 from groundstation.station.vehicle_builder import VehicleBuilder
 from groundstation.station.vehicle_queries import VehicleQueries
+from groundstation.station.verb_relay import VerbRelay
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
@@ -47,7 +50,6 @@ from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
 
 DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
-
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -80,20 +82,22 @@ class Station:
         self.services = ServiceDesk(
             self.fleet, self._commander, self.log, system, COMPONENT, texts=texts.cache, is_held=hold.is_held
         )
-        self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
-        self._departure = Departure(self.fleet, self._commander, self._driving)
-        self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
+        self.driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
+        self.departure = Departure(self.fleet, self._commander, self.driving)
+        self._handover = Handover(self.fleet, self._commander, self.driving, self.log, system)
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self.services)
+        self.relay = VerbRelay(self.fleet, self.operator, self._commander, self.log)
+        self.params = HeardParams()
         self._timesync = TimesyncClient(system)
         self._doctor = DoctorDesk(
             self.fleet, self.services, self._queries, self._links, self.operator, (system, COMPONENT)
         )
         self._display = DriveDisplay(self.fleet, self.operator, self._timesync, system)
-        self._vehicle = VehicleBuilder(self._commander, self._driving, self._handover, self._display)
+        self._vehicle = VehicleBuilder(self._commander, self.driving, self._handover, self._display)
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
-            self._driving,
+            self.driving,
             self._handover,
             self._queries,
             self._links,
@@ -120,8 +124,8 @@ class Station:
             self.operator,
             self.fleet,
             self._commander,
-            self._driving,
-            self._departure,
+            self.driving,
+            self.departure,
             self._handover,
             self.log,
             self.views,
@@ -130,6 +134,8 @@ class Station:
             self.link_closing,
         )
         self._operator_log = OperatorLog(self.log)
+        self.notes = StationNotes(self.operator, self.fleet, self.driving)
+        self.log.listener, self.log.name_of = self.notes.add_line, self.fleet.name_of
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
@@ -144,6 +150,8 @@ class Station:
         if conflict is not None:
             self.log.add(now, "station", conflict, Severity.WARNING)
         self._link_views.stations.receive(received, now)
+        self.relay.receive(received, now)
+        self.params.receive(received)
         contact = self.fleet.get_or_add(received, now)
         autopilot = contact is not None and contact.state.component == received.component
         self._traffic.count(received.message, received.system, received.component, now, known=autopilot)
@@ -158,7 +166,7 @@ class Station:
         self.services.receive(contact, received, now)
         self._doctor.receive(contact, received, now)
         if isinstance(received.message, m.StatusText):
-            self._handle_statustext(received.message, contact, now)
+            self._handle_statustext(received.message, received.component, contact, now)
         if contact is self.fleet.selected:
             self._timesync.receive(received, now)
         self._outbox += handle_request(received, now, (self._system, COMPONENT))
@@ -173,24 +181,39 @@ class Station:
         self._commander.tick(now)
         self._doctor.tick(now, watched=self.views.is_watching(DoctorRequest))
         self._handover.tick(now)
+        self.relay.tick(now)
         if self.operator.live:
             self._queries.tick(now)
             self.services.tick(now)
-        if self.operator.live and not self._driving.ending:
+        if self.operator.live and not self.driving.ending:
             self._timesync.tick(now)
-            self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
-        self._driving.update(now)
+            self._outbox += self._heartbeat.tick(now, driving=self.driving.drives_any)
+        self.driving.update(now)
         self._log_driving(now)
-        self._departure.tick(now)
+        self.notes.tick(now)
+        self.departure.tick(now)
         self._charts.tick(now)
         self._detail.tick(now)
 
+    @property
+    def due_at(self) -> float | None:
+        """When a demand is due before the next tick; None: none is."""
+        return self.driving.due_at
+
+    def act(self, now: float) -> None:
+        """Send the demand that is due before the next tick."""
+        self._expire_lease(now)
+        self.driving.update(now)
+
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
+        self.notes.observe(reports, now)
+        self.relay.observe(reports)
         reports = [*reports, *self.surroundings.not_open]
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
+        self.driving.adapt(self._links)
         self._traffic.observe(reports, now)
         self._traffic.set_labels({(each.state.system, each.state.component): each.state.name for each in self.fleet})
         for report in reports:
@@ -201,11 +224,12 @@ class Station:
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""
         outbox, self._outbox = self._outbox, []
-        demands = self._driving.messages_to_send()
+        demands = self.driving.messages_to_send()
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
         services = self.services.messages_to_send()  # repeated later if they are dropped here
         return (
             demands
+            + self.relay.messages_to_send()
             + commands
             + self._doctor.messages_to_send()
             + self._timesync.messages_to_send()
@@ -217,7 +241,7 @@ class Station:
         """Record that a message was sent under this packet sequence number."""
         self._traffic.count_sent(message, now)
         self._display.handle_sent(message, now)
-        self._driving.handle_sent(message, sequence, now)
+        self.driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
         """Return False for what moves a vehicle and was made before the process stood still."""
@@ -228,7 +252,7 @@ class Station:
         """Return the vehicles that the watchdog stops if no further call follows within STALL_TIMEOUT."""
         self._expire_lease(now)
         self.operator.stall.record_report(now)
-        return self._driving.driven_vehicles(now)
+        return self.driving.driven_vehicles(now)
 
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
@@ -237,15 +261,16 @@ class Station:
         self._operator_log.handle(intent, now)
         self._doctor.handle(intent, now)
         if intent.is_input:
-            self._driving.key_read_at = now if read_at is None else read_at
+            self.driving.key_read_at = now if read_at is None else read_at
         self._intents.handle(intent, now)
-        self._driving.key_read_at = None
+        self.driving.key_read_at = None
         self._log_driving(now)
+        self.notes.handle(intent, now)
 
     @property
     def finished(self) -> bool:
         """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
-        return self._driving.ending and self._driving.finished and self._departure.finished
+        return self.driving.ending and self.driving.finished and self.departure.finished and self.relay.finished
 
     def snapshot(self, now: float, wall: float) -> Snapshot:
         """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""
@@ -258,18 +283,20 @@ class Station:
             addresses=() if selected else self.surroundings.addresses,
             waiting=None if selected else self.surroundings.waiting(has_traffic=self._links.has_traffic),
             vehicle=self._vehicle.build(selected, now) if selected else None,
-            left_armed=self._departure.left_armed(now),
+            left_armed=self.departure.left_armed(now),
             id_conflict=self._id_conflict.text(now),
             vehicles=self.fleet.system_ids,
             not_shown=self.fleet.not_shown,
             also_armed=self.fleet.also_armed,
             handover=self._handover.notice(now),
             operator=self.operator.build_view(
-                self._driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
+                self.driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
             ),
             links=self._links.build_views(self._timesync.round_trip),
+            signing=self.fleet.signing_of(selected, now),
             texts=self.log.build_lines(now, wall),
             faults=self._doctor.faults,
+            recording=self.surroundings.recording,
             simulator=self.surroundings.simulator,
             transfers=self.services.progress,
         )
@@ -284,7 +311,7 @@ class Station:
         lapse = self.operator.expire_lease(now)
         if lapse is None:
             return
-        self._driving.drop_demands()
+        self.driving.drop_demands()
         if any(contact.ours and contact.state.armed for contact in self.fleet):
             self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
 
@@ -292,11 +319,12 @@ class Station:
         selected = self.fleet.selected
         self._operator_log.tick(self.operator.sent_demand, selected.state.latency if selected else None, now)
 
-    def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
+    def _handle_statustext(self, message: m.StatusText, component: int, contact: Contact, now: float) -> None:
         system = contact.state.system
-        text = self.log.handle_statustext(message, system, now)
+        text = self.log.handle_statustext(message, system, now, component)
         if text is not None:
             contact.state.handle_text(text)
+            self.fleet.signing.handle_text(system, text)
             self._commander.handle_statustext(system, text, message.severity, now)
             self.services.handle_text(contact, text, message.severity, now)
             self._doctor.handle_text(contact, text, now)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from groundstation.snapshot import RecordingView
 from link.core import LinkReport
 
 NO_LINK = "no link yet: Connect opens one"
@@ -19,6 +20,8 @@ class Surroundings:
         """Reports of the links that are not open."""
         self.simulator: str | None = None
         """State of the simulator; None without one."""
+        self.recording: RecordingView | None = None
+        """The recording; None without one."""
         self.addresses: tuple[str, ...] = ()
         """IPv4 addresses of this machine."""
 

@@ -35,6 +35,18 @@ class ViewFeed:
     def __init__(self, sources: Mapping[type[ViewRequest], ViewSource]) -> None:
         self._sources = dict(sources)
         self._watched: dict[type[ViewRequest], _Watched] = {}
+        self._others: list[ViewFeed] = []
+
+    def open_another(self) -> ViewFeed:
+        """Return a feed for one more screen, with the same sources."""
+        other = ViewFeed({})
+        other._sources = self._sources
+        self._others.append(other)
+        return other
+
+    def close_another(self, other: ViewFeed) -> None:
+        """End the feed of a screen that is gone."""
+        self._others.remove(other)
 
     def add(self, kind: type[ViewRequest], source: ViewSource) -> None:
         """Add the source of one more kind of request."""
@@ -53,19 +65,23 @@ class ViewFeed:
             self._watched[type(request)] = watched
 
     def is_watching(self, kind: type[ViewRequest]) -> bool:
-        """Return whether the screen watches a view of this kind."""
-        return kind in self._watched
+        """Return whether a screen watches a view of this kind."""
+        return kind in self._watched or any(other.is_watching(kind) for other in self._others)
 
     def build(self, request: ViewRequest, now: float, wall: float) -> View | None:
         """Build the view for a request at once, for a station without a screen."""
         return self._sources[type(request)].build(request, now, wall)
 
-    def send_due(self, send: Callable[[View], bool], now: float, wall: float) -> None:
-        """Send the views that are due and have changed. `send` returns False for one that is to be tried again."""
+    def send_due(self, send: Callable[[View], bool], now: float, wall: float, *, paced_by: float | None = None) -> None:
+        """Send the views that are due and have changed. `send` returns False for one that is to be tried again.
+
+        `paced_by`: the clock of the periods, where `now` is a time that may stand still.
+        """
+        clock = now if paced_by is None else paced_by
         for kind, watched in self._watched.items():
             source = self._sources[kind]
-            if now < watched.due:
+            if clock < watched.due:
                 continue
             view = source.build(watched.request, now, wall)
             if view is not None and view != watched.sent and send(view):
-                watched.sent, watched.due = view, now + source.period
+                watched.sent, watched.due = view, clock + source.period

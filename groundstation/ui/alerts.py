@@ -1,4 +1,4 @@
-"""Alert rules: what is wrong, most urgent first; and the hint: what to do next."""
+"""Alert rules: what is wrong, most urgent first."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from enum import Enum, auto
 from groundstation.intents.driving import HOLD_TIME
 from groundstation.snapshot import EmergencyProgress, VehicleView
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
-from groundstation.ui.keynames import format_key
+from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
+from groundstation.ui.keys.keynames import format_key
 
 MAX_SILENCE = 99.0
 """s without a heartbeat that are still counted; after that the text is "minutes"."""
@@ -43,7 +43,8 @@ Rule = Callable[[DisplayState], Iterator[Alert]]
 
 def active_alerts(now: DisplayState) -> list[Alert]:
     """Return every alert that applies now, most urgent first."""
-    return [alert for rule in RULES for alert in rule(now)]
+    rules = RULES if now.snapshot.replay is None else REPLAY_RULES
+    return [alert for rule in rules for alert in rule(now)]
 
 
 def _station(now: DisplayState) -> Iterator[Alert]:
@@ -95,11 +96,14 @@ def _hold(now: DisplayState) -> Iterator[Alert]:
 
 
 def handover_text(now: DisplayState) -> str:
-    """Return the request of another ground station with the keys that answer it; "" without one."""
-    notice = now.snapshot.handover
+    """Return the request of another screen or ground station with the keys that answer it; "" without one."""
+    notice, lease = now.snapshot.handover, now.snapshot.lease
+    left = lease.left if lease.asks else notice.left if notice else 0.0
+    answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({left:.0f} s)"
+    if lease.asks:
+        return f"{lease.asks} asks to drive: {answers}"
     if notice is None:
         return ""
-    answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({notice.left:.0f} s)"
     return f"GCS {notice.station} requests control of {notice.vehicle}: {answers}"
 
 
@@ -138,7 +142,11 @@ def _state(now: DisplayState) -> Iterator[Alert]:
 
 
 def _gate(now: DisplayState) -> Iterator[Alert]:
-    if now.closure is not None and now.closure not in (OTHER_SCREEN, TEXT_FIELD):
+    lease = now.snapshot.lease
+    if lease.driver:
+        request = f"asked ({lease.waits:.0f} s)" if lease.waits is not None else f"{now.key('vehicle.control')} asks"
+        yield Alert(AlertLevel.WARNING, f"you watch: {lease.driver} drives; {request}, stops work")
+    elif now.closure is not None and now.closure not in (OTHER_SCREEN, TEXT_FIELD):
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 
@@ -214,10 +222,17 @@ def _operator(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
 
 
+def _gamepad(now: DisplayState) -> Iterator[Alert]:
+    if now.gamepad is not None and now.gamepad.alert:
+        yield Alert(AlertLevel.WARNING, now.gamepad.alert)
+
+
 def _settings(now: DisplayState) -> Iterator[Alert]:
     for link in now.snapshot.links:
         if link.problem:
             yield Alert(AlertLevel.WARNING, f"{link.name}: {link.problem}")
+    if now.snapshot.signing is not None and now.snapshot.signing.alarm:
+        yield Alert(AlertLevel.WARNING, now.snapshot.signing.alarm)
     for warning in now.snapshot.vehicle.warnings if now.snapshot.vehicle else ():
         yield Alert(AlertLevel.WARNING, warning)
 
@@ -229,6 +244,12 @@ def _watched(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, f"{vehicle.name} is only watched: nothing is sent on {links[0].name}")
 
 
+def _recording(now: DisplayState) -> Iterator[Alert]:
+    recording = now.snapshot.recording
+    if recording is not None and recording.problem:
+        yield Alert(AlertLevel.WARNING, recording.problem)
+
+
 def _vehicles(now: DisplayState) -> Iterator[Alert]:
     further = now.snapshot.not_shown
     if further:
@@ -238,30 +259,9 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 RULES: tuple[Rule, ...] = (
     _station, _hold, _silence, _emergency, _failsafe, _handover, _state, _key, _gate, _obeys, _operator, _driver,
-    _refusal, _id_conflict, _limits, _watched, _settings, _vehicles,
+    _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording, _vehicles,
 )  # fmt: skip
 """Most urgent first."""
 
-
-def hint(now: DisplayState) -> str:
-    """Return what to do next. It has a line of its own, which no alert hides."""
-    if not now.screen.drives:
-        return now.screen.hint
-    vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
-    if vehicle is None:
-        return f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} quits"
-    if not vehicle.armed and vehicle.prearm is False:
-        # The key all the same: PX4 is not ready until it gets MANUAL_CONTROL, which arming begins with.
-        reason = vehicle.prearm_reason or "pre-arm checks fail"
-        return f"disarmed: hold {now.key('vehicle.arm')} to arm · not ready, {reason}"
-    if not vehicle.armed:
-        return f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}"
-    stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"
-    if vehicle.obeys:
-        return stops
-    if not vehicle.in_control:
-        return f"{now.key('vehicle.control')} asks for control · {stops}"
-    if vehicle.mode != "MANUAL":
-        return f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
-    verb = "hold" if operator.style == "hold" else "press"
-    return f"{verb} {now.key('drive.forward')} to drive · {stops}"
+REPLAY_RULES: tuple[Rule, ...] = (_station, _silence, _emergency, _failsafe, _state)
+"""Those that tell what was so in the log; the others say what to do now."""

@@ -11,46 +11,53 @@ from typing import Any, ClassVar
 
 from textual import events
 from textual.app import App, SystemCommand
+from textual.await_complete import AwaitComplete
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 from textual.filter import LineFilter
 from textual.screen import Screen
 
 from groundstation.actions import OperatorAction
+from groundstation.gamepad.child import GamepadChild
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents.session import Quit, RenewLease, Watch
+from groundstation.intents.session import RenewLease
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import ReleaseControl
 from groundstation.snapshot import Snapshot
-from groundstation.ui import garbage
-from groundstation.ui.appearance import PLAIN, Appearance, Look
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.gate_checks import AppCondition, find_closure
-from groundstation.ui.key_gate import OTHER_SCREEN, GateClosure, GateLevel, KeyGate, StationConnection
-from groundstation.ui.key_hint import KeyHint
-from groundstation.ui.key_parser import KeyRepeat, KeyUp
+from groundstation.ui.keys.gate_checks import AppCondition, find_closure
+from groundstation.ui.keys.key_gate import LENT, OTHER_SCREEN, GateClosure, KeyGate, StationConnection
+from groundstation.ui.keys.key_hint import KeyHint
+from groundstation.ui.keys.pad_input import PadInput
+from groundstation.ui.keys.pressed_keys import PressedKeys
+from groundstation.ui.look.appearance import PLAIN, Appearance, Look
 from groundstation.ui.navigation import ROOT, ScreenNavigator, find_row
 from groundstation.ui.palette import STYLE as PALETTE_STYLE
 from groundstation.ui.palette import ActionProvider, action_commands, theme_commands
-from groundstation.ui.pressed_keys import PressedKeys
+from groundstation.ui.quitting import Quitting
+from groundstation.ui.replay.follower import ReplayFollower
+from groundstation.ui.replay.log_child import LogChild
+from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
-from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
-from groundstation.ui.tmux import TmuxSession
-from groundstation.ui.tty_output import TerminalFile
-from groundstation.ui.tty_ping import PERIOD
-from groundstation.views.base import ViewRequest
+from groundstation.ui.terminal import interpreter
+from groundstation.ui.terminal.console_driver import PING, ConsoleDriver, TerminalClosed
+from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
+from groundstation.ui.terminal.tmux import TmuxSession
+from groundstation.ui.terminal.tty_output import TerminalFile
+from groundstation.ui.terminal.tty_ping import PERIOD
+from groundstation.ui.view_subscription import ViewSubscription
+from groundstation.views.line import LineView
 
 TICK = 0.1
 """s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""
 
+WITHOUT_SNAPSHOT = 0.15
+"""s without a drawing after which a tick draws: snapshots come every 0.1 s, and one that is a little late is no reason
+to draw twice."""
+
 MIN_FRAME_TIME = 0.06
 """Least time between two drawings, s. Snapshots in between are skipped: only the newest counts."""
-
-QUIT_TIMEOUT = 6.0
-"""s for a station that disarms before its exit (it needs 2 to 4); then the screen leaves in any case."""
-
-DISARMING = GateClosure("quitting, disarming in 2 s; Ctrl-Q again leaves it ARMED", GateLevel.STOPS)
 
 
 class ConsoleApp(App[int]):
@@ -69,9 +76,16 @@ class ConsoleApp(App[int]):
         folder: Path = Path(),
         look: Look = PLAIN,
         first: str = ROOT.id,
+        first_request: int = 1,
+        dialect: str | None = None,
+        replay_options: Sequence[str] = (),
+        gamepad: GamepadChild | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`first` is the id of the screen that is shown at first."""
+        """`first` is the id of the screen that is shown at first, `first_request` the number of its first request.
+
+        `replay_options` are for `groundstation replay`, which shows logs that are opened here.
+        """
         self.gate = KeyGate(client, keymap, clock)
         self._first = first
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
@@ -81,16 +95,33 @@ class ConsoleApp(App[int]):
         self._pressed = PressedKeys()
         self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
-        self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
         self._tmux = TmuxSession.from_environment()
+        self._gamepad = PadInput(gamepad, self.gate, client.send, self.post_message) if gamepad else None
         self._appearance = Appearance(self, look)
-        self._watched: tuple[ViewRequest, ...] = ()
-        context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
+        context = ScreenContext(
+            keymap,
+            self._send,
+            self.perform_action,
+            self._display_state,
+            folder,
+            lambda file, at: self._log_child.open(self._snapshot, file, at),
+            dialect,
+            numbers=RequestNumbers(first_request),
+        )
         self._kept = context.kept
         self.drive = DriveScreen(context)
-        self._navigator = ScreenNavigator(self, context)
-        self._actions = {"app.quit": self.request_quit, **self._navigator.actions, **self.drive.actions}
+        self._navigator = ScreenNavigator(self, context, self._appearance.choose_theme)
+        self._log_child = LogChild(self, replay_options, self._say, lambda: self.gate.set_closure(LENT))
+        self._subscription = ViewSubscription(self._navigator, self._send)
+        self._quitting = Quitting(self, client, self.gate, self._log_child, lambda: self._snapshot.left_armed)
+        self._replay = ReplayFollower(self._kept, lambda: self._navigator.shown)
+        self._actions = {
+            "app.quit": self._quitting.request,
+            "drive.gamepad": self._choose_gamepad,
+            **self._navigator.actions,
+            **self.drive.actions,
+        }
 
     # ---- start and end ----
 
@@ -106,7 +137,9 @@ class ConsoleApp(App[int]):
         self._tmux.start(self._own_loop)
         self.set_interval(PERIOD, self._ping)
         if self._terminal is not None:
-            self.call_after_refresh(garbage.freeze)
+            self.call_after_refresh(interpreter.freeze)
+        if self._gamepad is not None:
+            self._gamepad.start()
 
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
@@ -116,19 +149,17 @@ class ConsoleApp(App[int]):
 
     def end(self, code: int = 0) -> None:
         """Close the gate, which means neutral, and leave."""
-        self._leaving = GateClosure("quitting")
-        self.gate.set_closure(self._leaving)
-        self.exit(code)
+        self._quitting.end(code)
 
-    def request_quit(self) -> None:
-        """Quit. What would be left armed is disarmed before; a second request quits at once and leaves it armed."""
-        if self._leaving is not None or not self._snapshot.left_armed or not self._client.alive:
-            self.end()
-            return
-        self._leaving = DISARMING
-        self.gate.set_closure(self._leaving)
-        self._send(Quit(disarm=True))
-        self.set_timer(QUIT_TIMEOUT, self.end)
+    def _say(self, note: str) -> None:
+        if (shown := self._navigator.shown) is not None:
+            shown.say(note)
+
+    def _choose_gamepad(self) -> None:
+        if self._gamepad is None:
+            self._say("no gamepad: start with --gamepad any")
+        else:
+            self._gamepad.child.choose_next()
 
     def end_threadsafe(self, code: int) -> None:
         """Leave from a signal handler: takes no lock."""
@@ -149,6 +180,11 @@ class ConsoleApp(App[int]):
             self._appearance.settle(screen)
         return super().push_screen(screen, *arguments, **options)
 
+    def pop_screen(self) -> AwaitComplete:
+        """Pop the screen on top; what closes towards another screen keeps the keys until that one is open."""
+        self._navigator.note_popped(self.screen)
+        return super().pop_screen()
+
     # ---- the station ----
 
     def _send(self, intent: AnyIntent) -> None:
@@ -158,9 +194,11 @@ class ConsoleApp(App[int]):
         """Take the newest snapshot; several may wait."""
         snapshot = self._client.receive()
         for view in self._client.pop_views():
-            if (shown := self._navigator.shown) is not None:
+            if isinstance(view, LineView):
+                self._navigator.show_line(view)
+            elif (shown := self._navigator.shown) is not None:
                 shown.show_view(view)
-        self._watch()
+        self._subscription.update()
         if snapshot is not None:
             self._handle_snapshot(snapshot)
         if self._client.outage != self._outage:
@@ -168,21 +206,18 @@ class ConsoleApp(App[int]):
             self._tick()
         if not self._client.open:
             asyncio.get_running_loop().remove_reader(self._client.fileno())
-        if not self._client.alive and self._leaving is DISARMING:
-            self.end()
-
-    def _watch(self) -> None:
-        """Request the views that the screen on top needs."""
-        if (requests := self._navigator.requests()) != self._watched:
-            self._watched = requests
-            self._send(Watch(requests))
+        if not self._client.alive:
+            self._quitting.handle_station_ended()
 
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
+        self._replay.follow(snapshot.replay)
         self._snapshot = snapshot
         vehicle, operator = snapshot.vehicle, snapshot.operator
         self._tmux.handle_control(vehicle is not None and vehicle.in_control, any_vehicle=bool(snapshot.left_armed))
         driving = bool(operator.throttle or operator.steering or operator.held)
-        self.gate.update(armed=vehicle is not None and vehicle.armed, driving=driving)
+        armed = vehicle is not None and vehicle.armed
+        self.gate.update(armed=armed, driving=driving)
+        interpreter.favour_input(driving or (armed and vehicle is not None and vehicle.in_control))
         if self._clock() - self._shown_at >= MIN_FRAME_TIME:
             self._show()
 
@@ -190,10 +225,10 @@ class ConsoleApp(App[int]):
         self._shown_at = self._clock()
         self._key_hint.note_split(self.gate.split_keys, self._shown_at)
         now = self._display_state()
-        if self.drive.is_mounted:
-            self.drive.show_state(now)
         shown = self._navigator.shown
-        if shown is not None and shown is not self.drive and shown.is_mounted:
+        if shown is not self.drive:
+            self.drive.keep_state(now)
+        if shown is not None and shown.is_mounted:
             shown.show_state(now)
 
     def _display_state(self) -> DisplayState:
@@ -211,6 +246,7 @@ class ConsoleApp(App[int]):
             terminal_silence=self.gate.ping.waited(self._clock()),
             ascii=self._appearance.look.ascii,
             still=self._appearance.look.reduce_motion,
+            gamepad=self._gamepad.state(self._clock()) if self._gamepad else None,
             kept=self._kept,
         )
 
@@ -226,22 +262,23 @@ class ConsoleApp(App[int]):
         now = self._clock()
         self._client.send(RenewLease())
         self.gate.set_closure(self._gate_closure(now))
-        self._watch()
+        self._subscription.update()
         if self._tmux.pop_release(now):
             self._send(ReleaseControl(all=True))
         self._pressed.expire(now)
-        if now - self._shown_at >= TICK:
+        if now - self._shown_at >= WITHOUT_SNAPSHOT:
             self._show()
 
     def _ping(self) -> None:
-        if isinstance(self._driver, ConsoleDriver) and self.gate.ping.next_due(self._clock()):
+        lent = self._log_child.running  # a ping would go unanswered
+        if isinstance(self._driver, ConsoleDriver) and not lent and self.gate.ping.next_due(self._clock()):
             self._driver.write(PING)
 
     def _gate_closure(self, now: float) -> GateClosure | None:
         """Return why keys must not drive now, as far as the UI knows; None when they may."""
         return find_closure(
             AppCondition(
-                leaving=self._leaving,
+                leaving=self._quitting.closure,
                 station_alive=self._client.alive,
                 outage=self._outage.text,
                 other_screen=self._navigator.closure(),
@@ -250,28 +287,46 @@ class ConsoleApp(App[int]):
                 too_small=self.drive.too_small,
                 terminal_silent=self.gate.ping.is_silent(now),
                 terminal_stuck=self._terminal is not None and self._terminal.is_stuck(time.monotonic()),
+                replay=self._snapshot.replay is not None,
+                lent=self._log_child.running,
+                driver=self._snapshot.lease.driver,
             )
         )
 
     # ---- keys ----
 
     async def on_event(self, event: events.Event) -> None:
-        """Handle a key before any widget: quit works everywhere. Without our driver the gate gets the key here."""
-        if isinstance(event, events.Key) and not self.screen_stack:
-            return  # it arrived while the app removed its screens, and Textual would raise
-        if isinstance(event, events.Key) and not event.is_forwarded:
-            if not isinstance(self._driver, ConsoleDriver):
-                self.gate.handle_keys([KeyEvent(event.key)])
-            action = self._keys.get_action(event.key)
-            if action is not None and action.id == "app.quit":
-                if not isinstance(event, KeyRepeat):  # a held key is one request
-                    self.request_quit()
+        """Handle a key before any widget does."""
+        if isinstance(event, events.Key):
+            if not self.screen_stack:
+                return  # it arrived while the app removed its screens, and Textual would raise
+            if not event.is_forwarded and self._take_key(event):
                 return
-            if not isinstance(event, KeyRepeat):  # snapshots report a key that counts as held
-                self._light(event.key)
         await super().on_event(event)
         if isinstance(event, (events.Key, events.AppBlur, events.AppFocus)) and self.screen_stack:
             self.gate.set_closure(self._gate_closure(self._clock()))
+
+    def _take_key(self, event: events.Key) -> bool:
+        """Return whether no widget gets the key: quit works everywhere. Without our driver the gate gets it here.
+
+        A held key comes 30 times a second, and no widget does anything with one that the gate has sent.
+        """
+        if not isinstance(self._driver, ConsoleDriver):
+            self.gate.handle_keys([KeyEvent(event.key)])
+        action = self._keys.get_action(event.key)
+        name = "" if action is None else action.id
+        if isinstance(event, KeyRepeat):  # a held key is one request, and snapshots report a key that counts as held
+            return name == "app.quit"
+        if name == "app.quit":
+            self._quitting.request()
+            return True
+        if self._navigator.closing:
+            return True
+        self._light(event.key)
+        if name == "app.goto":
+            return self._navigator.open_menu_at_once()
+        sent = action is not None and action.intent is not None and self.gate.closure is None
+        return sent and self.screen is self.drive and self.app_focus and self.drive.question is None
 
     def on_key(self, event: events.Key) -> None:
         """Handle a key that the screen on top of Drive did not take: another screen's key, and Escape."""
@@ -288,7 +343,8 @@ class ConsoleApp(App[int]):
         self._pressed.release(event.key)
         if (shown := self._navigator.shown) is not None:
             shown.release_key(event.key)
-        self.drive.light_keycaps(self._pressed.names)
+        if shown is self.drive:
+            self.drive.light_keycaps(self._pressed.names)
 
     def _light(self, key: str) -> None:
         self._pressed.press(key, self._clock())

@@ -10,7 +10,7 @@ from pathlib import Path
 from groundstation.intents.links import AddLink
 from groundstation.recent.recent import RecentEndpoint, RecentEndpoints
 from groundstation.recent.recent_file import RecentFile
-from groundstation.simulators import SIMULATORS
+from groundstation.sitl.simulators import SIMULATORS
 from groundstation.ui.local_files import LocalFile, list_logs
 from groundstation.views.connect import ConnectView, HeardRow, LinkAttempt, PortRow
 from link.endpoint import ANY_ADDRESSES, LISTENING, EndpointError, parse_endpoint
@@ -60,6 +60,8 @@ class ConnectModel:
         self.view: ConnectView | None = None
         self.chosen = Panel.HEARD
         self.baud = BAUDS[0]
+        self.search = False
+        """Also ask the network for vehicles that announce themselves."""
         self._cursors = dict.fromkeys(Panel, 0)
         self._awaited: AddLink | None = None
         self._wanted_system: int | None = None
@@ -155,7 +157,8 @@ class ConnectModel:
         row = self.heard[at]
         if row.open:
             return Choice(f"drives {row.system} {row.name}", system=row.system)
-        return Choice(f"connects to {row.system} {row.name}", row.endpoint, row.system)
+        name = f"{row.system} {row.name}" if row.system else row.name
+        return Choice(f"connects to {name}", row.endpoint, row.system or None)
 
     def _recent_choice(self, at: int) -> Choice:
         return self._opening(self.entries[at].endpoint)

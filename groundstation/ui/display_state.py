@@ -9,8 +9,9 @@ from typing import Any
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.input.keymap import Keymap
 from groundstation.snapshot import Snapshot
-from groundstation.ui.key_gate import GateClosure
-from groundstation.ui.keynames import format_key, main_key
+from groundstation.ui.keys.key_gate import GateClosure
+from groundstation.ui.keys.keynames import format_key, main_key
+from groundstation.ui.keys.pad_state import PadState
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +74,8 @@ class DisplayState:
     """The terminal shows ASCII characters only."""
     still: bool = False
     """Nothing may move by itself."""
+    gamepad: PadState | None = None
+    """The gamepad; None where none was asked for."""
     kept: Mapping[type, Any] = field(default_factory=dict)
     """What screens keep while they are closed, by its class (ScreenContext.keep)."""
 

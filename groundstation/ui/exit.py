@@ -8,7 +8,7 @@ import signal
 from collections.abc import Callable, Iterator
 from types import FrameType
 
-from groundstation.ui.tty_output import TerminalFile
+from groundstation.ui.terminal.tty_output import TerminalFile
 
 SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from groundstation.ui.alerts import hint
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.hints import hint
 from groundstation.ui.stops_model import is_near
 from groundstation.ui.widgets.alert import AlertLine, AlertValue, HintLine
 from groundstation.ui.widgets.footer import FooterValue, KeyFooter

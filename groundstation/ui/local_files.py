@@ -40,3 +40,9 @@ def list_files(folder: Path) -> tuple[LocalFile, ...]:
 def list_logs(folder: Path) -> tuple[LocalFile, ...]:
     """Return the logs of a folder, the newest first."""
     return tuple(each for each in list_files(folder) if each.name.endswith(LOG_ENDINGS))
+
+
+def short_path(path: Path) -> str:
+    """Return a path with "~" in place of the home folder."""
+    home = Path.home()
+    return f"~/{path.relative_to(home)}" if path.is_relative_to(home) else str(path)

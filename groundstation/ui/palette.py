@@ -11,7 +11,7 @@ from textual.command import DiscoveryHit, Hit, Hits, Provider
 from groundstation.actions import ACTIONS, OperatorAction
 from groundstation.config.settings import ThemeName
 from groundstation.intents.driving import DriveKeyDown
-from groundstation.ui.themes import THEMES
+from groundstation.ui.look.themes import THEMES
 
 STYLE = """
 CommandPalette { background: transparent; }

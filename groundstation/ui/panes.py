@@ -12,14 +12,15 @@ from functools import partial
 from typing import Any, TypeVar
 
 from groundstation.snapshot import LogLine
-from groundstation.ui.colours import AMBER, GREEN
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import AMBER, GREEN
 from groundstation.ui.map.copies import PlanCopies
 from groundstation.ui.map.pane import build_pane
 from groundstation.ui.widgets.chart import SPAN, Chart, ChartValue, Series
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.ui.widgets.log import LogPanel
-from groundstation.ui.widgets.plan_map import PlanMap, PlanMapValue
+from groundstation.ui.widgets.plan_map import PlanMap
+from groundstation.ui.widgets.plan_map_value import PlanMapValue
 from groundstation.ui.widgets.rates import RatesPanel
 from groundstation.ui.widgets.track import TrackMap, TrackValue
 from groundstation.views.base import View, ViewRequest

@@ -9,10 +9,10 @@ from groundstation.views.requests import RequestLine, RequestsView
 
 
 class RequestNumbers:
-    """Counts from 1."""
+    """Counts from `first`, which the station gives each screen, so that no two use the same number."""
 
-    def __init__(self) -> None:
-        self.take: Callable[[], int] = count(1).__next__
+    def __init__(self, first: int = 1) -> None:
+        self.take: Callable[[], int] = count(first).__next__
         """Returns the next number."""
 
 

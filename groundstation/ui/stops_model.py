@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from groundstation.drive_views import StopBound
+from groundstation.intents.driving import PAD
+from groundstation.snapshot.drive import StopBound
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.tty_ping import SILENT_AFTER
+from groundstation.ui.terminal.tty_ping import SILENT_AFTER
 
 NEAR = 0.5
 """Share of a bound from which on it is shown with each snapshot; below, twice a second is enough."""
@@ -26,6 +27,8 @@ def is_near(now: DisplayState) -> bool:
 
 def _key(now: DisplayState) -> StopBound:
     operator = now.snapshot.operator
+    if PAD in operator.held:
+        return StopBound("pad let go", "neutral", "gamepad", 0.0)
     source = "releases reported" if operator.reports_releases else "timer"
     if not math.isfinite(operator.stop_bound):
         return StopBound("key let go", "nothing", operator.style, never=True)

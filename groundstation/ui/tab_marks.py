@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from groundstation.ui.colours import BLUE, RED
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import BLUE, RED
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.params.model import ParamModel
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from groundstation.views.requests import RequestLine, RequestsView
 
-SERVICES = frozenset({"files", "params", "plans"})
+SERVICES = frozenset({"files", "params", "plans", "export"})
 """Services whose requests take long enough to be listed."""
 
 WINDOW = 5.0
@@ -32,14 +32,30 @@ class TaskList:
     def __init__(self) -> None:
         self.running: tuple[RequestLine, ...] = ()
         self.ended: tuple[RequestLine, ...] = ()
+        self._view = RequestsView((), ())
+        self._local: tuple[RequestLine, ...] = ()
+        """Requests of this process: exports."""
         self._samples: dict[int, deque[tuple[float, int]]] = {}
         self._known: set[int] = set()
         self._fresh: list[int] = []
 
     def show(self, view: RequestsView, now: float) -> None:
         """Take a view."""
-        self.running = tuple(line for line in reversed(view.running) if line.service in SERVICES)
-        ended = [line for line in reversed(view.ended) if line.service in SERVICES]
+        self._view = view
+        self._update(now)
+
+    def show_local(self, lines: tuple[RequestLine, ...], now: float) -> None:
+        """Take what runs and has ended in this process."""
+        if lines != self._local:
+            self._local = lines
+            self._update(now)
+
+    def _update(self, now: float) -> None:
+        view, local = self._view, self._local
+        running = (*view.running, *(line for line in local if line.state == "running"))
+        self.running = tuple(line for line in reversed(running) if line.service in SERVICES)
+        all_ended = (*view.ended, *(line for line in local if line.state != "running"))
+        ended = [line for line in reversed(all_ended) if line.service in SERVICES]
         self._fresh += [line.number for line in ended if line.number not in self._known]
         self._known = {line.number for line in ended}
         self.ended = tuple(sorted(ended, key=lambda line: -line.number)[:SHOWN_ENDED])

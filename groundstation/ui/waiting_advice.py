@@ -101,6 +101,16 @@ def _serial(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iter
     yield _text("  the autopilot sends MAVLink on that port (ArduPilot: SERIALn_PROTOCOL 2)")
 
 
+def _fleet(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[Advice]:
+    """For a router: what the vehicle starts, with a file of its own."""
+    vehicle = endpoint.vehicle or "rover1"
+    is_file = ".json" in endpoint.locator
+    place = f"{vehicle}.json5" if is_file else endpoint.locator
+    yield _text(f"A vehicle must connect to the same router{', with its own file' if is_file else ''}. There:")
+    yield _command(f"vehicle --config rover.toml zenoh:{place}/{endpoint.fleet}/{vehicle}")
+    yield _text("docs/fleet.md tells how its file is made, and what the router says of those who connect.")
+
+
 def _text(text: str) -> Advice:
     return Advice(AdviceKind.TEXT, text)
 
@@ -123,5 +133,6 @@ _BY_SCHEME: dict[str, Callable[[Endpoint, Sequence[str], str], Iterator[Advice]]
     "udpout": _sending,
     "tcpout": _sending,
     "serial": _serial,
+    "zenoh": _fleet,
 }
 """Scheme of link.endpoint.SCHEMES -> its advice."""

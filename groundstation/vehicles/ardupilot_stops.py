@@ -8,7 +8,7 @@ MANUAL_CONTROL counts as a heartbeat for FS_GCS_ENABLE.
 from __future__ import annotations
 
 from dialects.enums import VehicleType
-from groundstation.drive_views import StopBound
+from groundstation.snapshot.drive import StopBound
 from groundstation.vehicles.stop_rules import StopFacts, StopRules, action_bound, is_off
 
 ROVERS = (VehicleType.GROUND_ROVER, VehicleType.SURFACE_BOAT)

@@ -15,9 +15,9 @@ class ControlReport:
     driver: int | None = None
     """System id of the ground station in control, 0: none; None: the vehicle does not tell."""
     component: int | None = None
-    """Its component id; None: not told."""
+    """Its component id; None: not reported."""
     session: int | None = None
-    """Its session, 0: it has none; None: not told."""
+    """Its session, 0: it has none; None: not reported."""
     silent: bool = False
     """It is silent: another program with its ids takes over with its next demand or command."""
     clash: bool = False

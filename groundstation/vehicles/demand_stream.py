@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from dialects.axes import NEUTRAL, Axes
+from groundstation.vehicles.demand_copies import DemandCopies
 
 DRIVING_PERIOD = 0.05
 """s between demands while driving and just after: nine of them in the vehicle's MAN_TIMEOUT of 0.45 s."""
@@ -23,13 +24,20 @@ FINAL_NEUTRALS = 5
 """Neutral frames at the end of a drive, DRIVING_PERIOD apart: all five are lost once in 400 at 30 % loss."""
 
 CLOSEST = 0.008
-"""Least s between two changed demands. The vehicle takes 200 demands/s; hands make fewer. Neutral is exempt."""
+"""Least s between two changed demands. The vehicle takes 200 demands/s; hands make fewer. Neutral is exempt, and copies
+(demand_copies.py) have a limit of their own."""
 
 
 class DemandStream:
     """Decides whether a demand goes out at a given moment. Times in s."""
 
-    def __init__(self) -> None:
+    def __init__(self, copies: DemandCopies | None = None) -> None:
+        """Let `copies` follow each change; None: nothing follows until the demand is due again."""
+        self._copies = copies
+        self.copying = False
+        """What `next_due` has returned is a copy."""
+        self._waits = False
+        """A changed demand waits until CLOSEST has passed."""
         self._sent = NEUTRAL
         self._changed_at = -math.inf
         self._due = -math.inf
@@ -52,12 +60,26 @@ class DemandStream:
         if self._streaming and not streaming:
             self._neutrals_left, self._due = FINAL_NEUTRALS, now
         self._streaming = streaming
+        self.copying = self._waits = False
         if not streaming:
-            return self._final_neutral(now)
+            return self._final_neutral(now) or self._copy(NEUTRAL, now)
         self._neutrals_left = 0
         if demand != self._sent and (demand.neutral or now - self._changed_at >= CLOSEST):
             return self._send(demand, now, now)
-        return self._send(demand, now, self._due) if now >= self._due else None
+        self._waits = demand != self._sent and now < self._due
+        return self._send(demand, now, self._due) if now >= self._due else self._copy(demand, now)
+
+    @property
+    def due_at(self) -> float | None:
+        """When to call `next_due` even if nothing happens before; None: not sooner than at the steady rate."""
+        waits = self._changed_at + CLOSEST if self._waits else None
+        copy = self._copies.due_at if self._copies is not None else None
+        return min((at for at in (waits, copy) if at is not None), default=None)
+
+    def adapt(self, loss: float | None, capacity: float | None) -> None:
+        """Set what is known of the link to the vehicle, see DemandCopies."""
+        if self._copies is not None:
+            self._copies.adapt(loss, capacity)
 
     def resume(self, now: float) -> None:
         """Go on at the driving rate, starting now."""
@@ -70,6 +92,12 @@ class DemandStream:
         self._moved_at = now
         return self._send(NEUTRAL, now, self._due)
 
+    def _copy(self, demand: Axes, now: float) -> Axes | None:
+        """Return the demand that was sent last if a copy of it is due and it still holds."""
+        due = self._copies is not None and self._copies.take(now, neutral=demand.neutral)
+        self.copying = due and demand == self._sent
+        return demand if self.copying else None
+
     def _send(self, demand: Axes, now: float, due: float) -> Axes:
         """Send, and count the period from when the demand was `due`: a late tick must not lower the rate."""
         if not demand.neutral or not self._sent.neutral:
@@ -77,5 +105,7 @@ class DemandStream:
         period = DRIVING_PERIOD if now - self._moved_at < SETTLE else NEUTRAL_PERIOD
         if demand != self._sent:
             self._sent, self._changed_at = demand, now
+            if self._copies is not None:
+                self._copies.plan(now)
         self._due = max(due + period, now)
         return demand

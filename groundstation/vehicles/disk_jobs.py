@@ -18,6 +18,8 @@ class DiskWork(Enum):
     """Keep the beginning of a download."""
     STORE = auto()
     """Write a whole download under its name."""
+    CHECKSUM = auto()
+    """Compute the checksum of a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +41,8 @@ class DiskResult:
     number: int
     work: DiskWork
     data: bytes = b""
+    checksum: int = 0
+    """CRC-32 as MAVLink FTP computes it, of a CHECKSUM job."""
     problem: str = ""
     """Why it failed, one line that names the file; "" after success."""
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 from dialects import messages as m
 from groundstation.vehicles.foreign_drive import drive_params
-from groundstation.vehicles.health import Health
-from groundstation.vehicles.mission_progress import MissionState
+from groundstation.vehicles.health import HealthReadings
+from groundstation.vehicles.mission_progress import MissionMessages
 from groundstation.vehicles.speed_series import SpeedSeries
 from groundstation.vehicles.step_meter import StepMeter
 from groundstation.vehicles.stop_bounds import find_rules
@@ -28,8 +28,8 @@ class DriveReadings:
     """Collects them from the messages of its autopilot."""
 
     def __init__(self, state: VehicleState, params: VehicleParams) -> None:
-        self.health = Health()
-        self.mission = MissionState()
+        self.health = HealthReadings()
+        self.mission = MissionMessages()
         self.speeds = SpeedSeries()
         self.steps = StepMeter(state.key_timings)
         self.params = params

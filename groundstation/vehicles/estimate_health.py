@@ -6,7 +6,7 @@ import math
 
 from dialects import messages as m
 from dialects.enums import EstimatorFlag
-from groundstation.drive_views import HealthLine
+from groundstation.snapshot.drive import HealthLine
 
 FAIR = 0.5
 """Variances and test ratios from which on to look: from 0.8 on (FS_EKF_THRESH) ArduRover's failsafe counts."""

@@ -7,31 +7,29 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from dialects.axes import Axes, AxisMap, axis_map
-from dialects.enums import Autopilot, Severity, VehicleType
-from dialects.messages import Heartbeat, Message
+from dialects.enums import Severity
 from dialects.modes import Mode
+from groundstation.snapshot.log_origin import LogOrigin
+from groundstation.snapshot.signing import SigningView
+from groundstation.vehicles.demand_copies import DemandCopies
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.drive_readings import DriveReadings
 from groundstation.vehicles.message_log import STATE, MessageLog
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
+from groundstation.vehicles.signing_watch import SIGNING, SigningWatch
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_details import VehicleDetails
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
 from groundstation.vehicles.vehicle_params import VehicleParams
 from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
 from link.protocol.peer_table import MAX_PEERS
 
-MAX_VEHICLES = 128
-"""A hundred and some. A flood of invented system ids must not grow a table."""
-
 PLACES = MAX_VEHICLES + MAX_PEERS
 """Peers on one link: each vehicle may have an address of its own, and ground stations come beside them."""
-
-
-SIGNING = "signs its frames; this ground station cannot sign: it may ignore commands"
 
 
 @dataclass(slots=True)
@@ -46,7 +44,7 @@ class Contact:
     details: VehicleDetails
     drive: DriveReadings
     settings_check: SettingsCheck | None = None
-    demand_stream: DemandStream = field(default_factory=DemandStream)
+    demand_stream: DemandStream = field(default_factory=lambda: DemandStream(DemandCopies()))
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     services: VehicleServices | None = None
     """Parameters, plans and files; None before the first request."""
@@ -61,7 +59,9 @@ class Contact:
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
     signs: bool = False
-    """The vehicle signs its frames."""
+    """The vehicle signs its frames, with a key that we do not have."""
+    verified: bool = False
+    """The vehicle signs its frames, with a key of ours."""
     axes: AxisMap | None = None
     """Of the newest demand."""
 
@@ -127,6 +127,7 @@ class Fleet:
     def __init__(self, log: MessageLog, system: int, component: int) -> None:
         self._log = log
         self._own_id = (system, component)
+        self.signing = SigningWatch(system)
         self._contacts: dict[int, Contact] = {}
         self._selected: Contact | None = None
         self._not_shown: dict[int, float] = {}
@@ -159,6 +160,11 @@ class Fleet:
     def get(self, system: int) -> Contact | None:
         """Return the contact with this system id, or None."""
         return self._contacts.get(system)
+
+    def name_of(self, system: int) -> str:
+        """Return the name of the vehicle with this id; "" where there is none."""
+        contact = self._contacts.get(system)
+        return contact.state.name if contact else ""
 
     def select(self, system: int, now: float) -> None:
         """Select the vehicle with this system id, if there is one."""
@@ -227,11 +233,21 @@ class Fleet:
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Notice which vehicles sign their frames."""
-        signing = {system for report in reports for system in report.signing}
+        self.signing.observe(reports, now)
+        verified = {system for report in reports for system in report.verified}
+        signing = {system for report in reports for system in report.signing} - verified
         for contact in self._contacts.values():
             before, contact.signs = contact.signs, contact.state.system in signing
+            contact.verified = contact.state.system in verified
             if contact.signs and not before:
                 self._log.add(now, "station", f"{contact.state.name}: {SIGNING}", Severity.WARNING)
+
+    def signing_of(self, contact: Contact | None, now: float) -> SigningView | None:
+        """Return what is known of signing with a vehicle; without one, of the system whose frames are refused."""
+        if contact is None:
+            return self.signing.find_refused(now)
+        alive, system = contact.lost_at is None, contact.state.system
+        return self.signing.build_view(system, now, alive=alive, verified=contact.verified, signs=contact.signs)
 
     def update(self, now: float) -> None:
         """Notice which vehicles are lost and which are back, and what has changed."""
@@ -239,15 +255,11 @@ class Fleet:
         for contact in self._contacts.values():
             monitor, name = contact.state.monitor, contact.state.name
             for change in contact.changes.update(contact.state):
-                self._log.add(now, STATE, f"{name}: {change}", Severity.NOTICE)
+                origin = LogOrigin(contact.state.system)
+                self._log.add(now, STATE, f"{name}: {change}", Severity.NOTICE, origin=origin)
             if contact.lost_at is None and not monitor.is_alive(now):
                 contact.lose(now)
                 self._log.add(now, "station", f"{name}: link lost for {monitor.timeout:g} s", Severity.CRITICAL)
             elif contact.lost_at is not None and monitor.is_alive(now):
                 self._log.add(now, "station", f"{name}: link back after {now - contact.lost_at:.1f} s", Severity.NOTICE)
                 contact.restore(now)
-
-
-def is_vehicle(message: Message) -> bool:
-    """Return whether this is the HEARTBEAT of a vehicle, not of a ground station, a camera or a radio."""
-    return isinstance(message, Heartbeat) and message.type != VehicleType.GCS and message.autopilot != Autopilot.INVALID

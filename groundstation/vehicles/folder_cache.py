@@ -38,7 +38,10 @@ class FolderCache:
         self._asked[number] = path
         self._files.list_folder(number, path, now)
 
-    def handle_report(self, report: RequestReport) -> None:
+    def cancel(self, number: int, now: float) -> None:
+        """End nothing: the report of the cancelled request follows."""
+
+    def handle_report(self, report: RequestReport, now: float) -> None:
         """Take the list of a request that has ended."""
         if not report.state.ended or report.number not in self._asked:
             return

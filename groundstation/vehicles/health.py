@@ -1,4 +1,4 @@
-"""Health of one vehicle in words, one line for each subsystem. Another message is a function and a row in READERS."""
+"""HealthReadings: the health of one vehicle in words, by line. A new message is a function and a row in READERS."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from dialects import messages as m
-from groundstation.drive_views import HealthLine
+from groundstation.snapshot.drive import HealthLine
 from groundstation.vehicles.estimate_health import ekf_line, estimator_line
 from groundstation.vehicles.sensor_health import sensor_lines
 
@@ -90,7 +90,7 @@ READERS: dict[type[m.Message], Callable[[Any], Lines]] = {
 """Message -> its lines. The first message that tells of a subsystem wins, unless another one finds it not healthy."""
 
 
-class Health:
+class HealthReadings:
     """The newest lines of each message."""
 
     def __init__(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from groundstation.drive_views import KeyToMotor, Timing
+from groundstation.snapshot.drive import KeyToMotor, Timing
 
 KEPT = 200
 """Presses kept: enough for two of a hundred, and a few minutes of driving."""

@@ -58,6 +58,8 @@ class LatencyMeter:
         demand = self._sent.pop(sequence, None)
         if demand is None or now - demand.made > TOO_OLD:
             return
+        for copy in [number for number, other in self._sent.items() if other.made == demand.made]:
+            del self._sent[copy]  # it arrives after the demand that is obeyed
         self.reports += 1
         self.latest = max(0.0, now - demand.made - age)
         self._timings.add(demand.key, max(0.0, now - demand.sent - age) / 2, age + AGE_STEP)

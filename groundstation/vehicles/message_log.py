@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice, takewhile
+
+import msgspec
 
 from dialects.enums import Severity
 from dialects.messages import StatusText, decode_text, printable
 from groundstation.snapshot import LogLine
+from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.views.log import LogPage, LogRequest
 
 MAX_LINES = 2000
@@ -46,6 +50,8 @@ class _Line:
     number: int
     state: int
     """State of the log after the line was added or counted again."""
+    origin: LogOrigin | None
+    first: float
     count: int = 1
 
 
@@ -56,6 +62,7 @@ class _Chunks:
     started: float
     severity: int
     parts: dict[int, str]
+    origin: LogOrigin
     last: int | None = None
 
     @property
@@ -71,33 +78,43 @@ class MessageLog:
     """Texts in the order of arrival. Times are of the monotonic clock; `build_lines` converts them to wall clock."""
 
     def __init__(self) -> None:
+        self.listener: Callable[[float, str, str, int], None] | None = None
+        """Gets each line that is added: time, label, text, severity."""
+        self.name_of: Callable[[int], str] = lambda system: ""
+        """Returns the name of the vehicle with a system id, "" where it has none."""
         self._lines: deque[_Line] = deque(maxlen=MAX_LINES)
         self._chunks: dict[tuple[int, int], _Chunks] = {}
         self._number = 0
         self._state = 0
 
-    def add(self, now: float, label: str, text: str, severity: int = Severity.INFO) -> None:
-        """Add a line, or count it if it repeats the last line."""
+    def add(
+        self, now: float, label: str, text: str, severity: int = Severity.INFO, *, origin: LogOrigin | None = None
+    ) -> None:
+        """Add a line, or count it if it repeats the last line. The name of the vehicle is filled in."""
         text = printable(text)[:MAX_LENGTH]
+        if self.listener is not None:
+            self.listener(now, label, text, severity)
         self._state += 1
+        if origin is not None:
+            origin = msgspec.structs.replace(origin, vehicle=self.name_of(origin.system))
         last = self._lines[-1] if self._lines else None
-        if last is not None and (last.label, last.severity, last.text) == (label, severity, text):
+        if last is not None and _same(last, label, text, severity, origin):
             last.count += 1
             last.time, last.state = now, self._state
         else:
             self._number += 1
-            self._lines.append(_Line(now, severity, label, text, self._number, self._state))
+            self._lines.append(_Line(now, severity, label, text, self._number, self._state, origin, now))
 
-    def handle_statustext(self, message: StatusText, system: int, now: float) -> str | None:
+    def handle_statustext(self, message: StatusText, system: int, now: float, component: int = 0) -> str | None:
         """Handle a STATUSTEXT. Returns the text when all its chunks have arrived."""
-        severity = int(message.severity)
+        severity, origin = int(message.severity), LogOrigin(system, component)
         if message.id == 0:  # an extension field: 0 means "not one of several chunks"
-            self.add(now, "vehicle", decode_text(message), severity)
+            self.add(now, "vehicle", decode_text(message), severity, origin=origin)
             return decode_text(message)
         key = (system, int(message.id))
         if key not in self._chunks and len(self._chunks) >= MAX_CHUNKS:
             self.expire(now, everything=True)
-        chunks = self._chunks.setdefault(key, _Chunks(now, severity, {}))
+        chunks = self._chunks.setdefault(key, _Chunks(now, severity, {}, origin))
         part = decode_text(message)
         chunks.parts[min(int(message.chunk_seq), MAX_CHUNKS - 1)] = part
         if len(message._text_raw.split(b"\0", 1)[0]) < CHUNK or message.chunk_seq >= MAX_CHUNKS - 1:
@@ -105,7 +122,7 @@ class MessageLog:
         if not chunks.complete:
             return None
         del self._chunks[key]
-        self.add(now, "vehicle", chunks.text, chunks.severity)
+        self.add(now, "vehicle", chunks.text, chunks.severity, origin=chunks.origin)
         return chunks.text
 
     def expire(self, now: float, *, everything: bool = False) -> None:
@@ -113,7 +130,7 @@ class MessageLog:
         for key, chunks in list(self._chunks.items()):
             if everything or now - chunks.started > CHUNK_TIMEOUT:
                 del self._chunks[key]
-                self.add(now, "vehicle", chunks.text + " ...", chunks.severity)
+                self.add(now, "vehicle", chunks.text + " ...", chunks.severity, origin=chunks.origin)
 
     def build_lines(self, now: float, wall: float) -> tuple[LogLine, ...]:
         """Return the NEWEST lines, oldest first; `now` and `wall` are the same moment on both clocks.
@@ -134,6 +151,10 @@ class MessageLog:
         return LogPage(tuple(_build_line(line, now, wall) for line in lines), lines[-1].state, request.after)
 
 
+def _same(line: _Line, label: str, text: str, severity: int, origin: LogOrigin | None) -> bool:
+    return (line.label, line.severity, line.text, line.origin) == (label, severity, text, origin)
+
+
 def _build_line(line: _Line, now: float, wall: float) -> LogLine:
     return LogLine(
         time=wall - (now - line.time),
@@ -142,4 +163,6 @@ def _build_line(line: _Line, now: float, wall: float) -> LogLine:
         text=line.text,
         count=line.count,
         number=line.number,
+        first=wall - (now - line.first) if line.count > 1 else None,
+        origin=line.origin,
     )

@@ -8,12 +8,13 @@ from itertools import pairwise
 
 from dialects import messages as m
 from dialects.enum_names import enum_names
-from groundstation.drive_views import MissionProgress
-from groundstation.vehicles.vehicle_details import Place, find_way, to_place
+from groundstation.geo import Place, find_way
+from groundstation.snapshot.drive import MissionProgress
+from groundstation.vehicles.vehicle_details import to_place
 from link.services.mission.items import GLOBAL_FRAMES, Items, MissionItem
 
 NO_MISSION = 0xFFFF
-"""`total` of MISSION_CURRENT; 0: not told."""
+"""`total` of MISSION_CURRENT; 0: not reported."""
 
 FRESH = 3.0
 """s for which a NAV_CONTROLLER_OUTPUT counts."""
@@ -47,7 +48,7 @@ class _Route:
         return None, 0.0
 
 
-class MissionState:
+class MissionMessages:
     """The newest messages about the mission of one vehicle."""
 
     def __init__(self) -> None:

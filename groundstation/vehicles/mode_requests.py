@@ -66,10 +66,7 @@ class ModeRequests:
     @property
     def modes(self) -> tuple[VehicleMode, ...]:
         """The modes of the vehicle, in its order."""
-        autopilot, kind = self._autopilot()
-        if self._identity.modes is not None:
-            return tuple(_listed(mode, autopilot) for mode in self._identity.modes)
-        return tuple(VehicleMode(name, number) for name, number in known_modes(autopilot, kind).items())
+        return listed_or_known(self._identity, self._autopilot())
 
     def list_modes(self, number: int, now: float) -> None:
         """Request the list of modes; it ends when `modes` are as good as they get."""
@@ -78,14 +75,18 @@ class ModeRequests:
             self._lists.append(number)
 
     def set(self, number: int, name: str, now: float) -> None:
-        """Change to the mode of this name; it ends when the heartbeat reports it."""
+        """Change to the mode of this name; it ends when the heartbeat reports it.
+
+        The list of modes is requested only for a name that is not known by autopilot and type: it is a round trip for
+        each mode.
+        """
         if not self._book.begin(number, f"mode {name}"):
             return
         if self._change is not None:
             self._book.refuse(number, f"mode {self._change.name} is being requested", now, by_vehicle=False)
             return
-        self._identity.want_modes()
         self._change = _Change(number, name)
+        self._begin(now)
 
     def receive(self, received: Received, now: float) -> None:
         """Take the mode of a HEARTBEAT of the vehicle."""
@@ -99,7 +100,7 @@ class ModeRequests:
             for number in self._lists:
                 self._book.accept(number, "" if self._identity.modes else "not listed by the vehicle")
             self._lists.clear()
-            self._begin(now)
+        self._begin(now)
         change = self._change
         if change is not None and change.accepted_at is not None and now - change.accepted_at > CONFIRM_WITHIN:
             self._change = None
@@ -121,11 +122,14 @@ class ModeRequests:
             self._book.refuse(change.number, result_name(outcome.number).upper().replace(" ", "_"), now)
 
     def _begin(self, now: float) -> None:
-        """Send the change that has waited for the list."""
+        """Send the change once its mode is known, or refuse it once it will not be."""
         change = self._change
         if change is None or change.mode is not None or self._commands.is_waiting(Command.DO_SET_MODE):
             return
         change.mode = next((mode for mode in self.modes if mode.name.upper() == change.name.upper()), None)
+        if change.mode is None and not self._identity.modes_settled:
+            self._identity.want_modes()
+            return
         if change.mode is None:
             self._change = None
             names = ", ".join(mode.name for mode in self.modes) or "none is known"
@@ -141,6 +145,14 @@ class ModeRequests:
         if self.current == change.mode.custom_mode:
             self._change = None
             self._book.accept(change.number)
+
+
+def listed_or_known(identity: VehicleIdentity | None, model: tuple[int, int]) -> tuple[VehicleMode, ...]:
+    """Return the modes that the vehicle has listed, else those of its `model`: MAV_AUTOPILOT and MAV_TYPE."""
+    autopilot, kind = model
+    if identity is not None and identity.modes is not None:
+        return tuple(_listed(mode, autopilot) for mode in identity.modes)
+    return tuple(VehicleMode(name, number) for name, number in known_modes(autopilot, kind).items())
 
 
 def _listed(mode: AvailableMode, autopilot: int) -> VehicleMode:

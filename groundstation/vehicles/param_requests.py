@@ -7,18 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from dialects.enums import ParamErrorCode
 from dialects.result_texts import param_error_text
-from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.requests import RequestBook
 from link.core import Outgoing, Received
-from link.services.ftp.job import FtpOutcome
 from link.services.param.client import ParamClient, ParamOutcome
 from link.services.param.float32 import value_text
-from link.services.param.unpack import PATH_WITH_DEFAULTS, unpack
 from link.services.param.values import is_bytewise
+
+if TYPE_CHECKING:
+    from groundstation.vehicles.file_requests import FileRequests
+    from link.services.ftp.job import FtpOutcome
 
 FILE_PATIENCE = 3
 """Requests for param.pck without a reply before the list is requested: 2 s, for vehicles without a file service."""
@@ -40,7 +42,7 @@ class ParamRequests:
     def __init__(
         self,
         client: ParamClient,
-        files: FileRequests,
+        files: Callable[[], FileRequests],
         identity: VehicleIdentity,
         book: RequestBook,
         autopilot: Callable[[], int],
@@ -88,7 +90,7 @@ class ParamRequests:
         if number != self._fetch:
             return
         if self._file is not None:
-            self._files.cancel_job(self._file, now)
+            self._files().cancel_job(self._file, now)
         self.client.stop_fetch()
         self._book.cancel(number)
         self._fetch = self._file = None
@@ -134,12 +136,16 @@ class ParamRequests:
         if self.client.missing:
             self.client.fetch_missing(now)
         elif self._identity.may_have_files:
-            self._file = self._files.start_download(PATH_WITH_DEFAULTS, self._take_file, now, patience=FILE_PATIENCE)
+            from link.services.param.unpack import PATH_WITH_DEFAULTS  # a verb that sets one parameter needs no file
+
+            self._file = self._files().start_download(PATH_WITH_DEFAULTS, self._take_file, now, patience=FILE_PATIENCE)
         else:
             self.client.fetch(now)
 
     def _take_file(self, outcome: FtpOutcome, now: float) -> None:
         """Take all parameters from the file, or request the list if there is none."""
+        from link.services.param.unpack import unpack
+
         self._file = None
         params = unpack(outcome.data) if outcome.done else outcome.problem
         if isinstance(params, str):
@@ -153,7 +159,7 @@ class ParamRequests:
         if self._fetch is None:
             return
         if self._file is not None:
-            self._book.advance(self._fetch, *self._files.progress_of(self._file))
+            self._book.advance(self._fetch, *self._files().progress_of(self._file))
         elif self.client.fetching:
             self._book.advance(self._fetch, *self.client.progress)
         elif self.client.complete:

@@ -46,7 +46,7 @@ class ParamWriter:
         self._write = _Write(number, deque(changes), len(changes))
         self._next(self._write, now)
 
-    def cancel(self, number: int) -> None:
+    def cancel(self, number: int, now: float) -> None:
         """Set no further parameters; the one under way may still be set."""
         if self._write is not None and self._write.number == number:
             self._write = None

@@ -21,7 +21,7 @@ class PlanProgress:
     def __init__(self, component: int) -> None:
         self.current: int | None = None
         self.state = 0
-        """MISSION_STATE; 0: not told."""
+        """MISSION_STATE; 0: not reported."""
         self.ids: tuple[int, int, int] | None = None
         """Ids of mission, fence and rally points that the vehicle reports; None: it has no ids."""
         self.home_altitude: float | None = None

@@ -6,7 +6,6 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from dialects.result_texts import mission_result_name
 from groundstation.vehicles.requests import RequestBook
@@ -34,7 +33,7 @@ class _PlanJob:
 
 
 class PlanRequests:
-    """Requests about plans. `plans` are those that were downloaded or uploaded, `current` is MISSION_CURRENT."""
+    """Requests about plans. `plans` are those that were downloaded or uploaded."""
 
     def __init__(self, client: MissionClient, book: RequestBook) -> None:
         self._client = client
@@ -44,8 +43,6 @@ class PlanRequests:
         """How often each of `plans` was replaced."""
         self.ids: dict[MissionType, int] = {}
         """Ids that the vehicle gave them; 0: it is empty, or the vehicle has no ids."""
-        self.current: int | None = None
-        """Sequence of the item that AUTO drives to; None: not told."""
         self._jobs: deque[_PlanJob] = deque()
         self._under_way: _PlanJob | None = None
         self._failed: dict[MissionType, MissionOutcome] = {}
@@ -63,6 +60,15 @@ class PlanRequests:
         whole = tuple(items)
         job = _PlanJob(number, kind, lambda later: self._client.upload(whole, kind, later), whole)
         self._add(job, f"upload {_NAMES[kind]} of {len(whole)} items", now)
+
+    def take(self, kind: MissionType, items: Items, version: int, plan_id: int) -> None:
+        """Take a plan that was not requested here: of a log. `version` differs from those of its other plans."""
+        self.plans[kind], self.versions[kind], self.ids[kind] = items, version, plan_id
+
+    def forget(self, kind: MissionType) -> None:
+        """Forget a plan: the vehicle has another one, which is not known."""
+        for kept in (self.plans, self.versions, self.ids):
+            kept.pop(kind, None)
 
     def clear(self, number: int, kind: MissionType, now: float) -> None:
         """Clear a plan."""
@@ -85,8 +91,6 @@ class PlanRequests:
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""
-        if isinstance(received.message, m.MissionCurrent):
-            self.current = received.message.seq
         self._client.receive(received, now)
         self._handle_outcomes(now)
 

@@ -5,7 +5,7 @@ https://docs.px4.io/main/en/advanced_config/parameter_reference.html
 
 from __future__ import annotations
 
-from groundstation.drive_views import StopBound
+from groundstation.snapshot.drive import StopBound
 from groundstation.vehicles.stop_rules import StopFacts, StopRules, action_bound
 
 ACTIONS = {0: "", 1: "HOLD", 2: "RTL", 3: "LAND", 5: "terminate", 6: "disarm"}

@@ -9,6 +9,8 @@ from dialects.enums import Severity
 
 REASON_WITHIN = 1.0
 """s between a refusal and the vehicle's STATUSTEXT that explains it; either may arrive first."""
+FIRST_STEP = -1_000_000
+"""Numbers from here down are steps of other requests: their reports go to nobody else."""
 MAX_REQUESTS = 1000
 """Requests under way at once; more are refused."""
 

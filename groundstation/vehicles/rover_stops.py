@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.drive_views import StopBound
+from groundstation.snapshot.drive import StopBound
 from groundstation.vehicles.stop_rules import StopFacts, StopRules, action_bound, is_off
 
 AUTO_GOES_ON = 2

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.enums import Sensor
-from groundstation.drive_views import HealthLine
+from groundstation.snapshot.drive import HealthLine
 
 NAMES: dict[int, str] = {
     1 << 0: "gyro", 1 << 1: "accel", 1 << 2: "compass", 1 << 3: "pressure", 1 << 4: "airspeed", 1 << 5: "gps",

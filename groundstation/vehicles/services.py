@@ -1,36 +1,70 @@
 """The MAVLink services of one vehicle, as the ground station uses them: parameters, plans, files, logs, commands.
 
-Each request has a number and ends in `book`. Nothing is sent before the first request.
+Each request has a number and ends in `book`. Nothing is sent before the first request. Most services are made, and
+their modules imported, when they are used first: importing all of them takes a verb longer than anything else.
 """
 
 from __future__ import annotations
 
-from collections.abc import MutableMapping
+from collections.abc import MutableMapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from dialects.enums import Autopilot, Command, Result, VehicleType
 from groundstation.vehicles.command_requests import CommandRequests
-from groundstation.vehicles.file_requests import FileRequests
-from groundstation.vehicles.folder_cache import FolderCache
 from groundstation.vehicles.identity import VehicleIdentity
-from groundstation.vehicles.log_requests import LogRequests
-from groundstation.vehicles.message_requests import MessageRequests
-from groundstation.vehicles.metadata_requests import MetadataRequests
-from groundstation.vehicles.mission_requests import MissionRequests
 from groundstation.vehicles.mode_requests import ModeRequests
-from groundstation.vehicles.param_comparing import ParamComparing
-from groundstation.vehicles.param_requests import ParamRequests
-from groundstation.vehicles.param_storage import ParamStorage
-from groundstation.vehicles.param_writer import ParamWriter
 from groundstation.vehicles.plan_progress import PlanProgress
-from groundstation.vehicles.plan_requests import PlanRequests
-from groundstation.vehicles.requests import RequestBook, RequestReport
-from groundstation.vehicles.transfer_requests import TransferRequests
+from groundstation.vehicles.requests import FIRST_STEP, RequestBook, RequestReport
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient
-from link.services.ftp.client import FtpClient
-from link.services.log.client import LogClient
-from link.services.mission.client import MissionClient
-from link.services.param.client import ParamClient
+
+if TYPE_CHECKING:
+    from groundstation.vehicles.disk_jobs import DiskJob, DiskResult
+    from groundstation.vehicles.file_comparing import FileComparing
+    from groundstation.vehicles.file_requests import FileRequests
+    from groundstation.vehicles.folder_cache import FolderCache
+    from groundstation.vehicles.log_requests import LogRequests
+    from groundstation.vehicles.message_requests import MessageRequests
+    from groundstation.vehicles.metadata_requests import MetadataRequests
+    from groundstation.vehicles.mission_requests import MissionRequests
+    from groundstation.vehicles.param_comparing import ParamComparing
+    from groundstation.vehicles.param_requests import ParamRequests
+    from groundstation.vehicles.param_storage import ParamStorage
+    from groundstation.vehicles.param_writer import ParamWriter
+    from groundstation.vehicles.plan_requests import PlanRequests
+    from groundstation.vehicles.transfer_requests import TransferRequests
+
+
+class _Service(Protocol):
+    """What exchanges messages with the vehicle."""
+
+    def receive(self, received: Received, now: float) -> None: ...
+
+    def tick(self, now: float) -> None: ...
+
+    def cancel(self, number: int, now: float) -> None: ...
+
+    def messages_to_send(self) -> list[Outgoing]: ...
+
+
+class _Follower(Protocol):
+    """What makes requests of several steps, each a request of its own."""
+
+    def handle_report(self, report: RequestReport, now: float) -> None: ...
+
+    def cancel(self, number: int, now: float) -> None: ...
+
+
+class _DiskUser(Protocol):
+    """What reads and writes files of this machine."""
+
+    def pop_disk_jobs(self) -> list[DiskJob]: ...
+
+    def handle_disk(self, result: DiskResult, now: float) -> None: ...
+
+
+_S = TypeVar("_S", bound=_Service)
 
 
 class VehicleServices:
@@ -42,33 +76,148 @@ class VehicleServices:
     def __init__(
         self, system: int, component: int, target: tuple[int, int], texts: MutableMapping[int, bytes] | None = None
     ) -> None:
-        to, at = target
+        self._ids = (system, component)
+        self._target = target
+        self._texts = {} if texts is None else texts
         self.autopilot: int = Autopilot.GENERIC
         """MAV_AUTOPILOT of its HEARTBEAT."""
         self.kind: int = VehicleType.GROUND_ROVER
         """MAV_TYPE of its HEARTBEAT."""
         self.book = RequestBook()
-        self.identity = VehicleIdentity(at)
+        self.identity = VehicleIdentity(target[1])
         self.commands = CommandRequests(CommandClient(system, component), self.book, target)
-        self.messages = MessageRequests(self.commands, self.book)
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
-        self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
-        self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
-        self.progress = PlanProgress(at)
-        self.missions = MissionRequests(self.commands, self.modes, self.progress, self.book, lambda: self.autopilot)
-        self.logs = LogRequests(LogClient(system, component, target_system=to, target_component=at), self.book)
-        params = ParamClient(system, component, target_system=to, target_component=at)
-        self.params = ParamRequests(params, self.files, self.identity, self.book, lambda: self.autopilot)
-        self.param_writer = ParamWriter(self.params, self.book)
-        self.param_storage = ParamStorage(self.commands)
-        self.param_file = ParamComparing(self.book)
-        self.metadata = MetadataRequests(self.files, self.identity, {} if texts is None else texts)
-        self.folders = FolderCache(self.files)
-        self.transfers = TransferRequests(self.files, self.logs, self.book)
-        self._services = (self.commands, self.files, self.logs, self.plans, self.params)
+        self.progress = PlanProgress(target[1])
+        self._services: list[_Service] = [self.commands]
+        """Those that are made; likewise in the next three."""
+        self._followers: list[_Follower] = []
+        self._disk_users: list[_DiskUser] = []
+        self._timed: list[MetadataRequests | TransferRequests] = []
         self._used = False
+        self.alive = True
+        """The vehicle is heard."""
         self.held = False
         """The transfers wait: the line is slow, and the operator drives."""
+
+    # ---- made when they are used first ----
+
+    def _add(self, service: _S) -> _S:
+        self._services.append(service)
+        return service
+
+    @cached_property
+    def messages(self) -> MessageRequests:
+        """Rates of messages, and single messages."""
+        from groundstation.vehicles.message_requests import MessageRequests
+
+        return MessageRequests(self.commands, self.book)
+
+    @cached_property
+    def files(self) -> FileRequests:
+        """MAVLink FTP."""
+        from groundstation.vehicles.file_requests import FileRequests
+        from link.services.ftp.client import FtpClient
+
+        to, at = self._target
+        return self._add(FileRequests(FtpClient(*self._ids, target_system=to, target_component=at), self.book))
+
+    @cached_property
+    def plans(self) -> PlanRequests:
+        """Mission, fence and rally points."""
+        from groundstation.vehicles.plan_requests import PlanRequests
+        from link.services.mission.client import MissionClient
+
+        to, at = self._target
+        return self._add(PlanRequests(MissionClient(*self._ids, target_system=to, target_component=at), self.book))
+
+    @cached_property
+    def missions(self) -> MissionRequests:
+        """The mission and places: started, paused, gone to."""
+        from groundstation.vehicles.mission_requests import MissionRequests
+
+        return MissionRequests(self.commands, self.modes, self.progress, self.book, lambda: self.autopilot)
+
+    @cached_property
+    def logs(self) -> LogRequests:
+        """Logs by LOG_REQUEST_LIST."""
+        from groundstation.vehicles.log_requests import LogRequests
+        from link.services.log.client import LogClient
+
+        to, at = self._target
+        return self._add(LogRequests(LogClient(*self._ids, target_system=to, target_component=at), self.book))
+
+    @cached_property
+    def params(self) -> ParamRequests:
+        """Parameters."""
+        from groundstation.vehicles.param_requests import ParamRequests
+        from link.services.param.client import ParamClient
+
+        to, at = self._target
+        client = ParamClient(*self._ids, target_system=to, target_component=at)
+        made = ParamRequests(client, lambda: self.files, self.identity, self.book, lambda: self.autopilot)
+        return self._add(made)
+
+    @cached_property
+    def param_writer(self) -> ParamWriter:
+        """Several parameters in one request."""
+        from groundstation.vehicles.param_writer import ParamWriter
+
+        made = ParamWriter(self.params, self.book)
+        self._followers.append(made)
+        return made
+
+    @cached_property
+    def param_storage(self) -> ParamStorage:
+        """The vehicle's memory of its parameters."""
+        from groundstation.vehicles.param_storage import ParamStorage
+
+        return ParamStorage(self.commands)
+
+    @cached_property
+    def param_file(self) -> ParamComparing:
+        """The file that the parameters are compared with."""
+        from groundstation.vehicles.param_comparing import ParamComparing
+
+        return ParamComparing(self.book)
+
+    @cached_property
+    def metadata(self) -> MetadataRequests:
+        """The vehicle's own texts of its parameters."""
+        from groundstation.vehicles.metadata_requests import MetadataRequests
+
+        made = MetadataRequests(self.files, self.identity, self._texts)
+        self._timed.append(made)
+        return made
+
+    @cached_property
+    def folders(self) -> FolderCache:
+        """Folders that were listed."""
+        from groundstation.vehicles.folder_cache import FolderCache
+
+        made = FolderCache(self.files)
+        self._followers.append(made)
+        return made
+
+    @cached_property
+    def transfers(self) -> TransferRequests:
+        """Downloads into files of this machine, and uploads from them."""
+        from groundstation.vehicles.transfer_requests import TransferRequests
+
+        made = TransferRequests(self.files, self.logs, self.book, lambda: (self.alive, self.autopilot))
+        self._timed.append(made)
+        self._followers.append(made)
+        self._disk_users.append(made)
+        return made
+
+    @cached_property
+    def comparing(self) -> FileComparing:
+        """Files compared by checksum."""
+        from groundstation.vehicles.file_comparing import FileComparing
+
+        made = FileComparing(self.files, self.book)
+        self._followers.append(made)
+        self._disk_users.append(made)
+        return made
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""
@@ -87,8 +236,8 @@ class VehicleServices:
         """Cancel a request."""
         for service in self._services:
             service.cancel(number, now)
-        self.param_writer.cancel(number)
-        self.transfers.cancel(number, now)
+        for follower in self._followers:
+            follower.cancel(number, now)
 
     def tick(self, now: float, *, may_query: bool = True, alive: bool = True, held: bool = False) -> None:
         """Repeat what is overdue, report progress, give up at last.
@@ -97,15 +246,14 @@ class VehicleServices:
         `alive`: the vehicle is heard. `held`: parameters, plans, files and logs wait, commands do not.
         """
         self._used = self._used or bool(self.book.running)
-        self.held = held
-        self.transfers.alive, self.transfers.autopilot = alive, self.autopilot
+        self.alive, self.held = alive, held
         for service in self._services:
             if not held or service is self.commands:
                 service.tick(now)
-        self.transfers.tick(now)
+        for timed in self._timed:
+            timed.tick(now)
         self._take_queries(now)
         self.modes.tick(now)
-        self.metadata.tick(now)
         if self._used and may_query:
             self._query_identity(now)
         self.book.tick(now)
@@ -115,16 +263,24 @@ class VehicleServices:
         found: dict[int, RequestReport] = {}
         while reports := self.book.pop_changes():  # a request of several steps goes on when one has ended
             for report in reports:
-                self.param_writer.handle_report(report, now)
-                self.transfers.handle_report(report, now)
-                self.folders.handle_report(report)
-                if not self.transfers.owns(report.number):
+                for follower in self._followers:
+                    follower.handle_report(report, now)
+                if report.number > FIRST_STEP:
                     found[report.number] = report
         return list(found.values())
 
+    def pop_disk_jobs(self) -> list[DiskJob]:
+        """Return what the disk shall do, once."""
+        return [job for user in self._disk_users for job in user.pop_disk_jobs()]
+
+    def handle_disk(self, result: DiskResult, now: float) -> None:
+        """Go on with what the disk has answered."""
+        for user in self._disk_users:
+            user.handle_disk(result, now)
+
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
-        sending = (self.commands,) if self.held else self._services
+        sending: Sequence[_Service] = (self.commands,) if self.held else self._services
         return [outgoing for service in sending for outgoing in service.messages_to_send()]
 
     def _query_identity(self, now: float) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects.enums import Autopilot
-from groundstation.drive_views import StopBound
+from groundstation.snapshot.drive import StopBound
 from groundstation.vehicles.ardupilot_stops import ARDUPILOT_STOPS
 from groundstation.vehicles.px4_stops import PX4_STOPS
 from groundstation.vehicles.rover_stops import ROVER_STOPS

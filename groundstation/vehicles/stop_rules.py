@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from dialects.enums import VehicleType
-from groundstation.drive_views import StopBound
+from groundstation.snapshot.drive import StopBound
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The vehicle's track: a thinned line of positions, and latitude and longitude as metres. Bounded."""
+"""The vehicle's track: a thinned line of positions. Bounded."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ MAX_POINTS = 500
 
 SPACING = 0.1
 """Least distance of two points at first, m: half the length of a small rover."""
-
-METRES_PER_DEGREE = 111_319.5
-"""Of latitude, m (WGS 84 at the equator; the error over a driving area is below what can be drawn)."""
 
 
 class Track:
@@ -34,18 +31,3 @@ class Track:
             self._points = self._points[::2]
             self._spacing *= 2
         self._points.append((round(position[0], 2), round(position[1], 2)))
-
-
-class LocalFrame:
-    """Converts latitude and longitude to metres from the first position."""
-
-    def __init__(self) -> None:
-        self._origin: tuple[float, float] | None = None
-
-    def to_local(self, latitude: float, longitude: float) -> tuple[float, float]:
-        """Return metres north and east of the origin; degrees in."""
-        if self._origin is None:
-            self._origin = (latitude, longitude)
-        north = (latitude - self._origin[0]) * METRES_PER_DEGREE
-        east = (longitude - self._origin[1]) * METRES_PER_DEGREE * math.cos(math.radians(self._origin[0]))
-        return north, east

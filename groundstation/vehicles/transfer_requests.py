@@ -6,6 +6,7 @@ written under its name only when it is whole. If the vehicle is lost meanwhile, 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -13,14 +14,12 @@ from dialects.enums import Autopilot
 from groundstation.vehicles.disk_jobs import DiskJob, DiskResult, DiskWork, name_problem
 from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.log_requests import LogRequests
-from groundstation.vehicles.requests import RequestBook, RequestReport, RequestState
+from groundstation.vehicles.requests import FIRST_STEP, RequestBook, RequestReport, RequestState
+from link.services.ftp.job import FtpOutcome
 from link.services.log.client import RemoteLog
 
 KEEP_PERIOD = 5.0
 """s between two times that what has arrived is kept: a killed station loses no more."""
-
-FIRST_STEP = -1_000_000
-"""Numbers of the steps of transfers count down from here: other requests with steps count from -1."""
 
 LOG_FOLDER = "/logs"
 """Where our vehicle serves its logs by MAVLink FTP, in the order of the log protocol."""
@@ -57,15 +56,24 @@ class _Transfer:
         return not self.remote.lstrip("/").startswith("@")
 
 
-class TransferRequests:
-    """All transfers of one vehicle. `alive` says whether the vehicle is heard, `autopilot` is its MAV_AUTOPILOT."""
+def log_path(listed: FtpOutcome | None, log: RemoteLog) -> str | None:
+    """Return the path of a log of our vehicle in the list of LOG_FOLDER; None if it is not at its place there."""
+    files = [entry for entry in listed.entries if entry.size is not None] if listed is not None else []
+    if log.number >= len(files) or (files[log.number].size or 0) < log.size:
+        return None
+    return f"{LOG_FOLDER}/{files[log.number].name}"
 
-    def __init__(self, files: FileRequests, logs: LogRequests, book: RequestBook) -> None:
+
+class TransferRequests:
+    """All transfers of one vehicle. `vehicle` returns whether it is heard, and its MAV_AUTOPILOT."""
+
+    def __init__(
+        self, files: FileRequests, logs: LogRequests, book: RequestBook, vehicle: Callable[[], tuple[bool, int]]
+    ) -> None:
         self._files = files
         self._logs = logs
         self._book = book
-        self.alive = True
-        self.autopilot: int = Autopilot.GENERIC
+        self._vehicle = vehicle
         self._transfers: dict[int, _Transfer] = {}
         self._steps: dict[int, int] = {}
         """Step -> request."""
@@ -133,16 +141,15 @@ class TransferRequests:
 
     def tick(self, now: float) -> None:
         """Keep what has arrived; go on with a vehicle that is back."""
+        if not self._transfers:
+            return
+        alive, _ = self._vehicle()
         for transfer in list(self._transfers.values()):
-            if transfer.phase is _Phase.WAIT and self.alive:
+            if transfer.phase is _Phase.WAIT and alive:
                 self._begin(transfer, now)
             elif transfer.phase is _Phase.MOVE and not transfer.upload and now >= transfer.keep_due:
                 transfer.keep_due = now + KEEP_PERIOD
                 self._keep(transfer)
-
-    def owns(self, number: int) -> bool:
-        """Return whether this is the number of a step, which nobody else wants to see."""
-        return number <= FIRST_STEP
 
     def waits(self, number: int) -> bool:
         """Return whether a transfer waits for its vehicle to be back."""
@@ -185,7 +192,7 @@ class TransferRequests:
             self._files.upload(step, transfer.remote, transfer.data, now)
         elif transfer.remote:
             self._files.download(step, transfer.remote, now, transfer.data if transfer.resumable else b"")
-        elif transfer.log is not None and self.autopilot == Autopilot.GENERIC and not transfer.from_start:
+        elif transfer.log is not None and self._vehicle()[1] == Autopilot.GENERIC and not transfer.from_start:
             transfer.phase = _Phase.LOCATE
             self._files.list_folder(step, LOG_FOLDER, now)
         elif transfer.log is not None:
@@ -194,12 +201,8 @@ class TransferRequests:
     def _located(self, transfer: _Transfer, now: float) -> None:
         """Choose FTP if the list of the folder has the log at its place, else LOG_DATA."""
         outcome = self._files.pop_result(transfer.step)
-        files = [entry for entry in outcome.entries if entry.size is not None] if outcome is not None else []
-        log = transfer.log
-        if log is not None and log.number < len(files) and (files[log.number].size or 0) >= log.size:
-            transfer.remote = f"{LOG_FOLDER}/{files[log.number].name}"
-        else:
-            transfer.from_start = True  # no more FTP for this one
+        path = log_path(outcome, transfer.log) if transfer.log is not None else None
+        transfer.remote, transfer.from_start = path or "", path is None  # no more FTP for one that has none
         self._begin(transfer, now)
 
     def _fetched(self, transfer: _Transfer, report: RequestReport, now: float) -> None:
@@ -213,7 +216,7 @@ class TransferRequests:
         else:
             transfer.data = max(transfer.data, data, key=len)
             self._keep(transfer)
-            if report.state is RequestState.NO_ANSWER and not self.alive:
+            if report.state is RequestState.NO_ANSWER and not self._vehicle()[0]:
                 transfer.phase = _Phase.WAIT
             else:
                 self._end(transfer, report.state, report.reason or report.detail, now)

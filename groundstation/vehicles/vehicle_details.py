@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from dialects import messages as m
 from dialects.enums import ControlFlag, type_name
-from groundstation.vehicles.track import METRES_PER_DEGREE, LocalFrame, Track
+from groundstation.geo import LocalFrame, Place, is_on_earth
+from groundstation.vehicles.track import Track
 from groundstation.views.links import ComponentRow
 from link.core import Received
 
@@ -21,24 +21,6 @@ COMPONENT_TIMEOUT = 10.0
 TAKEOVER_ALLOWED = 2
 """GCS_CONTROL_STATUS_FLAGS of CONTROL_STATUS."""
 
-MAX_LATITUDE, MAX_LONGITUDE = 90.0, 180.0
-
-
-class Place(NamedTuple):
-    """A place on earth, degrees (WGS 84)."""
-
-    latitude: float
-    longitude: float
-
-
-class Way(NamedTuple):
-    """The straight way from one place to another."""
-
-    distance: float
-    """m"""
-    bearing: float
-    """Degrees clockwise from north, 0..360."""
-
 
 class VehicleDetails:
     """Collects the details from the messages of one system. `component` is the one that the station talks to."""
@@ -47,7 +29,7 @@ class VehicleDetails:
         self.place: Place | None = None
         self.home: Place | None = None
         self.origin: Place | None = None
-        """From where `track` counts: the first place."""
+        """From where `track` counts: the first place. VehicleState.trail needs none, it is in the vehicle's frame."""
         self.track = Track()
         self.firmware = ""
         """Version of AUTOPILOT_VERSION, e.g. "4.6.1"; empty until it has arrived."""
@@ -55,7 +37,6 @@ class VehicleDetails:
         """A request for control is granted without asking the driver."""
         self.control_at: float | None = None
         """When the vehicle reported last who is in control."""
-        self._frame = LocalFrame()
         self._component = component
         self._components: dict[int, tuple[str, float]] = {}
         """Component id -> its kind in words, and when its HEARTBEAT arrived."""
@@ -82,7 +63,7 @@ class VehicleDetails:
         place = to_place(message.lat, message.lon)
         if place is not None:
             self.place, self.origin = place, self.origin or place
-            self.track.add(self._frame.to_local(*place))
+            self.track.add(LocalFrame(self.origin).to_point(place))
 
     def _home(self, message: m.HomePosition, now: float) -> None:
         self.home = to_place(message.latitude, message.longitude) or self.home
@@ -111,16 +92,6 @@ _HANDLERS: Mapping[type[m.Message], Callable[[VehicleDetails, Any, float], None]
 def to_place(latitude: int, longitude: int) -> Place | None:
     """Return a place from degrees times 10^7; None for 0, 0, which means no fix yet, and for what is not on earth."""
     place = Place(latitude / 1e7, longitude / 1e7)
-    if place == (0.0, 0.0) or abs(place.latitude) > MAX_LATITUDE or abs(place.longitude) > MAX_LONGITUDE:
+    if place == (0.0, 0.0) or not is_on_earth(*place):
         return None
     return place
-
-
-def find_way(start: Place | None, end: Place | None) -> Way | None:
-    """Return the way between two places that are some km apart at most; None if one is not known."""
-    if start is None or end is None:
-        return None
-    north = (end.latitude - start.latitude) * METRES_PER_DEGREE
-    turned = (end.longitude - start.longitude + 180.0) % 360.0 - 180.0  # across 180 degrees the short way
-    east = turned * METRES_PER_DEGREE * math.cos(math.radians(start.latitude))
-    return Way(math.hypot(north, east), math.degrees(math.atan2(east, north)) % 360.0)

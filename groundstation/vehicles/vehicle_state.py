@@ -12,6 +12,7 @@ from typing import Any
 from dialects import messages as m
 from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, Sensor, SystemState, VehicleType
 from dialects.modes import DRIVABLE_MODES, STANDING_MODES, mode_name
+from groundstation.geo import LocalFrame, Place, Point
 from groundstation.snapshot import OutputView, VehicleView
 from groundstation.vehicles.control_report import ControlReport
 from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
@@ -19,7 +20,7 @@ from groundstation.vehicles.foreign_drive import ForeignDrive
 from groundstation.vehicles.key_to_motor import KeyTimings
 from groundstation.vehicles.latency import LatencyMeter
 from groundstation.vehicles.outputs import drive_names
-from groundstation.vehicles.track import LocalFrame, Track
+from groundstation.vehicles.track import Track
 from groundstation.vehicles.values import all_finite, battery_values, drive_demand, flag_words, vehicle_name, within
 from link.core import Received
 from link.protocol.heartbeat import HeartbeatMonitor
@@ -62,7 +63,8 @@ class VehicleState:
         self._times: dict[type[m.Message], float] = {}
         self._drive: m.RoverDriveStatus | None = None
         self._failsafe: m.RoverFailsafeStatus | None = None
-        self._frame = LocalFrame()
+        self._frame: LocalFrame | None = None
+        """Metres around the first place, for a vehicle without LOCAL_POSITION_NED."""
         self.trail = Track()
         self._velocity: tuple[float, float] | None = None
         self._ground_speed: float | None = None
@@ -118,7 +120,7 @@ class VehicleState:
 
     def restart(self) -> None:
         """Forget where the vehicle was: it has restarted, and its origin and home may be others."""
-        self._frame, self.trail, self._velocity = LocalFrame(), Track(), None
+        self._frame, self.trail, self._velocity = None, Track(), None
         for name in ("position", "home", "prearm", "prearm_reason"):
             self._values.pop(name, None)
         self.ready_at = None
@@ -189,13 +191,13 @@ class VehicleState:
         if self._fresh(m.LocalPositionNed, now) or (message.lat == 0 and message.lon == 0):  # 0, 0: no fix yet
             return
         self._velocity = (message.vx / 100, message.vy / 100)
-        self._move(*self._frame.to_local(message.lat / 1e7, message.lon / 1e7))
+        self._move(*self._to_local(Place(message.lat / 1e7, message.lon / 1e7)))
 
     def _home(self, message: m.HomePosition, now: float) -> None:
         if m.LocalPositionNed in self._times and all_finite(message.x, message.y):
             self._values["home"] = (message.x, message.y)
         else:
-            self._values["home"] = self._frame.to_local(message.latitude / 1e7, message.longitude / 1e7)
+            self._values["home"] = self._to_local(Place(message.latitude / 1e7, message.longitude / 1e7))
 
     def _gps(self, message: m.GpsRawInt, now: float) -> None:
         self._values["gps_fix"] = message.fix_type
@@ -253,6 +255,10 @@ class VehicleState:
 
     def _battery(self, volts: float | None, centiamperes: int, percent: int) -> None:
         self._values |= battery_values(volts, centiamperes, percent)
+
+    def _to_local(self, place: Place) -> Point:
+        self._frame = self._frame or LocalFrame(place)
+        return self._frame.to_point(place)
 
     def _move(self, north: float, east: float) -> None:
         self._values["position"] = (north, east)

@@ -18,6 +18,10 @@ SLOWEST, FASTEST = 0.001, 200
 FASTEST_SPEED = 100.0
 """m/s; our vehicle takes no more."""
 
+LONGEST_HOLD = 9.0
+"""s between two lines while a drive key is held. Our vehicle stops 10 s after the last key (OPR_TIMEOUT), because a key
+that nobody operates any more must not drive it; a script says that it goes on by another line."""
+
 
 def number(text: str) -> float:
     """Parse a value that a parameter can have. Raises ArgumentTypeError."""
@@ -57,6 +61,14 @@ def system_id(text: str) -> int:
     if not (text.isascii() and text.isdecimal() and len(text) <= 3 and 1 <= int(text) <= 255):
         raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255")
     return int(text)
+
+
+def vehicle_id(text: str) -> int:
+    """Parse a system id, or a name as all screens and verbs print it, e.g. "Rover 1". Raises ArgumentTypeError."""
+    try:
+        return system_id(text.rpartition(" ")[2])
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255, nor a name as 'Rover 1'") from None
 
 
 def float32(text: str) -> float:

@@ -15,7 +15,7 @@ from dialects import messages as m
 from dialects.enums import Command, Result
 from groundstation.station.arming import ArmSequence, ArmStep
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
-from groundstation.vehicles.requests import RequestBook, RequestState
+from groundstation.vehicles.requests import RequestBook, RequestReport, RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
@@ -26,6 +26,8 @@ from link.services.command.client import CommandClient, CommandOutcome
 
 ASK_PERIOD = 1.0
 """s between two questions whether the pre-arm checks are passed."""
+ANSWER_WITHIN = 0.3
+"""s for SYS_STATUS behind the acknowledgement of its request; a vehicle without pre-arm checks never reports them."""
 
 
 @dataclass(slots=True)
@@ -63,20 +65,27 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     """Arm; done when the heartbeat reports it."""
     await session.need_only_vehicle(options.vehicle)
     state = session.vehicle
+    if state.armed and not state.emergency_stop:
+        output.note(f"{state.name} is armed already")
+        output.result(True, state.system, armed=True, detail="armed already")
+        return ExitCode.DONE
+    report = await arm(session, options.wait, output)
+    if report.state is RequestState.ACCEPTED:
+        output.note(
+            f"{state.name} is armed; nobody drives it when this verb ends, and its failsafe for that may stop it, "
+            "disarm it or, in a mode that drives by itself, do what its settings say"
+        )
+    return finish(session, report, output, armed=state.armed)
+
+
+async def arm(session: VerbSession, wait: float, output: Output) -> RequestReport:
+    """Arm a vehicle that is disarmed, once it is ready, `wait` s after the start at most. Raises VerbError."""
+    contact, state = session.contact, session.vehicle
     if state.emergency_stop:
         raise VerbError(
             ExitCode.REFUSED, f"{state.name}: emergency stop; `groundstation estop --clear` releases it first"
         )
-    if state.armed:
-        output.note(f"{state.name} is armed already")
-        output.result(True, state.system, armed=True, detail="armed already")
-        return ExitCode.DONE
-    await _wait_until_ready(session, options.wait, output)
-    return await _arm(session, output)
-
-
-async def _arm(session: VerbSession, output: Output) -> int:
-    contact, state = session.contact, session.vehicle
+    await _wait_until_ready(session, wait, output)
     contact.operator.demanding = contact.other_driver is None
     try:
         report = await run_job(
@@ -90,12 +99,7 @@ async def _arm(session: VerbSession, output: Output) -> int:
     finally:
         contact.operator.demanding = False
     await session.wait_for(lambda: contact.operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
-    if report.state is RequestState.ACCEPTED:
-        output.note(
-            f"{state.name} is armed; nobody drives it when this verb ends, and its failsafe for that may stop it, "
-            "disarm it or, in a mode that drives by itself, do what its settings say"
-        )
-    return finish(session, report, output, armed=state.armed)
+    return report
 
 
 async def _wait_until_ready(session: VerbSession, wait: float, output: Output) -> None:
@@ -109,6 +113,8 @@ async def _wait_until_ready(session: VerbSession, wait: float, output: Output) -
                 number, Command.REQUEST_MESSAGE, (float(m.SysStatus.id),), "SYS_STATUS", now
             )
         )
+        # The message may follow the acknowledgement of its request.
+        await session.wait_for(lambda: session.vehicle.build_view(session.now).prearm is not None, ANSWER_WITHIN)
         view = session.vehicle.build_view(session.now)
         if view.prearm is not False or session.now >= until:
             return

@@ -1,21 +1,36 @@
-"""`groundstation calibrate`: gyros, level and pressure; what needs hands on the vehicle is on the Setup screen."""
+"""`groundstation calibrate`: gyros, level and pressure at rest; compass and sticks are in calibrate_by_hand.py."""
 
 from __future__ import annotations
 
 import argparse
 
 from groundstation.vehicles.calibration import KINDS, REQUEST, SHORT, kind_for
-from groundstation.vehicles.requests import RequestState
-from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs import calibrate_by_hand
+from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
+from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
 
-CHOICES = tuple(sorted(SHORT))
+BY_HAND = {"compass": calibrate_by_hand.compass, "sticks": calibrate_by_hand.sticks}
+CHOICES = (*sorted(SHORT), *BY_HAND)
+
+
+def only_reads(options: argparse.Namespace) -> bool:
+    """Return whether nothing of the vehicle is changed."""
+    return bool(options.kind == "sticks")
+
+
+def check(options: argparse.Namespace) -> None:
+    """Check that --for is given for the sticks only. Raises VerbError."""
+    if options.seconds is not None and options.kind != "sticks":
+        raise VerbError(ExitCode.USAGE, "--for is for `calibrate sticks`")
 
 
 async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Calibrate; done when the vehicle has accepted."""
     await session.need_only_vehicle(options.vehicle)
+    if options.kind in BY_HAND:
+        return await BY_HAND[options.kind](session, options, output)
     vehicle, commands = session.vehicle, session.services.commands
     name = kind_for(options.kind, vehicle.autopilot)
     if name is None:
@@ -24,10 +39,4 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     report = await session.request(
         lambda number, now: commands.send(number, kind.command, kind.params, f"{REQUEST}{name}", now)
     )
-    done = report.state is RequestState.ACCEPTED
-    if done:
-        output.note(f"{vehicle.name}: {kind.title} calibrated")
-    else:
-        output.error(f"{vehicle.name}: {report.text}")
-    output.result(done, vehicle.system, kind=options.kind, detail=report.detail, text=report.reason)
-    return code_of(report)
+    return finish(session, report, output, f"has calibrated: {kind.title}", kind=options.kind)

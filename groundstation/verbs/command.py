@@ -20,7 +20,9 @@ from link.core import Received
 PREFIX = "MAV_CMD_"
 LARGEST = 65535
 ARRIVES_WITHIN = 2.0
-"""s for a message after its request was accepted."""
+"""s for a message after its requests were accepted."""
+TRIES = 3
+"""Requests of one message: what follows the acknowledgement may get lost."""
 STOP = -1
 """Interval of SET_MESSAGE_INTERVAL: send no more."""
 
@@ -68,12 +70,15 @@ async def request(session: VerbSession, options: argparse.Namespace, output: Out
     session.core.taps.append(tap)
     commands, name = session.services.commands, options.kind.msgname
     params = (float(options.kind.id), *options.params)
-    report = await session.request(
-        lambda number, now: commands.send(number, Command.REQUEST_MESSAGE, params, f"request {name}", now)
-    )
-    if report.state is not RequestState.ACCEPTED:
-        return finish(session, report, output)
-    if not await session.wait_for(lambda: bool(heard), ARRIVES_WITHIN):
+    for _ in range(TRIES):
+        report = await session.request(
+            lambda number, now: commands.send(number, Command.REQUEST_MESSAGE, params, f"request {name}", now)
+        )
+        if report.state is not RequestState.ACCEPTED:
+            return finish(session, report, output)
+        if await session.wait_for(lambda: bool(heard), ARRIVES_WITHIN / TRIES):
+            break
+    else:
         raise VerbError(ExitCode.NO_ANSWER, f"{session.vehicle.name}: {name} was accepted, but has not come")
     print_message(heard[-1], output)
     return ExitCode.DONE

@@ -12,6 +12,7 @@ from groundstation.vehicles.requests import RequestBook
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.vehicle_details import VehicleDetails
 from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.verbs.in_control import is_in_control, other_driver
 from groundstation.verbs.operator import VerbOperator
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -41,19 +42,20 @@ class VehicleContact:
         self.operator = VerbOperator(self.state, ids, session)
         self.client = CommandClient(*ids)
         """For jobs and for the operator's queries."""
+        self.verified = False
+        """It has signed with a key of ours."""
         self._jobs: list[Job] = []
         self._texts = MessageLog()
 
     @property
     def in_control(self) -> bool:
         """This program is in control, as the vehicle reports it."""
-        state = self.state
-        return bool(state.driver) and state.control.is_program(self.ids, self.session, accepted=False)
+        return is_in_control(self.state, self.ids, self.session)
 
     @property
     def other_driver(self) -> int | None:
         """System id of another program in control; None if there is none, or the vehicle does not tell."""
-        return self.state.driver if self.state.driver and not self.in_control else None
+        return other_driver(self.state, self.ids, self.session)
 
     @property
     def follows(self) -> bool:
@@ -63,7 +65,7 @@ class VehicleContact:
     @property
     def driven(self) -> DrivenVehicle:
         """What the watchdog must know."""
-        return DrivenVehicle.of(self.state, self.session)
+        return DrivenVehicle.of(self.state, self.session, verified=self.verified)
 
     def start(self, job: Job, now: float) -> None:
         """Begin a job."""
@@ -72,6 +74,7 @@ class VehicleContact:
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""
+        self.verified |= received.signed
         self.state.receive(received, now)
         self.details.receive(received, now)
         self.services.autopilot, self.services.kind = self.state.autopilot, self.state.kind

@@ -12,21 +12,15 @@ from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
-from groundstation.verbs.session import VerbSession
+from groundstation.verbs.session import DRIVER_WITHIN, VerbSession
 from link.core import Received
 
 
 async def show(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Print who is in control."""
     await session.take_part()
-    commands = session.services.commands
-    if session.vehicle.driver is None:
-        await session.request(
-            lambda number, now: commands.send(
-                number, Command.REQUEST_MESSAGE, (float(m.ControlStatus.id),), "CONTROL_STATUS", now
-            )
-        )
-        await session.wait_for(lambda: session.vehicle.driver is not None, 1.0)
+    # Also if it is known: another verb may just have changed it.
+    await session.request_message(m.ControlStatus, DRIVER_WITHIN)
     control, takeover = session.vehicle.control, session.contact.details.takeover
     output.line(_describe(session))
     output.record(
@@ -39,16 +33,16 @@ async def show(session: VerbSession, options: argparse.Namespace, output: Output
 async def request(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Take control, or ask the driver for it."""
     await session.need_only_vehicle(options.vehicle)
-    report = await _ask(session, options.takeover)
+    report = await ask_for_control(session, takeover=options.takeover)
     if report.state is RequestState.REFUSED and session.vehicle.driver == 0:
-        report = await _ask(session, options.takeover)  # the driver has released control meanwhile
+        report = await ask_for_control(session, takeover=options.takeover)  # the driver has released control meanwhile
     asked = session.contact.other_driver
     if report.state is RequestState.REFUSED and asked is not None:
         output.note(f"GCS {asked} is asked for control of {session.vehicle.name}")
         until = session.now + ANSWER_WITHIN
         while report.state is RequestState.REFUSED and session.now < until:
             if await session.wait_for(lambda: not session.vehicle.driver, until - session.now):
-                report = await _ask(session, options.takeover)
+                report = await ask_for_control(session, takeover=options.takeover)
     return _finish(session, report, output, "is controlled by this program; control ends some seconds after this verb")
 
 
@@ -62,7 +56,7 @@ async def give(session: VerbSession, options: argparse.Namespace, output: Output
     """Release control when this ground station asks for it; done when the vehicle reports it as the driver."""
     await session.need_only_vehicle(options.vehicle)
     asked = _listen(session, options.system, options.station)
-    report = await _ask(session, takeover=False)
+    report = await ask_for_control(session)
     if report.state is not RequestState.ACCEPTED:
         return finish(session, report, output)
     output.note(f"waiting until GCS {options.station} asks for {session.vehicle.name}")
@@ -90,7 +84,7 @@ def _finish(session: VerbSession, report: RequestReport, output: Output, done: s
     return finish(session, report, output, done)
 
 
-async def _ask(session: VerbSession, takeover: bool) -> RequestReport:
+async def ask_for_control(session: VerbSession, *, takeover: bool = False) -> RequestReport:
     """Request control; `takeover`: others may take it without asking."""
     return await _send(session, "request control", (REQUEST, float(takeover), ANSWER_WITHIN))
 

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import asyncio
-import secrets
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from dialects import messages as m
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.heartbeat_sender import HeartbeatSender
-from groundstation.vehicles.fleet import MAX_VEHICLES, is_vehicle
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
 from groundstation.verbs.contact import VehicleContact
-from groundstation.verbs.demand_guard import DemandGuard
 from link.core import LinkReport, Outgoing, Received
+
+if TYPE_CHECKING:
+    from groundstation.verbs.demand_guard import DemandGuard
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -27,35 +29,42 @@ Tap = Callable[[Received, float], None]
 class VerbCore:
     """A core (link/core.py) with the vehicles that are heard. It talks to `wanted`, or to the first.
 
-    `ids` are our system and component id.
+    `ids` are our system and component id, `session` is the number of our session.
     """
 
-    def __init__(self, ids: tuple[int, int], wanted: int | None) -> None:
+    def __init__(self, ids: tuple[int, int], wanted: int | None, session: int) -> None:
         self.contacts: dict[int, VehicleContact] = {}
         """All vehicles heard, by system id; at most MAX_VEHICLES."""
         self.chosen: VehicleContact | None = None
         self.reports: tuple[LinkReport, ...] = ()
         """The newest of each link."""
+        self.heard: dict[tuple[int, type[m.Message]], float] = {}
+        """System id and kind -> when the newest such message arrived, also the first ones, before any tap."""
         self.taps: list[Tap] = []
         """Called with each message that arrives."""
+        self.has_heard_all = False
+        """The links were heard for longer than this verb runs, by the station that it goes through."""
         self.guard: DemandGuard | None = None
         """The watchdog of a verb that sends demands."""
         self.outbox: list[m.Message] = []
         """Messages of a verb, to all or to their target."""
         self._ids = ids
         self._wanted = wanted
-        self._session = secrets.randbits(32)
+        self._session = session
         self._heartbeat = HeartbeatSender(0.0)
         self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message; the HEARTBEAT of a vehicle begins the conversation."""
+        if type(received.message) is m.SetupSigning:
+            received = received._replace(message=m.hide_key(received.message))
         if is_vehicle(received.message):
             self._heartbeat.greet(received.peer, now)
             self._add(received)
         contact = self.contacts.get(received.system)
         if contact is not None:
             contact.receive(received, now)
+        self.heard[received.system, type(received.message)] = now
         for tap in self.taps:
             tap(received, now)
         self._look()

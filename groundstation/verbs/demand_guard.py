@@ -6,10 +6,11 @@ import asyncio
 import socket
 from collections.abc import Callable, Hashable, Sequence
 
-from dialects.messages import ManualControl, Message, RcChannelsOverride
+from dialects.messages import Message
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.stall import StallMonitor
 from groundstation.watchdog.feed import WatchdogFeed
+from link.signing.signing import Signing
 from link.transport.transport import Link
 
 REPORT_PERIOD = 0.1
@@ -19,18 +20,16 @@ REPORT_PERIOD = 0.1
 class DemandGuard:
     """The watchdog process (groundstation/watchdog/). Start it before any link is open."""
 
-    def __init__(self, ids: tuple[int, int]) -> None:
-        """Start the process. Raises OSError."""
+    def __init__(self, ids: tuple[int, int], signing: Signing | None = None) -> None:
+        """Start the process, which signs as this one does. Raises OSError."""
         self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self._feed = WatchdogFeed.start(theirs, None, ids)
+        self._feed = WatchdogFeed.start(theirs, None, ids, signing)
         theirs.close()
         self._monitor = StallMonitor()
         self._stall: float | None = None
 
     def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
-        """Record a frame that was sent. Neutral in MANUAL_CONTROL also ends channels that ArduPilot holds."""
-        if isinstance(message, RcChannelsOverride):
-            message = ManualControl(message.target_system, 0, 0, 0, 0, 0)
+        """Record a frame that was sent."""
         self._feed.record_sent(link, address, message, sequence, now)
 
     def stood_still(self, now: float) -> float | None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 
-from groundstation.doctor.report import MARKS, format_chain, format_report
+from groundstation.doctor.report import format_chain, format_report
 from groundstation.intents.setup import RunChecks
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.local_file import check_new_file, write_text
 from groundstation.verbs.output import Output
 from groundstation.verbs.station_session import StationSession
-from groundstation.views.doctor import DoctorView, Health
+from groundstation.views.doctor import DoctorView
+from link.runtime.diagnosis import MARKS, Health
 
 SETTLE = 3.5
 """s for the vehicle to answer: settings that it does not have are requested for 3 s, the checks for 2 s."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
-from groundstation.vehicles.requests import RequestReport, RequestState
+if TYPE_CHECKING:  # it loads the dialect, which completion in a shell does without
+    from groundstation.vehicles.requests import RequestReport
 
 
 class ExitCode(IntEnum):
@@ -38,14 +41,19 @@ class VerbError(Exception):
         self.code = code
 
 
-_CODES = {
-    RequestState.ACCEPTED: ExitCode.DONE,
-    RequestState.REFUSED: ExitCode.REFUSED,
-    RequestState.NO_ANSWER: ExitCode.NO_ANSWER,
-    RequestState.CANCELLED: ExitCode.NO_ANSWER,
+_CODES: Mapping[str, ExitCode] = {
+    "ACCEPTED": ExitCode.DONE,
+    "REFUSED": ExitCode.REFUSED,
+    "NO_ANSWER": ExitCode.NO_ANSWER,
+    "CANCELLED": ExitCode.NO_ANSWER,
 }
+"""Name of a RequestState -> code."""
 
 
-def code_of(report: RequestReport) -> ExitCode:
-    """Return the exit code for a request that has ended."""
-    return _CODES[report.state]
+def code_of(report: RequestReport, other_driver: int | None = None) -> ExitCode:
+    """Return the exit code for a request that has ended.
+
+    `other_driver` is another ground station in control of a vehicle that was to change something.
+    """
+    code = _CODES[report.state.name]
+    return ExitCode.NOT_IN_CONTROL if code is ExitCode.REFUSED and other_driver is not None else code

@@ -10,6 +10,7 @@ from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.local_file import read_bytes
 from groundstation.verbs.output import Output
+from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
 from groundstation.verbs.transfer import download_to
 from link.services.ftp.job import FtpOutcome
@@ -52,9 +53,7 @@ async def put(session: VerbSession, options: argparse.Namespace, output: Output)
     await session.need_only_vehicle(options.vehicle)
     files = session.services.files
     report, _ = await _ask(session, lambda number, now: files.upload(number, options.remote, data, now))
-    if report.state is RequestState.ACCEPTED:
-        output.note(f"{options.local} uploaded to {options.remote} of {session.vehicle.name}")
-    return _finish(session, report, output)
+    return finish(session, report, output, f"has {options.local} as {options.remote}")
 
 
 async def rm(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -62,7 +61,7 @@ async def rm(session: VerbSession, options: argparse.Namespace, output: Output) 
     await session.need_only_vehicle(options.vehicle)
     files = session.services.files
     report, _ = await _ask(session, lambda number, now: files.remove(number, options.remote, now))
-    return _finish(session, report, output)
+    return finish(session, report, output)
 
 
 async def crc(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -92,6 +91,6 @@ def _finish(session: VerbSession, report: RequestReport, output: Output, **field
     done = report.state is RequestState.ACCEPTED
     if not done:
         output.error(f"{session.vehicle.name}: {report.text}")
-    if not done or fields or report.what.startswith(("upload", "remove")):
+    if not done or fields:
         output.result(done, session.vehicle.system, detail=report.detail, text=report.reason, **fields)
     return code_of(report)

@@ -7,14 +7,15 @@ import math
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command
+from dialects.enums import Autopilot, Command, MissionType, command_name
 from dialects.modes import Mode
+from groundstation.geo import LocalFrame, Place, find_way, is_on_earth
 from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.vehicles.requests import RequestReport, RequestState
-from groundstation.vehicles.track import METRES_PER_DEGREE
-from groundstation.vehicles.vehicle_details import MAX_LATITUDE, MAX_LONGITUDE, Place
+from groundstation.verbs.arguments import finite
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
+from groundstation.verbs.plan import count_text, download, has_place
 from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
 from link.services.command.client import CommandPlace
@@ -29,13 +30,31 @@ FARTHEST = 100_000.0
 """m; beyond that a plane is no picture of the earth."""
 PX4_RETURN = 4 << 16 | 5 << 24
 """custom_mode of PX4's AUTO_RTL."""
+POSITION_TRIES = 3
+"""Requests for the position: what follows the acknowledgement may get lost."""
+AT_HOME = 3.0
+"""m from home, about the error of a GPS."""
 POSITION_WITHIN = 2.0
 """s for the position of the vehicle."""
+
+
+WAYPOINT = "wp"
+"""In the place of the latitude: an item of the mission follows."""
+LAST_ITEM = 65535
+"""Items have 16 bits."""
+
+
+def latitude(text: str) -> float | str:
+    """Parse a latitude, or WAYPOINT. Raises ArgumentTypeError."""
+    return WAYPOINT if text == WAYPOINT else finite(text)
 
 
 def check_place(options: argparse.Namespace) -> None:
     """Check where to go. Raises VerbError."""
     given = [options.latitude, options.longitude]
+    if options.latitude == WAYPOINT:
+        _check_item(options)
+        return
     if options.by is not None and given != [None, None]:
         raise VerbError(ExitCode.USAGE, "LAT LON or --by, not both")
     if options.by is None and None in given:
@@ -44,15 +63,23 @@ def check_place(options: argparse.Namespace) -> None:
         if max(map(abs, options.by)) > FARTHEST:
             raise VerbError(ExitCode.USAGE, f"--by: {FARTHEST:g} m at most")
         return
-    if abs(options.latitude) > MAX_LATITUDE or abs(options.longitude) > MAX_LONGITUDE or given == [0.0, 0.0]:
+    if not is_on_earth(options.latitude, options.longitude) or given == [0.0, 0.0]:
         raise VerbError(ExitCode.USAGE, f"{options.latitude:g} {options.longitude:g} is no latitude and longitude")
+
+
+def _check_item(options: argparse.Namespace) -> None:
+    number = options.longitude
+    if options.by is not None or number is None:
+        raise VerbError(ExitCode.USAGE, "write the number of an item as `mission show` has it: goto wp 7")
+    if not (0 <= number <= LAST_ITEM and number == int(number)):
+        raise VerbError(ExitCode.USAGE, f"{number:g} is no number of an item")
 
 
 async def go_to(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Drive to a place; done when the heartbeat reports a mode that drives by itself."""
     await session.need_only_vehicle(options.vehicle)
     _need_armed(session)
-    place = Place(options.latitude, options.longitude) if options.by is None else await _place_at(session, options.by)
+    place = await _find_place(session, options)
     params = (KEEP_SPEED, CHANGE_MODE, 0.0, math.nan, 0.0, 0.0, 0.0)
     where = CommandPlace(RELATIVE_FRAME, round(place.latitude * 1e7), round(place.longitude * 1e7))
     commands, what = session.services.commands, "goto"
@@ -64,14 +91,16 @@ async def go_to(session: VerbSession, options: argparse.Namespace, output: Outpu
 
 
 async def home(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-    """Drive home; done when the heartbeat reports RTL."""
+    """Drive home; done when the heartbeat reports RTL, or HOLD at home: a rover that is there need not drive."""
     await session.need_only_vehicle(options.vehicle)
     _need_armed(session)
-    commands = session.services.commands
+    details, commands = session.contact.details, session.services.commands
+    await _ask_for(session, m.HomePosition, lambda: details.home is not None, tries=1)
+    await _ask_for(session, m.GlobalPositionInt, lambda: details.place is not None, tries=1)
     report = await session.request(
         lambda number, now: commands.send(number, Command.NAV_RETURN_TO_LAUNCH, (), "home", now)
     )
-    return await _finish(session, report, output, "drives home", lambda: _returns(session))
+    return await _finish(session, report, output, "drives home", lambda: _returns(session) or _holds_at_home(session))
 
 
 async def speed(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -110,20 +139,48 @@ def _returns(session: VerbSession) -> bool:
     return session.vehicle.mode in (Mode.RTL.name, Mode.SMART_RTL.name)
 
 
+def _holds_at_home(session: VerbSession) -> bool:
+    """Return whether it stands at home: it has arrived between two heartbeats, or was there already."""
+    way = find_way(session.contact.details.place, session.contact.details.home)
+    return way is not None and way.distance <= AT_HOME and session.vehicle.mode == Mode.HOLD.name
+
+
+async def _find_place(session: VerbSession, options: argparse.Namespace) -> Place:
+    """Return where to go. Raises VerbError."""
+    if options.latitude == WAYPOINT:
+        return await _place_of(session, int(options.longitude))
+    return Place(options.latitude, options.longitude) if options.by is None else await _place_at(session, options.by)
+
+
+async def _place_of(session: VerbSession, number: int) -> Place:
+    """Return the place of an item of the vehicle's mission. Raises VerbError if there is none."""
+    items, name = await download(session, MissionType.MISSION), session.vehicle.name
+    if number >= len(items):
+        raise VerbError(
+            ExitCode.DIFFERS, f"{name}: there is no item {number}, its mission has {count_text(len(items))}"
+        )
+    item = items[number]
+    if not has_place(item):
+        raise VerbError(ExitCode.DIFFERS, f"{name}: item {number} has no place: {command_name(item.command)}")
+    return Place(item.latitude, item.longitude)
+
+
 async def _place_at(session: VerbSession, by: tuple[float, float]) -> Place:
     """Return the place so many m north and east of the vehicle. Raises VerbError if its position is not known."""
-    details, commands = session.contact.details, session.services.commands
-    if details.place is None:
-        params = (float(m.GlobalPositionInt.id),)
-        await session.request(
-            lambda number, now: commands.send(number, Command.REQUEST_MESSAGE, params, "position", now)
-        )
-        await session.wait_for(lambda: details.place is not None, POSITION_WITHIN)
+    details = session.contact.details
+    await _ask_for(session, m.GlobalPositionInt, lambda: details.place is not None, tries=POSITION_TRIES)
     place = details.place
     if place is None:
         raise VerbError(ExitCode.DIFFERS, f"{session.vehicle.name} has no position; give LAT LON")
-    latitude = place.latitude + by[0] / METRES_PER_DEGREE
-    longitude = place.longitude + by[1] / (METRES_PER_DEGREE * math.cos(math.radians(place.latitude)))
-    if abs(latitude) > MAX_LATITUDE:
+    goal = LocalFrame(place).to_place(by)
+    if not is_on_earth(*goal):
         raise VerbError(ExitCode.USAGE, "--by leads beyond the pole")
-    return Place(latitude, (longitude + 180.0) % 360.0 - 180.0)
+    return goal
+
+
+async def _ask_for(session: VerbSession, kind: type[m.Message], known: Callable[[], bool], tries: int) -> None:
+    """Request a message of the vehicle unless what it reports is known already."""
+    for _ in range(tries):
+        if known():
+            return
+        await session.request_message(kind, POSITION_WITHIN, known)

@@ -1,13 +1,19 @@
-"""`groundstation log`: list and get the logs of a vehicle by LOG_REQUEST_LIST and LOG_DATA."""
+"""`groundstation log`: list the logs of a vehicle by LOG_REQUEST_LIST, get one, erase all.
+
+Those of our own vehicle come by MAVLink FTP, which compares a checksum; those of others by LOG_DATA, which all have.
+"""
 
 from __future__ import annotations
 
 import argparse
 from datetime import UTC, datetime
 
+from dialects.enums import Autopilot
 from groundstation.vehicles.requests import RequestReport, RequestState
+from groundstation.vehicles.transfer_requests import LOG_FOLDER, log_path
 from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.output import Output
+from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
 from groundstation.verbs.transfer import download_to
 from link.services.log.client import RemoteLog
@@ -29,14 +35,22 @@ async def list_logs(session: VerbSession, options: argparse.Namespace, output: O
 async def get(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Download a log; one that was interrupted is resumed."""
     log = _choose(await _logs(session), options.log)
-    requests = session.services.logs
+    requests, files = session.services.logs, session.services.files
+    path = await _path(session, log)
     file = options.file or f"{session.vehicle.system}-{log.number:05}.bin"
 
     async def fetch(have: bytes) -> tuple[RequestReport, bytes]:
-        report = await session.request(lambda number, now: requests.download(number, log, now, have))
-        return report, requests.pop_data(report.number)
+        if path is None:
+            report = await session.request(lambda number, now: requests.download(number, log, now, have))
+            return report, requests.pop_data(report.number)
+        report = await session.request(lambda number, now: files.download(number, path, now, have))
+        outcome = files.pop_result(report.number)
+        return report, outcome.data if outcome is not None else b""
 
-    report = await download_to(file, fetch, lambda: requests.beginning, overwrite=options.yes)
+    def beginning() -> bytes:
+        return requests.beginning if path is None else files.beginning
+
+    report = await download_to(file, fetch, beginning, overwrite=options.yes)
     done = report.state is RequestState.ACCEPTED
     if done:
         output.note(f"log {log.number} of {session.vehicle.name} saved to {file}")
@@ -44,6 +58,23 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
         output.error(f"{session.vehicle.name}: {report.text}")
     output.result(done, session.vehicle.system, id=log.number, file=file)
     return code_of(report)
+
+
+async def erase(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Have the vehicle erase all its logs; its list shows afterwards whether it has."""
+    if not options.yes:
+        raise VerbError(ExitCode.USAGE, "this erases ALL logs of the vehicle; --yes does it")
+    await session.need_only_vehicle(options.vehicle)
+    return finish(session, await session.request(session.services.logs.erase), output, "has erased its logs")
+
+
+async def _path(session: VerbSession, log: RemoteLog) -> str | None:
+    """Return the path of a log of our own vehicle; None if it must come by LOG_DATA."""
+    if session.vehicle.autopilot != Autopilot.GENERIC:
+        return None
+    files = session.services.files
+    report = await session.request(lambda number, now: files.list_folder(number, LOG_FOLDER, now))
+    return log_path(files.pop_result(report.number), log)
 
 
 async def _logs(session: VerbSession) -> tuple[RemoteLog, ...]:

@@ -9,35 +9,34 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from dialects.extra.errors import DialectError
 from dialects.extra.option import use_dialect
-from groundstation.config.config_file import ConfigError
-from groundstation.config.effective import (
-    ENDPOINT_VARIABLE,
-    environment_endpoints,
-    load_config,
-    merge,
-    resolve_endpoints,
-)
-from groundstation.config.settings import DEFAULT_ENDPOINT
+from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
 from groundstation.formats.errors import FileFormatError
-from groundstation.recent.recent_file import RecentFile
-from groundstation.verbs.arguments import seconds, system_id
-from groundstation.verbs.completion import SHELLS, build_script
-from groundstation.verbs.core import COMPONENT, WATCHER
-from groundstation.verbs.demand_guard import DemandGuard
+from groundstation.station_socket.hello import VERB, Hello
+from groundstation.station_socket.relay import VERSION
+from groundstation.verbs.arguments import seconds, system_id, vehicle_id
+from groundstation.verbs.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.exit_codes import ExitCode, VerbError
+from groundstation.verbs.identity import choose_identity
+from groundstation.verbs.kept_session import KeptSession
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession, run_session
-from groundstation.verbs.station_session import StationSession, run_station
+from groundstation.verbs.station_link import AUTO, StationLink, find_station, station_choice
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
 from link.endpoint import EndpointError
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 from link.runtime.event_loop import run_loop
-from link.transport.transport import LinkError
+
+if TYPE_CHECKING:
+    from groundstation.verbs.demand_guard import DemandGuard
+    from groundstation.verbs.station_session import StationSession
+    from link.signing_keeper import SigningKeeper
 
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
@@ -46,9 +45,9 @@ EPILOG = f"""\
 exit codes: 0 done and confirmed; 1 this program failed; 2 wrong arguments; 3 no vehicle within --wait; 4 refused;
 5 no answer; 6 not in control; 7 differs, is not so, or no such thing; 8 partly done; 128 + n after signal n
 
-A port that a running ground station listens on is taken: connect the verb by another link of the vehicle, or by
-`bridge`. Endpoints, or names of the config file, come from -e, else from {ENDPOINT_VARIABLE} (separated by spaces),
-else from `open` in the config file; else it is the endpoint used last, else {DEFAULT_ENDPOINT}.
+It goes through the ground station that runs here, if there is one (--station). Endpoints, or names of the config
+file, come from -e, else from {ENDPOINT_VARIABLE} (separated by spaces), else from `open` in the config file; else it
+is the endpoint used last, else {DEFAULT_ENDPOINT}.
 """
 
 
@@ -65,13 +64,15 @@ def run(arguments: Sequence[str]) -> int:
         action = VERBS[arguments[0]][options.action]
         if action.check is not None:
             action.check(options)
-        code = run_loop(_run(action, options, output, caught))
+        if action.only_reads(options):
+            action = replace(action, watches=True, takes_part=False, shows_neutral=False)
+        code = run_loop((_run_offline if action.offline else _run)(action, options, output, caught))
         sys.stdout.flush()
-    except ConfigError as error:
+    except config_error() as error:
         for problem in error.problems:
             output.error(problem)
         return int(ExitCode.USAGE)
-    except (VerbError, FileFormatError, DialectError, EndpointError, LinkError) as error:
+    except (VerbError, FileFormatError, DialectError, EndpointError, link_error()) as error:
         output.error(str(error))
         return int(error.code if isinstance(error, VerbError) else ExitCode.USAGE)
     except (KeyboardInterrupt, asyncio.CancelledError):
@@ -83,20 +84,28 @@ def run(arguments: Sequence[str]) -> int:
     return code
 
 
+async def _run_offline(action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int]) -> int:
+    """Run an action that needs no vehicle."""
+    _cancel_on_signals(caught)
+    return await action.run(None, options, output)
+
+
 async def _run(action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int]) -> int:
     """Run the action. A signal cancels it, so that it ends in order, and is noted in `caught`."""
-    recent = RecentFile()
-    endpoints = choose_endpoints(options.endpoints, options.config, os.environ, recent)
-    if recent.warning:
-        output.note(recent.warning)
     _cancel_on_signals(caught)
-    ids = (options.system, WATCHER if action.watches else COMPONENT)
-    guard = DemandGuard(ids) if action.guarded(options) else None  # before the links are open
+    station, endpoints = _find_way(action, options, output)
+    ids, kept = choose_identity(action, options, station)
+    tap = action.tap(options, ids)
+    own = station is None and not action.station and not getattr(options, "unsigned", False)
+    signing = _open_signing() if own else None
+    guarded = station is None and action.guarded(options)
+    guard = _start_guard(ids, signing) if guarded else None  # before the links are open
 
     async def script(session: VerbSession) -> int:
         await _prepare(session, action, options, " ".join(endpoints))
+        _keep(session, kept, output)
         if action.finds and options.endpoints:
-            recent.update(lambda known: known.add_all(endpoints, time.time(), session.vehicle.name))
+            remember(endpoints, session.vehicle.name)
         return await action.run(session, options, output)
 
     async def alone(session: StationSession) -> int:
@@ -105,13 +114,73 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
     try:
         async with asyncio.timeout(None if action.own_timeout else options.timeout):
             if action.station:
-                return await run_station(endpoints, options.system, getattr(options, "station", 0), alone)
-            return await run_session(endpoints, ids, options.vehicle, script, output.progress, guard)
+                from groundstation.verbs.station_session import run_station  # loads the whole station
+
+                return await run_station(endpoints, options.system, getattr(options, "driver", 0), alone, station)
+            return await run_session(
+                endpoints,
+                ids,
+                options.vehicle,
+                script,
+                output.progress,
+                guard,
+                session=kept.number,
+                station=station,
+                log_tap=tap,
+                signing=signing,
+            )
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
     finally:
+        kept.end(time.monotonic())
         if guard is not None:
             guard.close()
+
+
+def _find_way(
+    action: VerbAction, options: argparse.Namespace, output: Output
+) -> tuple[StationLink | None, Sequence[str]]:
+    """Return the station that the verb goes through, or None, and the endpoints. Raises VerbError, EndpointError."""
+
+    def choose() -> list[str]:
+        return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note)
+
+    endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
+    hello = Hello(VERB, VERSION, f"groundstation {output.verb}", takes_part=not action.watches, follows=action.follows)
+    station = find_station(options.through, endpoints, hello, output.note)
+    if station is not None:
+        return station, station.ready.endpoints
+    return None, endpoints or choose()
+
+
+def _open_signing() -> SigningKeeper | None:
+    """Return what signs the frames of a verb that has links of its own. Raises VerbError."""
+    from groundstation.connect.signing import SigningError, open_signing  # a verb through a station does without
+
+    try:
+        return open_signing(time.monotonic())
+    except SigningError as error:
+        raise VerbError(ExitCode.USAGE, str(error)) from None
+
+
+def _start_guard(ids: tuple[int, int], signing: SigningKeeper | None) -> DemandGuard:
+    from groundstation.verbs.demand_guard import DemandGuard
+
+    return DemandGuard(ids, signing.signing if signing else None)
+
+
+def _keep(session: VerbSession, kept: KeptSession, output: Output) -> None:
+    """Prove the session of the verb before if this one follows it, so that the vehicle misses no ground station."""
+    if not kept.follows:
+        return
+    contact = session.contact
+    contact.operator.may_prove = kept.may_prove
+    contact.operator.begin(session.now)
+
+    def tell(_: asyncio.Future[None]) -> None:
+        output.note(f"{contact.state.name} is controlled by the verb before; this one keeps its session")
+
+    session.core.add_look(lambda: contact.in_control).add_done_callback(tell)
 
 
 async def _prepare(session: VerbSession, action: VerbAction, options: argparse.Namespace, where: str) -> None:
@@ -137,33 +206,18 @@ def _cancel_on_signals(caught: list[int]) -> None:
         asyncio.get_running_loop().add_signal_handler(number, cancel, number)
 
 
-def choose_endpoints(
-    texts: Sequence[str] | None, config: str | None, environment: Mapping[str, str], recent: RecentFile
-) -> list[str]:
-    """Return the endpoints of -e, of MAVHELM_ENDPOINT, of the config file, or the one used last.
-
-    The config file is read only where it matters: a mistake in it does not keep a verb from a vehicle that -e names.
-    Raises ConfigError, EndpointError.
-    """
-    texts = texts or environment_endpoints(environment)
-    if texts and all(":" in text for text in texts):
-        return list(texts)
-    effective = merge(load_config(config, environment, VERBS), environment, {"open": texts} if texts else {})
-    if not texts and "open" not in effective.sources:
-        return [recent.load().last or DEFAULT_ENDPOINT]
-    return resolve_endpoints(effective.settings.open, effective.settings)
-
-
-def build_parser(verb: str) -> CommandLineParser:
+def build_parser(verb: str, kind: type[CommandLineParser] = CommandLineParser) -> CommandLineParser:
     """Return the parser for the arguments behind a verb."""
-    parser = CommandLineParser(prog=f"groundstation {verb}", epilog=EPILOG, formatter_class=_HELP)
+    parser = kind(prog=f"groundstation {verb}", epilog=EPILOG, formatter_class=_HELP)
     if ONLY in VERBS[verb]:
         _add_arguments(parser, VERBS[verb][ONLY])
         parser.set_defaults(action=ONLY)
         return parser
-    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=CommandLineParser)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=kind)
     for name, action in VERBS[verb].items():
-        _add_arguments(actions.add_parser(name, help=action.help, epilog=EPILOG, formatter_class=_HELP), action)
+        known = actions.add_parser(name, aliases=action.aliases, help=action.help, epilog=EPILOG, formatter_class=_HELP)
+        known.set_defaults(action=name)  # also for an alias
+        _add_arguments(known, action)
     return parser
 
 
@@ -171,7 +225,9 @@ def _add_arguments(parser: argparse.ArgumentParser, action: VerbAction) -> None:
     parser.description = f"{action.help[0].upper()}{action.help[1:]}."
     for argument, settings in action.arguments:
         parser.add_argument(argument, **settings)
-    _add_common(parser)
+    if not action.offline:
+        _add_common(parser)
+    _add_local(parser)
 
 
 _HELP = argparse.RawDescriptionHelpFormatter
@@ -188,36 +244,23 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
         help="where the vehicle is; more than once for several links",
     )
     add("--config", metavar="FILE", help="config file with names of endpoints")
-    add("-v", "--vehicle", type=system_id, metavar="ID", help="its system id (default: the only vehicle)")
+    add("-v", "--vehicle", type=vehicle_id, metavar="ID", help="its system id or name (default: the only vehicle)")
     add("--wait", type=seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
+    add(
+        "--station",
+        dest="through",
+        type=station_choice,
+        default=AUTO,
+        metavar="auto|only|never|PID",
+        help="go through the station that runs here (auto: if one does)",
+    )
     add("--timeout", type=seconds, metavar="S", help="end after this time in any case")
     add("--system", type=system_id, default=SYSTEM, metavar="ID", help=f"our system id (default: {SYSTEM})")
+
+
+def _add_local(parser: argparse.ArgumentParser) -> None:
+    """Add the options that a verb without a vehicle has as well."""
+    add = parser.add_argument
     add("--dialect", metavar="FILE.xml", help="definitions of a vehicle that sends messages of its own")
     add("--json", action="store_true", help="print one JSON object a line")
     add("-q", "--quiet", action="store_true", help="print no progress and no notes")  # fmt: skip
-
-
-def build_completion_parser() -> CommandLineParser:
-    """Return the parser of `completion`."""
-    parser = CommandLineParser(
-        prog="groundstation completion",
-        description="Print a script that completes verbs, options and names in a shell.",
-        epilog='bash: eval "$(groundstation completion bash)" in ~/.bashrc; zsh likewise; '
-        "fish: groundstation completion fish | source",
-    )
-    parser.add_argument("shell", choices=SHELLS)
-    return parser
-
-
-def run_completion(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
-    """Print the script for a shell; return the exit code."""
-    parser = build_completion_parser()
-    options = parser.parse_args(parser.reject_empty(arguments))
-    try:
-        sys.stdout.write(build_script(options.shell, helps))
-        sys.stdout.flush()
-    except OSError as error:
-        stdio.discard_output()
-        sys.stderr.write(f"groundstation: output: {error.strerror or error}\n")
-        return int(ExitCode.BROKEN)
-    return int(ExitCode.DONE)

@@ -9,7 +9,8 @@ from operator import eq, ge, gt, le, lt, ne
 from typing import Any
 
 from dialects.enum_names import enum_names
-from dialects.messages import MESSAGES, ExtraMessage, Message, StatusText, decode_text, printable
+from dialects.field_values import field_value
+from dialects.messages import MESSAGES, Message
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.nearest import describe_nearest
 
@@ -82,21 +83,6 @@ def parse_condition(text: str, kind: type[Message], field: FieldPath | None) -> 
     path = find_field(kind, found["field"]) if found["field"] else field
     assert path is not None
     return Condition(path, found["sign"], _parse_value(found["value"], kind, path))
-
-
-def field_value(message: Message, name: str) -> Any:
-    """Return a value: a number, a text, or a list."""
-    if isinstance(message, ExtraMessage):
-        value = message.values[name]
-    elif isinstance(message, StatusText) and name == "text":
-        value = decode_text(message)
-    else:
-        value = getattr(message, name)
-    if isinstance(value, bytes):
-        value = value.split(b"\0", 1)[0].decode("utf-8", "replace")
-    if isinstance(value, str):
-        return printable(value)
-    return list(value) if isinstance(value, tuple | list) else value
 
 
 def value_text(value: Any) -> str:

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
+from dialects.field_values import field_value
 from dialects.messages import Message
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.message_values import (
     Condition,
     FieldPath,
-    field_value,
     find_field,
     find_message,
     parse_condition,
@@ -145,7 +145,7 @@ class _Watcher:
         else:
             words = " ".join(f"{name}={value_text(value)}" for name, value in values.items())
             self._output.line(f"{clock:%H:%M:%S}.{clock.microsecond // 1000:03}Z {words}")
-        self._output.record(time=stamp, vehicle=self._system, name=self._kind.msgname, **values)
+        self._output.record(time=stamp, vehicle=self._system, name=self._kind.msgname, fields=values)
         self._output.flush()
 
     def _paths(self) -> Sequence[FieldPath]:
@@ -168,7 +168,7 @@ def print_message(message: Message, output: Output) -> None:
     for name, value in values.items():
         unit = type(message).fieldunits_by_name.get(name, "")
         output.line(f"{name:<{width}}  {value_text(value)} {unit}".rstrip())
-    output.record(name=type(message).msgname, **values)
+    output.record(name=type(message).msgname, fields=values)
 
 
 def _length(message: Message) -> int:

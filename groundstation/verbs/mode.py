@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 
 from groundstation.vehicles.requests import RequestState
-from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
+from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
 
 
@@ -31,10 +32,7 @@ async def set_mode(session: VerbSession, options: argparse.Namespace, output: Ou
     await session.need_only_vehicle(options.vehicle)
     modes, name = session.services.modes, options.name.upper()
     report = await session.request(lambda number, now: modes.set(number, name, now))
-    done = report.state is RequestState.ACCEPTED
-    if not done:
-        output.error(f"{session.vehicle.name}: {report.text}")
-    elif any(mode.name.upper() == name and mode.moves_itself for mode in modes.modes):
+    moves = any(mode.name.upper() == name and mode.moves_itself for mode in modes.modes)
+    if moves and report.state is RequestState.ACCEPTED:
         output.note(f"{session.vehicle.name} may move by itself in {name}; this program no longer sends heartbeats")
-    output.result(done, session.vehicle.system, mode=name, detail=report.detail, text=report.reason)
-    return code_of(report)
+    return finish(session, report, output, mode=name)

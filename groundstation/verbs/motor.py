@@ -52,9 +52,11 @@ async def run(session: StationSession, options: argparse.Namespace, output: Outp
         raise VerbError(ExitCode.USAGE, f"there is no motor {number}; there are: {there}")
     output.note(f"{view.motors[number - 1].name} of {view.name} at {options.throttle:g} % for {options.seconds:g} s")
     session.do(ReportKeyReleases(), TurnMotor(view.system, number, options.throttle / 100))
-    await session.until(lambda: not _turns(session), options.seconds)
-    session.do(StopMotorTest())
-    await session.until(lambda: _text(session) != "stands", 0.3)  # the stops are sent three times
+    try:
+        await session.until(lambda: not _turns(session), options.seconds)
+    finally:  # also after Ctrl-C
+        session.do(StopMotorTest())
+        await session.until(lambda: _text(session) != "stands", 0.3)  # the stops are sent three times
     return _finish(session, number, output)
 
 

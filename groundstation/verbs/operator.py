@@ -7,20 +7,20 @@ takes or needs control asks whether the vehicle has our dialect, and then proves
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
 from dialects.enums import Command, OperatorFlag, Result
 from groundstation.input.style import HIGHEST_LIMIT, Style
-from groundstation.station.driving import IDLE_PROOF_PERIOD
-from groundstation.station.operator import OperatorSession
+from groundstation.station.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS, DialectProbe
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Outgoing
 from link.services.command.client import CommandClient, CommandOutcome
 
-PROOFS_FIRST, FIRST_PERIOD = 3, 0.05
+PROOFS_FIRST, FIRST_PERIOD = 3, 0.008
 """Proofs before the first command, and s between them: two of three may get lost."""
 
 
@@ -39,13 +39,23 @@ class VerbOperator:
         self._stream = DemandStream()
         self._outbox: list[m.Message] = []
         self.demanding = False
-        """Neutral demands are sent. When it ends, final ones follow."""
+        """Demands are sent, those of `demand`. When it ends, final neutral ones follow."""
+        self.demand: Callable[[float], Axes] = lambda _: NEUTRAL
+        """Takes the time; returns what to demand while `demanding`."""
+        self.may_prove: Callable[[float], bool] = lambda _: True
+        """Takes the time; returns whether this program may prove the session, which another verb may use."""
+        self.frame: int | None = None
+        """What decides on the axes of the vehicle, if it is known (dialects/axes.py, FRAMES)."""
 
     def begin(self, now: float) -> None:
         """Begin to take part: find out the dialect, then prove the session."""
         if not self._wanted:
             self._wanted = True
             self._session.record_input(now)
+
+    def record_input(self, now: float) -> None:
+        """Count an input: a key of a script, or the beginning of a demand."""
+        self._session.record_input(now)
 
     @property
     def settled(self) -> bool:
@@ -63,14 +73,16 @@ class VerbOperator:
         return self._stream.finished and not self._outbox
 
     def tick(self, client: CommandClient, now: float, *, may_query: bool) -> None:
-        """Ask for the dialect, prove the session, send neutral demands."""
+        """Ask for the dialect, prove the session, send demands."""
         if not self._wanted:
             return
         self._session.renew_lease(now)
         self._query_dialect(client, now, may_query)
-        axes = self._stream.next_due(NEUTRAL, self.demanding, now)
+        axes = self._stream.next_due(self.demand(now) if self.demanding else NEUTRAL, self.demanding, now)
         if axes is not None:
-            self.send_demand(build_manual_control(NEUTRAL, self._state.system, axis_map(self._state.autopilot)), now)
+            self._session.record_demand(axes)
+            frame = axis_map(self._state.autopilot, self.frame)
+            self.send_demand(build_manual_control(axes, self._state.system, frame), now)
         self._prove(now)
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
@@ -106,7 +118,8 @@ class VerbOperator:
     def _prove(self, now: float) -> None:
         """Prove the session once a time of the vehicle is known: without it a proof proves nothing."""
         period = FIRST_PERIOD if self._proofs < PROOFS_FIRST else IDLE_PROOF_PERIOD
-        if self._state.has_rover_dialect and self._state.boot_time is not None and now - self._proven_at >= period:
+        known = self._state.has_rover_dialect and self._state.boot_time is not None
+        if known and now - self._proven_at >= period and self.may_prove(now):
             self._add_proof(None, now)
 
     def _add_proof(self, demand: m.ManualControl | None, now: float) -> None:

@@ -8,6 +8,7 @@ import sys
 import time
 from typing import Any
 
+from dialects.messages import printable
 from groundstation.vehicles.requests import RequestReport
 
 PROGRESS_PERIOD = 0.1
@@ -18,7 +19,7 @@ class Output:
     """Prints for one verb. `verb` names it in JSON, e.g. "param get"."""
 
     def __init__(self, verb: str, *, as_json: bool, quiet: bool) -> None:
-        self._verb = verb
+        self.verb = verb
         self.as_json = as_json
         self._quiet = quiet
         self._began = time.monotonic()
@@ -27,10 +28,10 @@ class Output:
         self._progress_shown = False
 
     def line(self, text: str) -> None:
-        """Print a line of data, unless --json."""
+        """Print one or more lines of data, unless --json. Escape sequences in texts of a vehicle become harmless."""
         if not self.as_json:
             self._clear_progress()
-            sys.stdout.write(f"{text}\n")
+            sys.stdout.writelines(f"{printable(line)}\n" for line in text.split("\n"))
 
     def record(self, **fields: Any) -> None:
         """Print an object with --json."""
@@ -45,7 +46,7 @@ class Output:
     def result(self, ok: bool, vehicle: int | None, **fields: Any) -> None:
         """Print how the verb ended, with --json."""
         took = round(time.monotonic() - self._began, 3)
-        self.record(ok=ok, verb=self._verb, vehicle=vehicle, **fields, took=took)
+        self.record(ok=ok, verb=self.verb, vehicle=vehicle, **fields, took=took)
 
     def note(self, text: str) -> None:
         """Print something worth knowing to stderr, unless --quiet."""
@@ -56,7 +57,7 @@ class Output:
         """Print an error to stderr, one line."""
         self._clear_progress()
         sys.stdout.flush()
-        sys.stderr.write(f"groundstation: {' '.join(text.split())}\n")
+        sys.stderr.write(f"groundstation: {printable(' '.join(text.split()))}\n")
         sys.stderr.flush()
 
     def progress(self, report: RequestReport) -> None:
@@ -66,7 +67,7 @@ class Output:
             return
         self._progress_due = now + PROGRESS_PERIOD
         of = f"/{report.total}" if report.total is not None else ""
-        sys.stderr.write(f"\r\x1b[K{report.what} {report.done}{of}")
+        sys.stderr.write(f"\r\x1b[K{printable(report.what)} {report.done}{of}")
         sys.stderr.flush()
         self._progress_shown = True
 

@@ -7,12 +7,14 @@ import fnmatch
 from collections.abc import Iterable, Sequence
 
 from groundstation.formats.param_compare import compare
-from groundstation.formats.param_file import ParamFile, ParamForm, format_params, parse_params
+from groundstation.formats.param_file import ParamFile, format_params, parse_params
+from groundstation.formats.param_form import ParamForm
 from groundstation.vehicles.param_requests import param_type_name
-from groundstation.vehicles.requests import RequestReport, RequestState
+from groundstation.vehicles.requests import RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.local_file import check_new_file, read_text, write_text
 from groundstation.verbs.output import Output
+from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
 from link.services.param.client import Param
 from link.services.param.float32 import same_float32, value_text
@@ -36,18 +38,12 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
 async def set_value(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Set one parameter; done when the vehicle reports the new value."""
     await session.need_only_vehicle(options.vehicle)
-    name, system = _name(options.name), session.vehicle.system
+    name = _name(options.name)
     report = await session.request(lambda number, now: session.services.params.set(number, name, options.value, now))
     known = session.services.params.client.params.get(name)
-    done = report.state is RequestState.ACCEPTED
-    value = known.value if known else None
-    if done:
+    if report.state is RequestState.ACCEPTED:
         output.line(f"{name} {value_text(options.value)} ({report.detail})")
-        output.result(True, system, param_id=name, param_value=value, detail=report.detail)
-    else:
-        output.error(f"{session.vehicle.name}: {report.text}")
-        output.result(False, system, param_id=name, param_value=value, detail=report.detail, text=report.reason)
-    return code_of(report)
+    return finish(session, report, output, param_id=name, param_value=known.value if known else None)
 
 
 async def save(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -100,7 +96,9 @@ async def load(session: VerbSession, options: argparse.Namespace, output: Output
 async def store(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Have the vehicle store all parameters."""
     await session.need_only_vehicle(options.vehicle)
-    return _ended(await session.request(session.services.param_storage.store), session, output)
+    return finish(
+        session, await session.request(session.services.param_storage.store), output, "has stored its parameters"
+    )
 
 
 async def reset(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -108,14 +106,9 @@ async def reset(session: VerbSession, options: argparse.Namespace, output: Outpu
     if not options.yes:
         raise VerbError(ExitCode.USAGE, "this resets ALL parameters of the vehicle; --yes does it")
     await session.need_only_vehicle(options.vehicle)
-    return _ended(await session.request(session.services.param_storage.reset), session, output)
-
-
-def _ended(report: RequestReport, session: VerbSession, output: Output) -> int:
-    done = report.state is RequestState.ACCEPTED
-    (output.line if done else output.error)(f"{session.vehicle.name}: {report.text}")
-    output.result(done, session.vehicle.system, detail=report.detail, text=report.reason)
-    return code_of(report)
+    return finish(
+        session, await session.request(session.services.param_storage.reset), output, "has reset its parameters"
+    )
 
 
 async def _write(
@@ -127,10 +120,9 @@ async def _write(
         report = await session.request(lambda number, now, n=name, v=wanted: params.set(number, n, v, now))  # type: ignore[misc]
         if report.state is not RequestState.ACCEPTED:
             left = ", ".join(each for each, _, _ in differing[done + 1 :])
-            output.error(f"{session.vehicle.name}: {report.text}")
             output.note(f"{done} of {len(differing)} are set" + (f"; not tried: {left}" if left else ""))
-            output.result(False, system, changed=done, refused=name, detail=report.detail, text=report.reason)
-            return ExitCode.PARTLY if done else code_of(report)
+            code = finish(session, report, output, changed=done, refused=name)
+            return ExitCode.PARTLY if done else code
         output.line(f"{name:<16} {value_text(before.value)} -> {value_text(wanted)}")
     output.note(f"{_count(len(differing))} set")
     output.result(not missing, system, changed=len(differing), missing=list(missing))
@@ -187,6 +179,11 @@ def _compare(file: ParamFile, session: VerbSession) -> tuple[list[tuple[str, flo
     """Return what differs (name, value of the file, parameter of the vehicle), and what the vehicle lacks."""
     found = compare(file, session.services.params.client.params, session.vehicle.component)
     return list(found.different), list(found.only_file)
+
+
+def only_prints(options: argparse.Namespace) -> bool:
+    """Return whether `load` changes nothing."""
+    return bool(options.dry_run)
 
 
 def _read(path: str) -> ParamFile:

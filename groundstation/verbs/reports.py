@@ -11,17 +11,16 @@ from groundstation.verbs.session import VerbSession
 
 
 def finish(session: VerbSession, report: RequestReport, output: Output, done: str = "", **fields: Any) -> int:
-    """Print how a request ended, `done` if it was done; return the exit code."""
+    """Print how a request that changes something ended, `done` if it was done; return the exit code."""
     contact, name = session.contact, session.vehicle.name
     accepted = report.state is RequestState.ACCEPTED
-    code = code_of(report)
     driver = contact.other_driver
+    code = code_of(report, driver)
     if accepted and done:
         output.note(f"{name} {done}{f': {report.detail}' if report.detail else ''}")
     elif not accepted:
         output.error(f"{name}: {report.text}")
-    if code is ExitCode.REFUSED and driver is not None:
-        code = ExitCode.NOT_IN_CONTROL
+    if code is ExitCode.NOT_IN_CONTROL:
         output.error(f"GCS {driver} is in control of {name}; `groundstation control request` asks for it")
     output.result(accepted, contact.state.system, **fields, detail=report.detail, text=report.reason)
     return code

@@ -13,9 +13,11 @@ from collections.abc import Callable
 
 from dialects import messages as m
 from dialects.modes import STANDING_MODES
+from dialects.traits import SECRET
 from groundstation.station.operator import NEUTRAL_LEAD
+from groundstation.vehicles.demand_neutrals import DEMANDS
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
-from groundstation.verbs.demands import DEMANDS, build_demand, check_demand
+from groundstation.verbs.demands import build_demand, check_demand
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.message_builder import build, parse_fields
 from groundstation.verbs.message_values import find_message
@@ -29,6 +31,10 @@ TARGETS = {"target": 0, "target_system": 0, "target_component": 1}
 def check(options: argparse.Namespace) -> None:
     """Find the message and read its fields. Raises VerbError."""
     options.kind = find_message(options.name)
+    if options.kind.id in SECRET:
+        raise VerbError(
+            ExitCode.USAGE, "every user can read the command line: use `groundstation sign setup` for a key"
+        )
     options.values = parse_fields(options.kind, options.fields)
     check_demand(options.kind, options.values, confirmed=options.yes)
     if (options.rate is None) != (options.seconds is None):

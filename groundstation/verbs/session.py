@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 from collections.abc import Awaitable, Callable, Iterable, Sequence
+from typing import TYPE_CHECKING
 
+from dialects import messages as m
+from dialects.enums import Command
 from groundstation.station.operator import NEUTRAL_LEAD
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.verbs.contact import VehicleContact
 from groundstation.verbs.core import VerbCore
-from groundstation.verbs.demand_guard import DemandGuard
 from groundstation.verbs.exit_codes import ExitCode, VerbError
-from link.runner import Runner, open_links
+from groundstation.verbs.station_link import StationLink, StationRunner
+from link.protocol.log_tap import LogTap
+
+if TYPE_CHECKING:
+    from groundstation.verbs.demand_guard import DemandGuard
+    from link.runner import Runner
+    from link.signing_keeper import SigningKeeper
 
 PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
@@ -22,8 +31,12 @@ END_WITHIN = 1.0
 """s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
 SETTLED_WITHIN = 3.0
 """s to find out the dialect and prove the session; the question alone is repeated for 2.1 s."""
+PROOF_PERIOD = 0.01
+"""s between looks whether a proof is due, before the first command."""
 TOLD_WITHIN = 0.5
 """s for our vehicle to tell which program is in control, once it knows that we understand it."""
+DRIVER_WITHIN = 2.5
+"""s until our vehicle tells who is in control: it does once a second, and one may get lost."""
 SUCCESSION_WITHIN = 2.0
 """s for the session of the verb before this one to count as silent, which takes 0.7 s (docs/safety.md)."""
 ALONE_AFTER = 1.3
@@ -90,7 +103,9 @@ class VerbSession:
                 raise VerbError(ExitCode.USAGE, f"vehicles {heard} are here: choose one with --vehicle")
 
     async def hear_all(self, seconds: float = ALONE_AFTER) -> None:
-        """Wait until the links were heard for so long, counted from the start."""
+        """Wait until the links were heard for so long, counted from the start; a station has heard them before."""
+        if self.core.has_heard_all:
+            return
         await asyncio.sleep(max(0.0, self.began + seconds - self.now))
 
     async def take_part(self) -> None:
@@ -98,11 +113,14 @@ class VerbSession:
 
         A vehicle that says neither that it has our dialect nor that it has not is treated as one without.
         """
-        self.contact.operator.begin(self.now)
-        contact = self.contact
-        await self.wait_for(lambda: contact.operator.settled, SETTLED_WITHIN)
+        contact, until = self.contact, self.now + SETTLED_WITHIN
+        contact.operator.begin(self.now)
+        while not contact.operator.settled and self.now < until:
+            contact.tick(self.now)  # proofs follow each other faster than PERIOD
+            self.flush()
+            await self.wait_for(lambda: contact.operator.settled, PROOF_PERIOD)
         if contact.state.has_rover_dialect:
-            await self.wait_for(lambda: contact.state.control.session is not None, TOLD_WITHIN)
+            await self.wait_for(lambda: contact.state.control.session is not None, DRIVER_WITHIN)
             await self.wait_for(lambda: not contact.follows, SUCCESSION_WITHIN)
 
     async def show_neutral(self) -> None:
@@ -116,6 +134,8 @@ class VerbSession:
 
     async def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Wait until `condition` holds; return whether it does."""
+        if condition():
+            return True
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(self.core.add_look(condition), seconds)
         return condition()
@@ -132,6 +152,22 @@ class VerbSession:
         self.flush()
         await self.core.add_look(lambda: self._collect(number))
         return self._ended.pop(number)
+
+    def heard_at(self, kind: type[m.Message]) -> float:
+        """Return when such a message of the vehicle arrived last; -infinity if none has."""
+        return self.core.heard.get((self.vehicle.system, kind), -math.inf)
+
+    async def request_message(
+        self, kind: type[m.Message], within: float, told: Callable[[], bool] | None = None
+    ) -> RequestReport:
+        """Request a message; wait for it (or for `told`) up to `within` s, as it may follow its acknowledgement."""
+        commands, began = self.services.commands, self.now
+        report = await self.request(
+            lambda number, now: commands.send(number, Command.REQUEST_MESSAGE, (float(kind.id),), kind.msgname, now)
+        )
+        if report.state is RequestState.ACCEPTED:
+            await self.wait_for(told or (lambda: self.heard_at(kind) >= began), within)
+        return report
 
     def _collect(self, number: int) -> bool:
         for report in self.services.book.pop_changes():
@@ -152,15 +188,30 @@ async def run_session(
     script: Callable[[VerbSession], Awaitable[int]],
     progress: Callable[[RequestReport], None],
     guard: DemandGuard | None = None,
+    *,
+    session: int,
+    station: StationLink | None = None,
+    log_tap: LogTap | None = None,
+    signing: SigningKeeper | None = None,
 ) -> int:
     """Open the links, run the script, and return its exit code. Raises EndpointError, LinkError, VerbError.
 
-    A script that is interrupted gets END_WITHIN to end in order, over links that still work.
+    With `station` there are no links: the verb goes through it. A script that is interrupted gets END_WITHIN to end in
+    order, over links that still work.
     """
-    core = VerbCore(ids, wanted)
+    core = VerbCore(ids, wanted, session)
     core.guard = guard
-    links = open_links(endpoints, system=ids[0], component=ids[1])
-    runner = Runner(core, links, period=PERIOD, route=False, sent=guard.record_sent if guard else None)
+    runner: Runner | StationRunner
+    if station is not None:
+        core.has_heard_all = True
+        runner = StationRunner(core, station, PERIOD, lambda links: core.observe(links.reports, 0.0), log_tap)
+    else:
+        from link.endpoint import Side
+        from link.runner import Runner, open_links  # a verb through a station does without
+
+        links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION)
+        sent = guard.record_sent if guard else None
+        runner = Runner(core, links, period=PERIOD, route=False, log_tap=log_tap, sent=sent, signing=signing)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins
     verb = asyncio.ensure_future(script(VerbSession(core, runner.flush, progress)))

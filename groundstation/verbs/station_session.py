@@ -7,16 +7,24 @@ import secrets
 import time
 from collections.abc import Awaitable, Callable, Sequence
 
+from groundstation.connect.signing import SigningError, open_signing
 from groundstation.intents.base import Intent
-from groundstation.intents.session import RenewLease, Watch
+from groundstation.intents.session import RenewLease
 from groundstation.intents.vehicle import SelectVehicle
+from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
 from groundstation.station.station import COMPONENT, Station
+from groundstation.station_socket.relay import LinksReport
+from groundstation.verbs.exit_codes import ExitCode, VerbError
+from groundstation.verbs.station_link import StationLink, StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
+from link.endpoint import Side
 from link.runner import Runner, open_links
 
 PERIOD = 0.02
 """s between two ticks, as of the other verbs."""
+END_WITHIN = 1.0
+"""s for an interrupted verb to send its last messages."""
 LEASE_PERIOD = 0.1
 """s between renewals of the lease, as of the screen; each also looks whether something has changed."""
 
@@ -88,16 +96,21 @@ class StationSession:
 
 
 async def run_station(
-    endpoints: Sequence[str], system: int, driver: int, script: Callable[[StationSession], Awaitable[int]]
+    endpoints: Sequence[str],
+    system: int,
+    driver: int,
+    script: Callable[[StationSession], Awaitable[int]],
+    link: StationLink | None = None,
 ) -> int:
     """Open the links, run the script, and return its exit code.
 
-    `driver` is the system id of the ground station that will drive, 0 for this one. Raises EndpointError,
-    LinkError, VerbError.
+    `driver` is the system id of the ground station that will drive, 0 for this one. With `link` there are no links:
+    this station hears and sends through the one that runs. Raises EndpointError, LinkError, VerbError.
     """
     now = asyncio.get_running_loop().time
-    station = Station(endpoints, system=system, session=secrets.randbits(32), now=now())
-    runner = Runner(station, open_links(endpoints, system=system, component=COMPONENT), period=PERIOD, route=False)
+    session_number = secrets.randbits(32) if link is None else link.ready.session
+    station = Station(endpoints, system=system, session=session_number, now=now())
+    runner = _open(station, endpoints, system) if link is None else _go_through(station, link)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins
     request = DoctorRequest(station=driver)
@@ -112,10 +125,27 @@ async def run_station(
                 each.result()
         return await verb
     finally:
-        verb.cancel()
+        if verb.cancel():
+            await asyncio.wait({verb}, timeout=END_WITHIN)
         lease.cancel()
         runner.stop()
         await running
+
+
+def _open(station: Station, endpoints: Sequence[str], system: int) -> Runner:
+    try:
+        signing = open_signing(asyncio.get_running_loop().time())
+    except SigningError as error:
+        raise VerbError(ExitCode.USAGE, str(error)) from None
+    links = open_links(endpoints, system=system, component=COMPONENT, side=Side.GROUND_STATION)
+    return Runner(station, links, period=PERIOD, route=False, signing=signing)
+
+
+def _go_through(station: Station, link: StationLink) -> StationRunner:
+    def take_reports(links: LinksReport) -> None:
+        station.observe(links.reports, asyncio.get_running_loop().time())
+
+    return StationRunner(station, link, PERIOD, take_reports)
 
 
 async def _renew(station: Station, session: StationSession) -> None:

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Command, state_name
+from dialects.enums import state_name
 from groundstation.snapshot import VehicleView
 from groundstation.vehicles.requests import RequestState
 from groundstation.verbs.contact import VehicleContact
@@ -77,15 +77,13 @@ class _Asker:
 
     def __init__(self, session: VerbSession) -> None:
         self._session = session
-        self._heard: dict[type[m.Message], float] = {}
         self._refused: set[type[m.Message]] = set()
-        session.core.taps.append(lambda received, now: self._heard.update({type(received.message): now}))
 
     async def ask(self, *, every: bool) -> None:
         """Request what was not heard lately; `every`: also what is asked for once only."""
         for kind in ASKED:
             once = kind in (m.AutopilotVersion, m.ControlStatus)
-            fresh = self._session.now - self._heard.get(kind, -math.inf) < PERIOD
+            fresh = self._session.now - self._session.heard_at(kind) < PERIOD
             if fresh or kind in self._refused or (once and not every):
                 continue
             if not await self._request(kind):
@@ -93,13 +91,8 @@ class _Asker:
 
     async def _request(self, kind: type[m.Message]) -> bool:
         """Request one message; return whether the vehicle answers at all."""
-        commands, began = self._session.services.commands, self._session.now
-        report = await self._session.request(
-            lambda number, now: commands.send(number, Command.REQUEST_MESSAGE, (float(kind.id),), kind.msgname, now)
-        )
-        if report.state is RequestState.ACCEPTED:
-            await self._session.wait_for(lambda: self._heard.get(kind, -math.inf) >= began, ARRIVES_WITHIN)
-        else:
+        report = await self._session.request_message(kind, ARRIVES_WITHIN)
+        if report.state is not RequestState.ACCEPTED:
             self._refused.add(kind)
         return report.state is not RequestState.NO_ANSWER
 

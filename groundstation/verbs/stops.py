@@ -40,7 +40,9 @@ def _stop_all(what: str, done: str, build: BuildJob) -> Run:
                 if system not in codes and options.vehicle in (None, system):
                     codes[system] = asyncio.ensure_future(_stop(each, within, output))
             known = len(session.core.contacts)
-            if options.vehicle or not await session.wait_for(_more_than(session, known), ALONE_AFTER):
+            if options.vehicle or not await session.wait_for(
+                _more_than(session, known), 0.0 if session.core.has_heard_all else ALONE_AFTER
+            ):
                 break
         return _join(await asyncio.gather(*codes.values()))
 

@@ -9,31 +9,12 @@ from __future__ import annotations
 import argparse
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dialects.enums import MissionType
-from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import (
-    arm,
-    calibrate,
-    command,
-    control,
-    doctor,
-    ftp,
-    go_to,
-    log,
-    messages,
-    mode,
-    motor,
-    param,
-    ping,
-    plan,
-    reboot,
-    send,
-    status,
-    stops,
-)
+from groundstation.formats.param_form import ParamForm
 from groundstation.verbs.arguments import (
+    LONGEST_HOLD,
     Argument,
     count,
     finite,
@@ -45,7 +26,63 @@ from groundstation.verbs.arguments import (
     seconds,
     system_id,
 )
+from groundstation.verbs.later import LaterModule, made
 from groundstation.verbs.output import Output
+from link.protocol.log_tap import LogTap
+from link.signing.key_options import ENTERED, SHOWN
+
+if TYPE_CHECKING:
+    from groundstation.verbs import (
+        arm,
+        calibrate,
+        command,
+        control,
+        doctor,
+        drive,
+        export,
+        ftp,
+        go_to,
+        log,
+        messages,
+        mission,
+        mode,
+        motor,
+        param,
+        ping,
+        plan,
+        reboot,
+        record,
+        send,
+        sign,
+        sign_setup,
+        status,
+        stops,
+    )
+else:
+    arm = LaterModule("arm")
+    calibrate = LaterModule("calibrate")
+    command = LaterModule("command")
+    control = LaterModule("control")
+    doctor = LaterModule("doctor")
+    drive = LaterModule("drive")
+    export = LaterModule("export")
+    ftp = LaterModule("ftp")
+    go_to = LaterModule("go_to")
+    log = LaterModule("log")
+    messages = LaterModule("messages")
+    mission = LaterModule("mission")
+    mode = LaterModule("mode")
+    motor = LaterModule("motor")
+    param = LaterModule("param")
+    ping = LaterModule("ping")
+    plan = LaterModule("plan")
+    reboot = LaterModule("reboot")
+    record = LaterModule("record")
+    send = LaterModule("send")
+    sign = LaterModule("sign")
+    sign_setup = LaterModule("sign_setup")
+    status = LaterModule("status")
+    stops = LaterModule("stops")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,24 +91,34 @@ class VerbAction:
 
     help: str
     run: Callable[[Any, argparse.Namespace, Output], Awaitable[int]]
-    """Gets a VerbSession, or a StationSession; returns the exit code."""
+    """Gets a VerbSession, a StationSession, or None; returns the exit code."""
     arguments: tuple[Argument, ...] = field(default=())
+    aliases: tuple[str, ...] = ()
+    """Other words for it."""
+    offline: bool = False
+    """Needs neither vehicle nor link: `run` gets None. It has its own arguments, --dialect, --json and --quiet."""
     station: bool = False
     """`run` gets a StationSession: a whole ground station without a screen. It finds its vehicle itself."""
     finds: bool = True
     """Waits for the vehicle before it runs."""
     watches: bool = False
     """Only looks, and so has ids that are never those of a driver."""
+    follows: bool = False
+    """Keeps the session of the verb before alive, if there was one just now (kept_session.py)."""
     takes_part: bool = False
     """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
     shows_neutral: bool = False
     """Shows neutral then, because it can make the vehicle move."""
     check: Callable[[argparse.Namespace], None] | None = None
     """Raises VerbError for arguments that cannot be right, before any link is opened."""
+    only_reads: Callable[[argparse.Namespace], bool] = lambda _: False
+    """Whether it only looks with these arguments, so that it takes no part."""
     own_timeout: bool = False
     """Ends by itself after --timeout, with a code of its own."""
     guarded: Callable[[argparse.Namespace], bool] = lambda _: False
     """Whether it sends demands, so that a watchdog must outlive it."""
+    tap: Callable[[argparse.Namespace, tuple[int, int]], LogTap | None] = lambda *_: None
+    """Returns what takes all frames; gets our system and component id. Raises VerbError before any link is opened."""
 
 
 _PATTERNS = ("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"})
@@ -82,6 +129,9 @@ _FORMAT = ("--format", {"choices": [form.value for form in ParamForm], "default"
                         "help": "MAVProxy (default), QGroundControl or Mission Planner"})  # fmt: skip
 
 
+_KEY = ("name", {"metavar": "NAME", "help": "name of the key, e.g. of the vehicle"})
+_WHICH_KEY = ("name", {"metavar": "NAME", "help": "name or fingerprint of the key"})
+
 ONLY = ""
 """Name of the action of a verb that has only one, and takes no name for it."""
 
@@ -91,15 +141,40 @@ def _listen(default: float) -> Argument:
                       "help": f"how long to listen ({default:g})"})  # fmt: skip
 
 
+PLANS = (("mission", MissionType.MISSION), ("fence", MissionType.FENCE), ("rally", MissionType.RALLY))
+"""Verb -> the plan that it is about."""
+
+
 def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
     name = kind.name.lower()
     return {
-        "show": VerbAction(f"print the {name}", plan.show(kind), watches=True),
-        "get": VerbAction(f"download the {name} into a file: .plan, or .waypoints for a mission", plan.get(kind),
+        "show": VerbAction(f"print the {name}", made(plan.show, kind), watches=True),
+        "get": VerbAction(f"download the {name} into a file: .plan, or .waypoints for a mission", made(plan.get, kind),
                           (_FILE, _YES), watches=True),
-        "put": VerbAction(f"upload the {name} of a file", plan.put(kind), (_FILE,)),
-        "clear": VerbAction(f"clear the {name} on the vehicle", plan.clear(kind)),
+        "put": VerbAction(f"upload the {name} of a file", made(plan.put, kind), (_FILE,), aliases=("set",),
+                          takes_part=True),
+        "check": VerbAction(f"compare the {name} of the vehicle with a file", made(mission.check, kind), (_FILE,),
+                            watches=True),
+        "clear": VerbAction(f"clear the {name} on the vehicle", made(plan.clear, kind), takes_part=True),
+        **_MORE_PLAN_ACTIONS.get(kind, {}),
     }  # fmt: skip
+
+
+_ITEM = {"type": mission.item_number, "metavar": "N", "help": "number of the item, as `mission show` prints it"}
+_MORE_PLAN_ACTIONS: dict[MissionType, dict[str, VerbAction]] = {
+    MissionType.MISSION: {
+        "start": VerbAction("start the mission, or go on with it", mission.start, (("item", {"nargs": "?", **_ITEM}),),
+                            takes_part=True, shows_neutral=True),
+        "pause": VerbAction("stop where the vehicle is; start goes on", mission.pause),
+        "jump": VerbAction("make an item the current one", mission.jump, (("item", _ITEM),), takes_part=True,
+                           shows_neutral=True),
+    },
+    MissionType.FENCE: {
+        "on": VerbAction("enable the fence", made(mission.enable_fence, True), takes_part=True),
+        "off": VerbAction("disable the fence", made(mission.enable_fence, False), takes_part=True),
+    },
+}  # fmt: skip
+"""Plan -> its actions beside those of all plans."""
 
 
 VERBS: dict[str, dict[str, VerbAction]] = {
@@ -133,7 +208,8 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     },
     "goto": {ONLY: VerbAction(
         "drive to a place by itself; done when the heartbeat reports such a mode", go_to.go_to,
-        (("latitude", {"nargs": "?", "type": finite, "metavar": "LAT", "help": "degrees"}),
+        (("latitude", {"nargs": "?", "type": go_to.latitude, "metavar": "LAT",
+                        "help": "degrees; or `wp`, and the number of an item of the mission in place of LON"}),
          ("longitude", {"nargs": "?", "type": finite, "metavar": "LON", "help": "degrees"}),
          ("--by", {"nargs": 2, "type": finite, "metavar": ("NORTH", "EAST"), "help": "m from where it is"})),
         takes_part=True, shows_neutral=True, check=go_to.check_place)},
@@ -142,6 +218,16 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "speed": {ONLY: VerbAction(
         "set the speed of modes that drive by themselves", go_to.speed,
         (("speed", {"type": metres_per_second, "metavar": "M/S"}),), takes_part=True, shows_neutral=True)},
+    "drive": {ONLY: VerbAction(
+        "drive by hand for a time, or as a script of keys says, then neutral", drive.run,
+        (("--throttle", {"type": drive.percent, "metavar": "PERCENT", "help": "negative for backward"}),
+         ("--steering", {"type": drive.percent, "metavar": "PERCENT", "help": "positive to the right"}),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": f"up to {LONGEST_HOLD:g} s"}),
+         ("--script", {"metavar": "FILE", "help": "lines such as '0.5 press i': s from the start, then a key"}),
+         ("--speed", {"type": drive.limit, "metavar": "LIMIT", "help": "of the keys, 0.1 to 1, as for the screen"}),
+         ("--arm", {"action": "store_true", "help": "arm first, and disarm at the end"}),
+         ("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what --arm has armed"})),
+        takes_part=True, check=drive.check, guarded=lambda _: True)},
     "messages": {ONLY: VerbAction(
         "print which messages arrive, and their rates", messages.messages,
         (("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"}),
@@ -151,7 +237,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         (("what", {"metavar": "MESSAGE[.FIELD]", "help": "e.g. VFR_HUD.groundspeed"}),
          ("--until", {"metavar": "EXPR", "help": "end when it holds: '>0.5' for a field, else 'field>0.5'"}),
          ("--csv", {"action": "store_true", "help": "print comma-separated values"})),
-        watches=True, check=messages.check_watch, own_timeout=True)},
+        watches=True, follows=True, check=messages.check_watch, own_timeout=True)},
     "send": {ONLY: VerbAction(
         "send a message; what is not given is 0, and what can move the vehicle needs --yes", send.run,
         (("name", {"metavar": "MESSAGE"}), ("fields", {"nargs": "*", "metavar": "FIELD=VALUE"}),
@@ -159,6 +245,10 @@ VERBS: dict[str, dict[str, VerbAction]] = {
          ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "how long to repeat it"}),
          ("--yes", {"action": "store_true", "help": "send what can move the vehicle"})),
         check=send.check, guarded=send.is_demand)},
+    "record": {ONLY: VerbAction(
+        "record all that is heard into a telemetry log, until Ctrl-C", record.record,
+        (_FILE, ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end after this time"}), _YES),
+        finds=False, watches=True, tap=record.open_recording)},
     "command": {ONLY: VerbAction(
         "send a MAV_CMD; done when the vehicle has accepted", command.command,
         (("name", {"metavar": "MAV_CMD_X", "help": "its name, with or without MAV_CMD_, or its number"}),
@@ -182,8 +272,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "get": VerbAction("print parameters", param.get, (_PATTERNS,), watches=True),
         "set": VerbAction(
             "set one parameter", param.set_value,
-            (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})),
-        ),
+            (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})), takes_part=True),
         "save": VerbAction(
             "write parameters to a file", param.save,
             (_FILE, _PATTERNS, ("--changed", {"action": "store_true", "help": "only those not at the default"}),
@@ -192,24 +281,25 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "load": VerbAction(
             "set what differs from a file; stop at the first refusal", param.load,
             (_FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
+            takes_part=True, only_reads=param.only_prints,
         ),
         "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,), watches=True),
-        "store": VerbAction("have the vehicle store all parameters", param.store),
+        "store": VerbAction("have the vehicle store all parameters", param.store, takes_part=True),
         "reset": VerbAction("have the vehicle reset all parameters to their defaults", param.reset,
-                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),)),
+                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),), takes_part=True),
     },
-    **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
+    **{verb: _plan_actions(kind) for verb, kind in PLANS},
     "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes,
                                watches=True)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
                               (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True)},
-    "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run)},
+    "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, takes_part=True)},
     "doctor": {ONLY: VerbAction(
         "print why the vehicle cannot be driven, and what to do", doctor.run,
         (("--report", {"metavar": "FILE", "help": "write a report for a bug, without keys and public addresses"}),
-         _YES, ("--station", {"type": int, "default": 255, "metavar": "ID",
-                              "help": "system id of the ground station that will drive (default: 255)"})),
-        station=True,
+         _YES, ("--driver", {"type": int, "default": 255, "metavar": "ID",
+                             "help": "system id of the ground station that will drive (default: 255)"})),
+        station=True, watches=True,
     )},
     "motor": {ONLY: VerbAction(
         "turn one motor of a disarmed vehicle, wheels off the ground", motor.run,
@@ -220,23 +310,51 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         station=True,
     )},
     "calibrate": {ONLY: VerbAction(
-        "calibrate gyros, level or pressure, at rest", calibrate.run,
-        (("kind", {"choices": calibrate.CHOICES, "metavar": "KIND", "help": ", ".join(calibrate.CHOICES)}),),
+        "calibrate gyros, level or pressure at rest, compass or RC sticks by hand", calibrate.run,
+        (("kind", {"choices": calibrate.CHOICES, "metavar": "KIND", "help": "gyro, level, pressure, compass, sticks"}),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "for the sticks (default: 20)"})),
+        check=calibrate.check, takes_part=True, only_reads=calibrate.only_reads,
     )},
     "ftp": {
-        "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),)),
+        "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),),
+                         watches=True),
         "get": VerbAction("download a file, resume, and compare its checksum", ftp.get,
-                          (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}), _YES)),
-        "put": VerbAction("upload a file and compare its checksum", ftp.put, (("local", {"metavar": "FILE"}), _REMOTE)),
-        "rm": VerbAction("remove a file", ftp.rm, (_REMOTE,)),
+                          (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}), _YES), watches=True),
+        "put": VerbAction("upload a file and compare its checksum", ftp.put, (("local", {"metavar": "FILE"}), _REMOTE),
+                          takes_part=True),
+        "rm": VerbAction("remove a file", ftp.rm, (_REMOTE,), takes_part=True),
         "crc": VerbAction("print the checksum of a file, or compare it with a file here", ftp.crc,
-                          (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}))),
+                          (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"})), watches=True),
     },
     "log": {
         "list": VerbAction("print the logs on the vehicle", log.list_logs, watches=True),
         "get": VerbAction("download a log, or resume", log.get,
                           (("log", {"metavar": "ID", "help": "number of the log, or latest"}),
                            ("file", {"nargs": "?", "metavar": "FILE"}), _YES), watches=True),
+        "erase": VerbAction("have the vehicle erase all its logs", log.erase,
+                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),), takes_part=True),
     },
+    "sign": {
+        "new": VerbAction("make a key for MAVLink signing", sign.new, (_KEY, *SHOWN.items()), offline=True),
+        "show": VerbAction(
+            "print name and fingerprint of a key; the secret on request only", sign.show,
+            (("name", {"nargs": "?", "metavar": "NAME", "help": "name or fingerprint; not needed for the only key"}),
+             *SHOWN.items()), offline=True),
+        "install": VerbAction("enter a key that the vehicle has", sign.install, (_KEY, *ENTERED.items()), offline=True,
+                              check=sign.check_install),
+        "setup": VerbAction(
+            "give a key to a disarmed vehicle over a serial or USB cable", sign_setup.run,
+            (("name", {"nargs": "?", "metavar": "NAME", "help": "name of the key (default: the one that signs)"}),
+             ("--unsigned", {"action": "store_true",
+                             "help": "neither sign nor verify: for an autopilot that signs with a key that is lost"})),
+            check=sign_setup.check, tap=sign_setup.watch_signatures, watches=True),
+        "list": VerbAction("print the keys without their secrets; > marks the one that signs", sign.list_keys,
+                           offline=True),
+        "use": VerbAction("sign with this key from now on", sign.use, (_WHICH_KEY,), offline=True),
+        "forget": VerbAction("remove a key here; the vehicle still has it", sign.forget, (_WHICH_KEY,), offline=True),
+    },
+    "export": {ONLY: VerbAction(
+        "write a telemetry log, or a part of it, for other programs; several outputs at once", export.run,
+        export.ARGUMENTS, offline=True, check=export.check)},
 }  # fmt: skip
 """Verb -> its actions."""

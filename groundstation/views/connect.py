@@ -10,6 +10,9 @@ from groundstation.views.base import View, ViewRequest
 class ConnectRequest(ViewRequest, frozen=True):
     """All of it. While it is watched, the station listens on the usual ports without sending."""
 
+    search: bool = False
+    """Also ask the local network by multicast DNS; no MAVLink is sent."""
+
 
 class HeardRow(msgspec.Struct, frozen=True, kw_only=True):
     """A vehicle that is heard."""
@@ -31,6 +34,8 @@ class HeardRow(msgspec.Struct, frozen=True, kw_only=True):
     """System id of the ground station in control, 0 for none; None if the vehicle does not report it."""
     open: bool = False
     """It is heard over a link that is open; else nothing was sent to it."""
+    announced: bool = False
+    """It announces itself on the network, and was not heard."""
 
 
 class PortRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -79,3 +84,7 @@ class ConnectView(View, frozen=True, kw_only=True):
     """The newest attempts to open links, oldest first."""
     endpoints: tuple[str, ...] = ()
     """Endpoints of the links that are open."""
+    searching: bool = False
+    """The local network is asked."""
+    search_problem: str = ""
+    """Why it is not, or without effect."""

@@ -2,24 +2,11 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
 import msgspec
 
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.requests import RequestLine
-
-
-class Health(Enum):
-    """How a link of the chain stands."""
-
-    OK = "ok"
-    WARNING = "warning"
-    """The vehicle can be driven, but somebody should look at it."""
-    FAULT = "fault"
-    """It keeps keys from driving, or may keep the vehicle from stopping."""
-    UNKNOWN = "unknown"
-    """Not known, does not apply, or comes after something else."""
+from link.runtime.diagnosis import Health
 
 
 class ParamFix(msgspec.Struct, frozen=True):
@@ -90,6 +77,26 @@ class CalibrationRow(msgspec.Struct, frozen=True):
     """In words."""
 
 
+STICKS = "sticks"
+"""Kind of calibration that has no command: the station watches RC_CHANNELS."""
+
+
+class StickRow(msgspec.Struct, frozen=True):
+    """An RC channel that is calibrated, us."""
+
+    channel: int
+    low: int
+    high: int
+    now: int
+    moved: bool
+    """Its travel is long enough to count."""
+
+    @property
+    def pulses(self) -> tuple[int, int, int]:
+        """The lowest, the highest and the newest."""
+        return self.low, self.high, self.now
+
+
 class MotorTestView(msgspec.Struct, frozen=True):
     """The motor test under way, or how the last one ended."""
 
@@ -140,6 +147,16 @@ class DoctorView(View, frozen=True, kw_only=True):
     """What the operator has to do for the calibration that runs, or how it ended."""
     waits_for_position: bool = False
     """The calibration of the accelerometers waits until the operator has laid the vehicle as `calibration` says."""
+    calibration_share: float | None = None
+    """Progress of the compass that is the last, 0..1; None while none measures."""
+    compass_ready: bool = False
+    """The compasses have results that wait to be written."""
+    sticks: tuple[StickRow, ...] | None = None
+    """The RC channels while they are calibrated; None: they are not."""
+    stick_changes: tuple[ParamFix, ...] = ()
+    """What the channels that were moved would change."""
+    sticks_unread: tuple[str, ...] = ()
+    """Parameters of these channels whose present value is not known yet."""
     facts: tuple[tuple[str, str], ...] = ()
     """What the vehicle is: names and texts."""
     requests: tuple[RequestLine, ...] = ()

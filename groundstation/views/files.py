@@ -14,7 +14,7 @@ class FilesRequest(ViewRequest, frozen=True):
     """Those that the screen shows."""
 
 
-class LogRow(msgspec.Struct, frozen=True):
+class VehicleLog(msgspec.Struct, frozen=True):
     """One log on the vehicle."""
 
     number: int
@@ -45,6 +45,6 @@ class FilesView(View, frozen=True, kw_only=True):
 
     system: int
     name: str
-    logs: tuple[LogRow, ...] | None = None
+    logs: tuple[VehicleLog, ...] | None = None
     """None: not listed yet."""
     folders: tuple[FolderRow, ...] = ()

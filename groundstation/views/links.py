@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from groundstation.snapshot.signing import SigningView
 from groundstation.views.base import View, ViewRequest
 
 
@@ -46,6 +47,8 @@ class VehicleRow(msgspec.Struct, frozen=True, kw_only=True):
     """This station is in control."""
     driver: int | None = None
     """System id of the ground station in control, 0 for none; None if the vehicle does not report it."""
+    signing: str = ""
+    """State of signing in a word."""
     components: tuple[ComponentRow, ...] = ()
 
 
@@ -99,6 +102,8 @@ class LinkRow(msgspec.Struct, frozen=True, kw_only=True):
     """Bytes/s that the line carries in each direction; None where unknown (UDP, TCP)."""
     headroom: float = 1.0
     """Share of the capacity that a telemetry radio allows now."""
+    unverified: str = ""
+    """What signing has refused on this link, in words; empty if nothing, or if nothing is verified."""
     problem: str | None = None
 
     @property
@@ -160,7 +165,7 @@ class ControlView(View, frozen=True, kw_only=True):
     """Seconds for which the driver may still answer our request."""
     stations: tuple[StationRow, ...] = ()
     """Other ground stations, by their ids."""
-    signs: bool = False
-    """The vehicle signs its frames."""
-    signing: tuple[int, ...] = ()
+    signing: SigningView | None = None
+    """As in the snapshot."""
+    signing_systems: tuple[int, ...] = ()
     """All system ids whose newest frame was signed."""

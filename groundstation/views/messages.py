@@ -48,6 +48,7 @@ class MessageRow(msgspec.Struct, frozen=True):
     loss: float | None = None
     """Share of the frames of the source that were lost, 0..1; None for messages and for what is sent."""
     lost: int = 0
+    """Frames that were lost of the source, also in the rows of its messages."""
     unknown: bool = False
     """Its id is in no dialect that the station knows: the name is "#" and the id, the label the length of a frame."""
 

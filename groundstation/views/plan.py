@@ -6,6 +6,7 @@ from enum import IntEnum
 
 import msgspec
 
+from groundstation.geo import Place
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.requests import RequestLine
 
@@ -41,13 +42,6 @@ class PlanItem(msgspec.Struct, frozen=True, array_like=True):
     autocontinue: bool = True
 
 
-class PlanPlace(msgspec.Struct, frozen=True, array_like=True):
-    """A place on earth, degrees (WGS 84)."""
-
-    latitude: float
-    longitude: float
-
-
 class PlanSummary(msgspec.Struct, frozen=True):
     """What the station knows of one plan of the vehicle."""
 
@@ -70,7 +64,7 @@ class Neighbour(msgspec.Struct, frozen=True, array_like=True):
     """Another vehicle."""
 
     system: int
-    place: PlanPlace
+    place: Place
 
 
 class PlanRequest(ViewRequest, frozen=True):
@@ -88,17 +82,15 @@ class PlanView(View, frozen=True, kw_only=True):
     plans: tuple[PlanSummary, PlanSummary, PlanSummary] = (PlanSummary(), PlanSummary(), PlanSummary())
     """By PlanKind."""
     current: int | None = None
-    """Index of the mission item that AUTO drives to; None: not told, or there is none."""
+    """Index of the mission item that AUTO drives to; None: not reported, or there is none."""
     reached: tuple[int, ...] = ()
     """Indices of the mission items that were reached since the mission began."""
     state: int = 0
-    """MISSION_STATE: 2 not started, 3 active, 4 paused, 5 complete; 0: not told."""
-    to_go: float | None = None
-    """m to the current item (NAV_CONTROLLER_OUTPUT)."""
+    """MISSION_STATE: 2 not started, 3 active, 4 paused, 5 complete; 0: not reported."""
     off_line: float | None = None
     """m right of the leg, negative left of it."""
-    place: PlanPlace | None = None
-    home: PlanPlace | None = None
+    place: Place | None = None
+    home: Place | None = None
     home_altitude: float | None = None
     """m above sea level."""
     neighbours: tuple[Neighbour, ...] = ()
@@ -137,7 +129,7 @@ class PlanTrackView(View, frozen=True):
     """Where the selected vehicle has been: m north and east of `origin`, oldest first, thinned to 500 points."""
 
     system: int
-    origin: PlanPlace | None
+    origin: Place | None
     points: tuple[tuple[float, float], ...]
 
 
@@ -146,5 +138,5 @@ class PlanDocument(msgspec.Struct, frozen=True):
 
     plans: tuple[tuple[PlanItem, ...], tuple[PlanItem, ...], tuple[PlanItem, ...]]
     """By PlanKind."""
-    home: PlanPlace | None = None
+    home: Place | None = None
     home_altitude: float = 0.0

@@ -10,11 +10,13 @@ from groundstation.views import (  # noqa: F401 - defines the classes
     doctor,
     drive,
     files,
+    line,
     links,
     log,
     messages,
     params,
     plan,
+    replay,
     requests,
 )
 from groundstation.views.base import View, ViewRequest

@@ -8,12 +8,14 @@ import logging
 import os
 import socket
 import time
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
+from typing import Any
 
-from dialects.messages import ManualControl, Message
+from dialects.messages import ManualControl, Message, RcChannelsOverride
 from groundstation.station.driven import DEMAND_MEMORY, DrivenVehicle
 from groundstation.watchdog.process import fork_watchdog
-from groundstation.watchdog.report import MAX_OUTLETS, Route, StationReport, encode_report
+from groundstation.watchdog.report import MAX_OUTLETS, DemandRoute, StationReport, encode_report
+from link.signing.signing import Signing
 from link.transport.transport import Link
 
 log = logging.getLogger(__name__)
@@ -39,13 +41,23 @@ class WatchdogFeed:
         """Link and address -> packet sequence of the newest frame."""
         self._routes: dict[tuple[int, int, Hashable], tuple[Link, float]] = {}
         """System, link and address -> the link, and when the newest demand went there."""
-        self._flags: dict[str, bool] = {}
+        self._flags: dict[str, Any] = {}
         self.alive = True
 
     @classmethod
-    def start(cls, screen: socket.socket, terminal: str | None, ids: tuple[int, int]) -> WatchdogFeed:
-        """Start the watchdog. Raises OSError."""
-        return cls(*fork_watchdog(screen, terminal), ids)
+    def start(
+        cls,
+        screen: socket.socket,
+        terminal: str | None,
+        ids: tuple[int, int],
+        signing: Signing | None = None,
+        read_keys: Callable[[], None] | None = None,
+    ) -> WatchdogFeed:
+        """Start the watchdog, which signs with the same keys. Raises OSError.
+
+        `read_keys` reads other keys into `signing` in the watchdog's process, when `set_flags(keys_version=)` says so.
+        """
+        return cls(*fork_watchdog(screen, terminal, signing, read_keys), ids)
 
     def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
         """Record a frame that was sent, and with a demand the way to its vehicle."""
@@ -55,22 +67,25 @@ class WatchdogFeed:
         self._sequences[index, address] = sequence
         if isinstance(message, ManualControl):
             self._routes[message.target, index, address] = (link, now)
+        elif isinstance(message, RcChannelsOverride):  # neutral in MANUAL_CONTROL also ends what ArduPilot holds of it
+            self._routes[message.target_system, index, address] = (link, now)
 
-    def set_flags(self, **flags: bool) -> None:
+    def set_flags(self, **flags: bool | int) -> None:
         """Set fields that all further reports have."""
         self._flags |= flags
 
     def report(self, vehicles: Sequence[DrivenVehicle], now: float) -> bool:
         """Report that the station runs. Returns False once, when the watchdog's process has ended."""
         self._forget_old(now)
-        routes: list[Route] = []
+        routes: list[DemandRoute] = []
         descriptors: list[int] = []
         for number, vehicle in enumerate(vehicles):
             for (system, index, address), (link, _) in self._routes.items():
                 outlet = link.transport.outlet(address) if system == vehicle.system else None
                 if outlet is not None and outlet.descriptor >= 0 and len(routes) < MAX_OUTLETS:
                     sequence = self._sequences.get((index, address), 0)
-                    routes.append(Route(number, outlet.destination, sequence))
+                    way = link.channel.signing_way(address)
+                    routes.append(DemandRoute(number, outlet.destination, sequence, way))
                     descriptors.append(outlet.descriptor)
         report = StationReport(ids=self._ids, vehicles=tuple(vehicles), routes=tuple(routes), **self._flags)
         return self._send(encode_report(report), descriptors)

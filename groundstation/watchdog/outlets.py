@@ -7,11 +7,9 @@ import os
 import socket
 from collections.abc import Sequence
 
-from dialects import codec
-from dialects.messages import Message
-from groundstation.watchdog.report import Route
+from groundstation.watchdog.report import DemandRoute
 from groundstation.watchdog.watchdog import WANTED
-from link.protocol.frame import payload_of
+from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 
 READ = 65536
@@ -22,10 +20,10 @@ class Outlets:
 
     def __init__(self) -> None:
         self._descriptors: list[int] = []
-        self._routes: tuple[Route, ...] = ()
+        self._routes: tuple[DemandRoute, ...] = ()
         self._framers: dict[int, Framer] = {}
 
-    def replace(self, descriptors: Sequence[int], routes: tuple[Route, ...]) -> None:
+    def replace(self, descriptors: Sequence[int], routes: tuple[DemandRoute, ...]) -> None:
         """Take the descriptors of a report and close those of the one before."""
         for descriptor in self._descriptors:
             with contextlib.suppress(OSError):
@@ -48,17 +46,13 @@ class Outlets:
             return error.strerror or str(error)
         return None
 
-    def read(self, descriptor: int, now: float) -> list[tuple[int, Message]]:
-        """Return what has arrived, with the system ids. Raises OSError, and EOFError at the end of a stream."""
+    def read(self, descriptor: int, now: float) -> list[Frame]:
+        """Return the frames that have arrived. Raises OSError, and EOFError at the end of a stream."""
         data = os.read(descriptor, READ)
         if not data:
             raise EOFError
         framer = self._framers.setdefault(descriptor, Framer(stream=True))
-        return [
-            (system, codec.decode(number, payload_of(raw)))
-            for number, system, _, _, raw in framer.feed(data, now)
-            if number in WANTED
-        ]
+        return [frame for frame in framer.feed(data, now) if frame[0] in WANTED]
 
 
 def _send(descriptor: int, destination: tuple[str | int, ...] | None, frame: bytes) -> None:

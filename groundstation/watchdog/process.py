@@ -13,6 +13,7 @@ import select
 import signal
 import socket
 import time
+from collections.abc import Callable
 
 import msgspec
 
@@ -21,18 +22,28 @@ from groundstation.ipc import MAX_PACKET, decode_from_screen, encode
 from groundstation.snapshot import StationOutage
 from groundstation.watchdog.outlets import Outlets
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
-from groundstation.watchdog.terminal_reset import TerminalReset
+from groundstation.watchdog.terminal_reset import LAST_TRY, TerminalReset
 from groundstation.watchdog.watchdog import Watchdog
+from link.signing.signing import Signing
 
 
 class WatchdogProcess:
     """Runs the core. `station` is the socket to the station, `screen` the station's end of the pipe to the screen."""
 
-    def __init__(self, station: socket.socket, screen: socket.socket, terminal: TerminalReset) -> None:
+    def __init__(
+        self,
+        station: socket.socket,
+        screen: socket.socket,
+        terminal: TerminalReset,
+        signing: Signing | None = None,
+        read_keys: Callable[[], None] | None = None,
+    ) -> None:
+        """`read_keys` reads other keys into `signing`, when a report says that they have changed."""
         self._station = station
         self._screen = screen
         self._terminal: TerminalReset | None = terminal
-        self._watchdog = Watchdog()
+        self._watchdog = Watchdog(signing)
+        self._read_keys, self._keys_version = read_keys, 0
         self._outlets = Outlets()
         self._shown = StationOutage()
         self._screen_gone = self._station_gone = self._screen_has_quit = False
@@ -47,7 +58,7 @@ class WatchdogProcess:
                 self._watchdog.record_sent(target, self._outlets.write(route, frame))
             self._show(self._watchdog.outage(now))
         self._check_screen()
-        self._reset_terminal()
+        self._reset_terminal(LAST_TRY)
 
     def _wait(self) -> None:
         """Wait for the next event and handle it. All waiting reports come first: this process may have stood still."""
@@ -84,6 +95,9 @@ class WatchdogProcess:
 
     def _handle_report(self, report: StationReport, descriptors: list[int]) -> None:
         self._outlets.replace(descriptors, report.routes)
+        if self._read_keys is not None and report.keys_version != self._keys_version:
+            self._keys_version = report.keys_version
+            self._read_keys()
         self._watchdog.handle_report(report, time.monotonic())
         self._screen_has_quit |= report.screen_has_quit
         if report.screen_is_gone:
@@ -97,8 +111,8 @@ class WatchdogProcess:
     def _read_vehicle(self, descriptor: int) -> None:
         now = time.monotonic()
         try:
-            for system, message in self._outlets.read(descriptor, now):
-                self._watchdog.handle_message(system, message, now)
+            for frame in self._outlets.read(descriptor, now):
+                self._watchdog.handle_frame(frame, now)
         except (BlockingIOError, ConnectionRefusedError):
             return
         except (OSError, EOFError):
@@ -116,12 +130,12 @@ class WatchdogProcess:
         look.register(self._screen, 0)
         self._screen_gone = bool(look.poll(0))
 
-    def _reset_terminal(self) -> None:
-        """Reset the terminal once, if the screen is gone and has not left it in order."""
-        if self._screen_gone and not self._screen_has_quit and not self._finds_quit():
-            terminal, self._terminal = self._terminal, None
-            if terminal is not None:
-                terminal.run()
+    def _reset_terminal(self, within: float = 0.0) -> None:
+        """Reset the terminal once, if the screen is gone and has not left it in order. `within`: s to wait for room."""
+        if self._terminal is None or not self._screen_gone or self._screen_has_quit or self._finds_quit():
+            return
+        if self._terminal.run(within):
+            self._terminal = None
 
     def _finds_quit(self) -> bool:
         """Return whether the screen has quit, by what the station did not read any more."""
@@ -138,7 +152,12 @@ class WatchdogProcess:
                     return True
 
 
-def fork_watchdog(screen: socket.socket, terminal: str | None) -> tuple[int, socket.socket]:
+def fork_watchdog(
+    screen: socket.socket,
+    terminal: str | None,
+    signing: Signing | None = None,
+    read_keys: Callable[[], None] | None = None,
+) -> tuple[int, socket.socket]:
     """Start the process; return its id and the socket to it. Call before there is any thread. Raises OSError."""
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     for half in (ours, theirs):
@@ -152,7 +171,7 @@ def fork_watchdog(screen: socket.socket, terminal: str | None) -> tuple[int, soc
     code = 1
     try:
         ours.close()
-        _run(WatchdogProcess(theirs, screen, reset))
+        _run(WatchdogProcess(theirs, screen, reset, signing, read_keys))
         code = 0
     finally:
         os._exit(code)

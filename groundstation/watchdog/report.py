@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from groundstation.station.driven import DrivenVehicle
+from link.protocol.signing_guard import SigningWay
 
 MAX_OUTLETS = 32
 """Descriptors in one report; more than any station has links. The kernel allows 253."""
@@ -13,7 +14,7 @@ MAX_REPORT = 1 << 16
 """Bytes of the largest report."""
 
 
-class Route(msgspec.Struct, frozen=True):
+class DemandRoute(msgspec.Struct, frozen=True):
     """Where the demands to a vehicle leave. The descriptors of all routes travel with the report, in this order."""
 
     vehicle: int
@@ -22,6 +23,8 @@ class Route(msgspec.Struct, frozen=True):
     """The address for sendto(); None for a connected descriptor."""
     sequence: int
     """Packet sequence of the newest frame that was sent there."""
+    signing: SigningWay | None = None
+    """How frames are signed there; None: they are not."""
 
 
 class StationReport(msgspec.Struct, frozen=True, kw_only=True):
@@ -30,11 +33,13 @@ class StationReport(msgspec.Struct, frozen=True, kw_only=True):
     ids: tuple[int, int] = (255, 190)
     """System and component id of the station."""
     vehicles: tuple[DrivenVehicle, ...] = ()
-    routes: tuple[Route, ...] = ()
+    routes: tuple[DemandRoute, ...] = ()
     screen_has_quit: bool = False
     """The screen ends in order, and leaves the terminal as it was."""
     screen_is_gone: bool = False
     """The screen's process has ended without that."""
+    keys_version: int = 0
+    """How often the keys have changed: with another number the watchdog reads them again."""
     ending: bool = False
     """The station has sent its last neutral demands and ends."""
 

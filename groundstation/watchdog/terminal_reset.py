@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import contextlib
 import os
+import select
 import termios
+import time
 from typing import Any
 
 RESET = (
     b"\x1b[?2026l"  # show what is drawn
     b"\x1b[?2004l\x1b[?2048l\x1b[?1004l"  # no bracketed paste, no reports of size and focus
-    b"\x1b[?1000;1006l\x1b[?1007h\x1b[?1007r"  # the mouse, as ui/mouse.py does it
+    b"\x1b[?1000;1006l\x1b[?1007h\x1b[?1007r"  # the mouse, as ui/terminal/mouse.py does it
     b"\x1b[=0;1u\x1b[<u"  # kitty keyboard protocol off; it is kept for each screen, so before leaving this one
     b"\x1b[?7h\x1b[?1049l\x1b[?25h\x1b[0m"  # wrap lines, main screen, cursor, no colours
 )
-"""Undoes what ui/terminal.py and Textual's LinuxDriver set."""
+"""Undoes what ui/terminal/console_driver.py and Textual's LinuxDriver set."""
 
+LAST_TRY = 2.0
+"""s to wait for room in the terminal when nothing else is left to do."""
 LOCAL_FLAGS = 3
 """Index in the list of termios.tcgetattr()."""
 
@@ -26,18 +30,34 @@ class TerminalReset:
     def __init__(self, path: str | None) -> None:
         self._path = path
         self._before = None if path is None else _attributes(path)
+        self._left = RESET
 
-    def run(self) -> None:
-        """Reset the terminal; it may be gone."""
+    def run(self, within: float = 0.0) -> bool:
+        """Reset the terminal, waiting at most `within` s for room: what the screen drew last may fill it.
+
+        Returns True once that is done, or the terminal is gone; else try again.
+        """
         if self._path is None:
-            return
+            return True
         with contextlib.suppress(OSError, termios.error):
             descriptor = os.open(self._path, os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY)
             try:
-                os.write(descriptor, RESET)
+                if not self._write(descriptor, within):
+                    return False
                 self._restore_line(descriptor)
             finally:
                 os.close(descriptor)
+        return True
+
+    def _write(self, descriptor: int, within: float) -> bool:
+        """Write what is left; return whether nothing is."""
+        until = time.monotonic() + within
+        while self._left:
+            left = max(0.0, until - time.monotonic())
+            if not select.select([], [descriptor], [], left)[1]:
+                return False
+            self._left = self._left[os.write(descriptor, self._left) :]
+        return True
 
     def _restore_line(self, descriptor: int) -> None:
         """Restore echo and lines, unless a shell has taken the terminal: one that edits lines keeps ISIG."""

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
+from dialects import codec
 from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, Message, RoverDriveStatus, VfrHud
 from groundstation.snapshot import StationOutage
@@ -19,6 +20,10 @@ from groundstation.station.stall import STALL_TIMEOUT
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, NEUTRAL_PERIOD, SETTLE
 from groundstation.watchdog.neutral import NeutralFrames
 from groundstation.watchdog.report import StationReport
+from link.protocol.frame import Frame
+from link.signing.signature import is_signed
+from link.signing.signing import Signing
+from link.signing.verifier import Verified
 
 SEND_FOR = 5.0
 """s of neutral at most. A vehicle that is silent for longer has lost its link, and its own failsafe acts; and the port
@@ -109,7 +114,9 @@ class _Takeover:
 class Watchdog:
     """One station. Times are s of the clock that the station uses, too."""
 
-    def __init__(self) -> None:
+    def __init__(self, signing: Signing | None = None) -> None:
+        """`signing`: the station's, with which it signs in its place."""
+        self._signing = signing
         self._report = StationReport()
         self._heard_at = math.inf
         """When the newest report came; before the first the station is still starting."""
@@ -128,6 +135,22 @@ class Watchdog:
             self._takeover.cause = Cause.ENDED
         elif self._heard_at < math.inf and not self._report.ending:
             self._begin(Cause.ENDED, now)
+
+    def handle_frame(self, frame: Frame, now: float) -> None:
+        """Note what a frame shows.
+
+        Of a vehicle that signs only what is genuine and new counts: else a forger ends the neutral with a HEARTBEAT
+        that says disarmed.
+        """
+        number, system, component, _, raw = frame
+        driven = next((each for each in self._report.vehicles if each.system == system), None)
+        if driven is not None and (not driven.verified or self._verifies(raw, system, component, now)):
+            self.handle_message(system, codec.decode_frame(number, raw), now)
+
+    def _verifies(self, raw: bytes, system: int, component: int, now: float) -> bool:
+        if self._signing is None or not is_signed(raw):
+            return False
+        return isinstance(self._signing.verifier.check(raw, system, component, now), Verified)
 
     def handle_message(self, system: int, message: Message, now: float) -> None:
         """Note whether a vehicle stands. Called only once the station has ended: it reads the same sockets."""
@@ -175,7 +198,7 @@ class Watchdog:
         report = self._report
         targets = [_Target(vehicle) for vehicle in report.vehicles]
         frames = [
-            (index, route.vehicle, NeutralFrames(report.vehicles[route.vehicle], report.ids, route.sequence))
+            (index, route.vehicle, NeutralFrames(report.vehicles[route.vehicle], report.ids, route, self._signing))
             for index, route in enumerate(report.routes)
         ]
         self._takeover = _Takeover(cause, now, targets, frames)

@@ -36,6 +36,8 @@ class FakeArduPilot(FakeVehicle):
         """Hz, of each message that it sends."""
         self.turning: list[tuple[float, int, int]] = []
         """Time, steering and throttle whenever one of them changed."""
+        self.sticks: dict[int, int] = {}
+        """RC channel -> pulse of the transmitter, us, in place of the demand."""
         self._station = station
         self._steering = self._throttle = 0
         self._demand_at = 0.0
@@ -121,6 +123,7 @@ def _channels(vehicle: FakeArduPilot, now: float) -> m.Message:
     steering, throttle = vehicle.turning[-1][1:]
     pulses = {f"chan{number}_raw": 0 for number in range(1, 19)}
     pulses |= {"chan1_raw": vehicle.servo(steering), "chan3_raw": vehicle.servo(throttle)}
+    pulses |= {f"chan{channel}_raw": pulse for channel, pulse in vehicle.sticks.items()}
     return m.RcChannels(time_boot_ms=boot_ms(now), chancount=3, rssi=255, **pulses)
 
 

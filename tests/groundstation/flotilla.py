@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from groundstation.intents.session import RenewLease, SetKeyGate, Watch
+from groundstation.intents.session import RenewLease, SetKeyGate
+from groundstation.intents.watch import Watch
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from groundstation.vehicles.fleet import PLACES

@@ -19,6 +19,7 @@ class ForeignFtp:
         self._made = made
         self._open: bytes = b""
         self._writing: tuple[str, bytearray] | None = None
+        self._last = b"", b""
 
     def answer(self, payload: bytes) -> Iterator[bytes]:
         """Yield the payloads of the replies."""
@@ -32,9 +33,10 @@ class ForeignFtp:
         if op == 15:
             yield from self._burst(offset, size, reply)
             return
-        path = data.split(b"\0")[0].decode()
-        result = self._handle(op, path, data, offset, size)
-        yield reply(NAK, bytes([result])) if isinstance(result, int) else reply(ACK, result)
+        if payload != self._last[0]:  # a request that is repeated is answered by the same reply
+            result = self._handle(op, data.split(b"\0")[0].decode(), data, offset, size)
+            self._last = payload, reply(NAK, bytes([result])) if isinstance(result, int) else reply(ACK, result)
+        yield self._last[1]
 
     def _burst(self, offset: int, size: int, reply: Callable[..., bytes]) -> Iterator[bytes]:
         for number in range(BURST_PIECES):

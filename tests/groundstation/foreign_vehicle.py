@@ -51,11 +51,17 @@ class Missions:
 
 
 class ForeignVehicle:
-    """Answers in a thread from `with` on. `loss`: share of what it sends that is lost, but for heartbeats."""
+    """Answers in a thread from `with` on.
 
-    def __init__(self, autopilot: int = ARDUPILOT, *, loss: float = 0.0, ftp: bool = True, system: int = 1) -> None:
+    `loss` is the share of what it sends that is lost, but for heartbeats, `loss_in` that of what is sent to it.
+    """
+
+    def __init__(
+        self, autopilot: int = ARDUPILOT, *, loss: float = 0.0, loss_in: float = 0.0, ftp: bool = True, system: int = 1
+    ) -> None:
         self.autopilot = autopilot
         self.loss = loss
+        self.loss_in = loss_in
         self.params: dict[str, ForeignParam] = {}
         self.silent: set[int] = set()
         """Message ids that it does not answer."""
@@ -77,6 +83,8 @@ class ForeignVehicle:
         self.acks: dict[int, tuple[int, str]] = {}
         """Command -> MAV_RESULT, and STATUSTEXT before it."""
         self.received: list[Any] = []
+        self.beat_period = 1.0
+        """s between two heartbeats."""
         self._beat_due = 0.0
         self._arrived = threading.Condition()
         self._dice = random.Random(3)
@@ -123,7 +131,7 @@ class ForeignVehicle:
         while self._running:
             try:
                 data, self._peer = self._socket.recvfrom(65536)
-                messages = self._link.parse_buffer(data) or []
+                messages = [] if self._dice.random() < self.loss_in else self._link.parse_buffer(data) or []
             except TimeoutError:
                 messages = []
             for message in messages:
@@ -132,7 +140,7 @@ class ForeignVehicle:
                     self._arrived.notify_all()
                 self._answer(message)
             if self._peer and time.monotonic() >= self._beat_due:
-                self._beat_due = time.monotonic() + 1.0
+                self._beat_due = time.monotonic() + self.beat_period
                 flags, state = (209, 4) if self.armed else (81, 3)
                 self.send(mav.MAVLink_heartbeat_message(10, self.autopilot, flags, self.mode, state, 3), certain=True)
 
@@ -292,6 +300,12 @@ class ForeignVehicle:
 
     def _mission_item(self, message: Any) -> None:
         missions = self.missions
+        if self.autopilot == PX4 and message.seq == missions.count - 1 < len(missions.upload):
+            self._mission_ack(0)  # PX4 acknowledges the last item again: the ground station has missed that
+        elif message.seq == missions.count - 1 < len(missions.upload):
+            self._mission_ack(1)  # ArduPilot receives nothing any more: MAV_MISSION_ERROR
+        elif message.seq < len(missions.upload) < missions.count:
+            self._request_item()  # the request for the next one was lost
         if message.seq != len(missions.upload) or message.seq >= missions.count:
             return
         if message.seq in missions.refuse:
@@ -360,6 +374,7 @@ _ANSWERS: dict[str, Callable[[ForeignVehicle, Any], None]] = {
     "MISSION_CLEAR_ALL": ForeignVehicle._mission_clear,
     "LOG_REQUEST_LIST": ForeignVehicle._log_list,
     "LOG_REQUEST_DATA": ForeignVehicle._log_data,
+    "LOG_ERASE": lambda vehicle, _: vehicle.logs.clear(),
 }
 
 

@@ -8,7 +8,7 @@ import threading
 from tests.groundstation.screen import Screen
 
 if __name__ == "__main__":
-    screen = Screen(sys.argv[1])
+    screen = Screen(sys.argv[1], keep="--keep" in sys.argv)
     screen.hold_forward()
     print(screen.client.pid, flush=True)
     threading.Event().wait()

@@ -27,12 +27,22 @@ FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 
 
 class Screen:
-    """Starts a station process on a free port; renews the lease until `freeze`."""
+    """Starts a station process on a free port, or attaches to one; renews the lease until `freeze`."""
 
     def __init__(self, *endpoints: str, none: bool = False, **options: Any) -> None:
         """`none`: without any link."""
         endpoints = endpoints or (f"udpin:127.0.0.1:{free_port()}",)
-        self.client = StationClient.start([] if none or options.get("sitl") else endpoints, **options)
+        self._begin(StationClient.start([] if none or options.get("sitl") else endpoints, **options))
+
+    @classmethod
+    def attach(cls, station: int, name: str = "second screen") -> Screen:
+        """Connect to a station that runs."""
+        screen = cls.__new__(cls)
+        screen._begin(StationClient.attach(station, name))
+        return screen
+
+    def _begin(self, client: StationClient) -> None:
+        self.client = client
         self.snapshot = Snapshot()
         self.client.send(RenewLease(), SetKeyGate(open=True))
         self._stop = threading.Event()

@@ -15,7 +15,7 @@ import pytest
 
 from dialects.extra.dialect import SHIPPED
 from groundstation.client import StationClient, StationError
-from groundstation.intents.session import Watch
+from groundstation.intents.watch import Watch
 from groundstation.views.messages import MessageField, MessageRequest, MessagesPage, MessagesRequest, MessageView
 from tests.dialects.extra.peers import generate
 from tests.dialects.extra.xml_texts import GRIPPER, with_message

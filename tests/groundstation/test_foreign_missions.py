@@ -12,8 +12,9 @@ import pytest
 
 from groundstation.client import StationClient
 from groundstation.intents.plan import GoTo, JumpToItem, PauseMission, SetHome, StartMission, UploadPlan
-from groundstation.intents.session import RenewLease, Watch
+from groundstation.intents.session import RenewLease
 from groundstation.intents.union import AnyIntent
+from groundstation.intents.watch import Watch
 from groundstation.ui.map.copies import PlanCopies
 from groundstation.views.plan import PlanKind
 from groundstation.views.requests import RequestLine

@@ -8,19 +8,24 @@ import msgspec
 import pytest
 
 from groundstation.actions import ACTIONS
+from groundstation.intents import replay
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.links import AddLink
 from groundstation.intents.services import ServiceIntent
-from groundstation.intents.session import StartSimulator
+from groundstation.intents.session import Detach, StartSimulator
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
 from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
+
+REPLAY = {kind for kind in Intent.__subclasses__() if kind.__module__ == replay.__name__}
+"""Handled by a replay (tests/groundstation/replay) and by no station."""
 
 KINDS = [each for each in (*Intent.__subclasses__(), *ServiceIntent.__subclasses__()) if each is not ServiceIntent]
 VALUES: dict[str, Any] = {
     "key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3,
     "request": 5, "motor": 1, "endpoint": "udpin:127.0.0.1:14550", "link": 2, "path": "/logs/1.bin",
-    "folder": "/tmp", "name": "1.bin", "file": "/tmp/1.bin", "log": 3, "changes": (("FS_ACTION", 2.0),),
+    "folder": "/tmp", "name": "1.bin", "screen": "map", "text": "mode HOLD", "file": "/tmp/1.bin", "log": 3,
+    "seconds": -1.0, "read_at": 2.0, "messages": 5, "number": 7, "changes": (("FS_ACTION", 2.0),),
 }  # fmt: skip
 """Field -> a value for fields without a default."""
 
@@ -37,19 +42,20 @@ def test_every_intent_travels_through_the_pipe(kind: type[Intent]) -> None:
 
 
 def test_every_intent_has_a_handler() -> None:
-    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator, AddLink} == set(KINDS)
+    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator, AddLink, Detach, *REPLAY} == set(KINDS)
     assert not set(HANDLERS) & set(VEHICLE_COMMANDS)
 
 
 def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
     late = {kind.__name__ for kind in KINDS if kind.valid_when_late}
-    stops = {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "ReleaseControl", "Quit", "StopMotorTest"}
-    assert late == stops | {"SetKeyGate", "ReportKeyReleases", "Watch", "PinSeries"}
+    stops = {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "ReleaseControl", "Quit", "Detach", "StopMotorTest"}
+    assert late == stops | {"ReleasePad", "SetKeyGate", "ReportKeyReleases", "Watch", "PinSeries"}
 
 
 def test_what_the_screen_sends_on_its_own_is_no_input() -> None:
     own = {kind.__name__ for kind in KINDS if not kind.is_input}
-    assert own == {"RenewLease", "SetKeyGate", "ReportKeyReleases", "Watch", "Quit", "PinSeries"}
+    names = {"RenewLease", "SetKeyGate", "ReportKeyReleases", "ReportScreen", "Watch", "Quit", "Detach", "PinSeries"}
+    assert own == names
 
 
 def test_no_key_has_two_actions_and_drive_keys_differ() -> None:

@@ -11,7 +11,7 @@ import pytest
 from pymavlink.dialects.v20 import common
 
 from groundstation.snapshot import Snapshot
-from groundstation.vehicles.fleet import SIGNING
+from groundstation.vehicles.signing_watch import SIGNING
 from tests.groundstation.screen import Screen
 
 pytestmark = pytest.mark.e2e

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from groundstation.intents.driving import STOP_KEY, DriveKeyDown, EmergencyStop, Stop
+from groundstation.intents.driving import PAD, STOP_KEY, DriveKeyDown, DrivePad, EmergencyStop, Stop
 from groundstation.intents.union import AnyIntent
 from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.views.charts import Mark
@@ -73,6 +73,8 @@ class MarkWatcher:
         """Mark a key that drives or stops, once for each time that it is pressed."""
         if isinstance(intent, DriveKeyDown):
             self._mark_key(intent.key, now)
+        elif isinstance(intent, DrivePad):
+            self._mark_key(PAD, now)
         elif isinstance(intent, EmergencyStop):
             self._mark_key("e-stop", now)
         elif isinstance(intent, Stop) and intent.reason == STOP_KEY:

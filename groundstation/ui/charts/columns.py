@@ -10,7 +10,7 @@ from groundstation.ui.charts.points import Points
 
 
 @dataclass(slots=True)
-class Column:
+class DotColumn:
     """The points in one column of dots."""
 
     number: int
@@ -28,7 +28,7 @@ class Columns:
 
     def __init__(self, step: float) -> None:
         self.step = step
-        self._columns: list[Column] = []
+        self._columns: list[DotColumn] = []
         self._points: Points | None = None
         self._done = 0
         self._begin = -math.inf
@@ -47,7 +47,7 @@ class Columns:
         if self._columns and self._columns[0].number < first - 500:
             self._columns = [column for column in self._columns if column.number >= first]
 
-    def between(self, left: int, right: int) -> list[Column]:
+    def between(self, left: int, right: int) -> list[DotColumn]:
         """Return the columns from `left` to `right`, and the one before them, from which a line comes."""
         first = bisect_left(self._columns, left, key=lambda column: column.number)
         last = bisect_right(self._columns, right, key=lambda column: column.number)
@@ -56,6 +56,6 @@ class Columns:
     def _add(self, number: int, value: float, *, broken: bool) -> None:
         last = self._columns[-1] if self._columns else None
         if last is None or number > last.number or broken:
-            self._columns.append(Column(number, value, value, value, value, broken))
+            self._columns.append(DotColumn(number, value, value, value, value, broken))
             return
         last.low, last.high, last.last = min(last.low, value), max(last.high, value), value

@@ -56,6 +56,13 @@ class ChartsModel:
         self._lines: dict[SeriesSpec, Line] = {}
         self._columns: dict[SeriesSpec, Columns] = {}
 
+    def restart(self) -> None:
+        """Forget all points and marks: a replay has moved in its log."""
+        self.store = PointStore()
+        self.marks.clear()
+        self._lines.clear()
+        self._columns.clear()
+
     # ---- requests and answers ----
 
     def requests(self) -> tuple[ViewRequest, ...]:

@@ -10,7 +10,7 @@ from groundstation.ui.charts.series import SeriesSpec
 from groundstation.ui.widgets.charts.field_list import CandidateRow, ChartRow, ListRow, SeriesRow, TextRow, ViewRow
 from groundstation.ui.widgets.charts.pane import PaneLine, PaneValue, nice_scale
 from groundstation.ui.widgets.charts.stats import StatsRow
-from groundstation.ui.widgets.charts.timeline import TimelineMark, TimelineMode, TimelineValue
+from groundstation.ui.widgets.charts.timeline import ChartTimelineValue, TimelineMark, TimelineMode
 
 CANDIDATES = 12
 """Fields that are listed while a name is typed."""
@@ -132,7 +132,7 @@ class Pictures:
 
     # ---- the time axis ----
 
-    def timeline(self) -> TimelineValue:
+    def timeline(self) -> ChartTimelineValue:
         """Return modes, marks and times."""
         model, axis = self._model, self._model.axis
         modes = [mark for mark in model.marks if mark.kind == "mode"]
@@ -148,7 +148,7 @@ class Pictures:
             if mark.kind != "mode" and (column := axis.column(mark.at)) is not None
         )
         cursor = axis.column(axis.cursor)
-        return TimelineValue(
+        return ChartTimelineValue(
             axis.dots, bars, marks, self.clock(axis.begin), self.clock(axis.end), cursor,
             "" if cursor is None or axis.cursor is None else self.clock(axis.cursor),
         )  # fmt: skip

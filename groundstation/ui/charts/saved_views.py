@@ -9,6 +9,7 @@ import msgspec
 from groundstation.ui.charts.chart_set import MAX_CHARTS, MAX_LINES, Chart, NamedView
 from groundstation.ui.charts.series import SeriesSpec
 from groundstation.views.charts import FieldId
+from link.runtime.whole_file import replace_file
 
 FILE = "chart-views.json"
 MAX_VIEWS = 50
@@ -53,9 +54,7 @@ def save_views(folder: Path, views: list[NamedView]) -> Path:
     """Write the views of the user. Raises OSError."""
     path = folder / FILE
     saved = [_SavedView(view.name, [_saved_chart(chart) for chart in view.charts]) for view in views if view.own]
-    new = path.with_suffix(".new")
-    new.write_bytes(msgspec.json.format(msgspec.json.encode(saved), indent=1))
-    new.replace(path)
+    replace_file(path, msgspec.json.format(msgspec.json.encode(saved), indent=1))
     return path
 
 

@@ -6,20 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from groundstation.geo import MAX_LATITUDE, MAX_LONGITUDE, LocalFrame, Point
 from groundstation.ui.map.commands import CIRCLE_IN, CIRCLES, DO_JUMP, POLYGON_IN, has_location
 from groundstation.ui.map.fields import fields_of, range_fault
-from groundstation.ui.map.geometry import (
-    DEGREES_SCALE,
-    GLOBAL_FRAMES,
-    MAX_LATITUDE,
-    MAX_LONGITUDE,
-    UNSET,
-    LocalMap,
-    Point,
-    distance_to_line,
-    is_inside,
-    place_of,
-)
+from groundstation.ui.map.geometry import DEGREES_SCALE, GLOBAL_FRAMES, UNSET, distance_to_line, is_inside, place_of
 from groundstation.ui.map.rows import polygon_spans
 from groundstation.views.plan import PlanItem
 
@@ -58,7 +48,7 @@ class FenceCheck:
     """m to the nearest outline."""
 
 
-def fence_shapes(items: Sequence[PlanItem], frame: LocalMap, arc: int = 24) -> tuple[FenceShape, ...]:
+def fence_shapes(items: Sequence[PlanItem], frame: LocalFrame, arc: int = 24) -> tuple[FenceShape, ...]:
     """Return the shapes of a fence; those that are not complete are left out. `arc`: corners drawn for a circle."""
     shapes = []
     for first, count in polygon_spans(items):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from groundstation.mission_commands import MISSION_COMMANDS, MissionCommand
+from groundstation.ui.map.mission_command import MissionCommand
+from groundstation.ui.map.mission_commands import MISSION_COMMANDS
 from groundstation.views.plan import PlanKind
 
 WAYPOINT, RTL, DO_JUMP, CHANGE_SPEED = 16, 20, 177, 178

@@ -45,12 +45,20 @@ class PlanCopies:
                 if self.view is not None and view.system != self.view.system:
                     self._clear()
                 self.view = view
+                self._forget_unknown(view)
             case PlanTrackView():
                 self._track = view
             case PlanPage() if self.view is not None and view.system == self.view.system:
                 expected = self.view.plans[view.kind].version == view.version
                 return self._take_page(view) if expected else None
         return None
+
+    def _forget_unknown(self, view: PlanView) -> None:
+        """Drop the plans that the station does not know any more: a log was moved to a time before them."""
+        for kind in PlanKind:
+            if not view.plans[kind].version:
+                for kept in (self.items, self._versions, self._parts):
+                    kept.pop(kind, None)
 
     def _clear(self) -> None:
         """Drop what is of another vehicle."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+from groundstation.geo import Place
 from groundstation.ui.map.commands import NEW_ITEM, POLYGONS
 from groundstation.ui.map.geometry import DEGREES_SCALE, GLOBAL_FRAMES
 from groundstation.ui.map.rows import (
@@ -24,7 +25,7 @@ from groundstation.ui.map.rows import (
     set_corner_count,
     span_at,
 )
-from groundstation.views.plan import MAX_ITEMS, PlanItem, PlanKind, PlanPlace
+from groundstation.views.plan import MAX_ITEMS, PlanItem, PlanKind
 
 MAX_UNDO = 100
 RELATIVE = 3
@@ -133,7 +134,7 @@ class PlanEditor:
 
     # ---- edits ----
 
-    def add(self, place: PlanPlace) -> str | None:
+    def add(self, place: Place) -> str | None:
         """Add an item behind the selected one; return why that cannot be done."""
         rows = self.rows()
         if len(rows) >= MAX_ITEMS:
@@ -144,7 +145,7 @@ class PlanEditor:
         self._selected[self.layer] = at
         return None
 
-    def start_polygon(self, place: PlanPlace) -> str | None:
+    def start_polygon(self, place: Place) -> str | None:
         """Begin another polygon at the end of the fence; return why that cannot be done."""
         rows = self.rows()
         if self.layer is not PlanKind.FENCE:
@@ -194,7 +195,7 @@ class PlanEditor:
         else:
             self._put(self.selected, Row(item, row.origin))
 
-    def move_to(self, place: PlanPlace) -> str | None:
+    def move_to(self, place: Place) -> str | None:
         """Give the selected row another place; return why that cannot be done."""
         row = self.row
         if row is None or row.item.frame not in GLOBAL_FRAMES:
@@ -215,7 +216,7 @@ class PlanEditor:
 
     # ---- parts ----
 
-    def _new_item(self, place: PlanPlace) -> PlanItem:
+    def _new_item(self, place: Place) -> PlanItem:
         row, kind = self.row, self.layer
         height = row.item.z if row is not None and row.item.frame in GLOBAL_FRAMES else 0.0
         frame = row.item.frame if row is not None and row.item.frame in GLOBAL_FRAMES else RELATIVE
@@ -283,5 +284,5 @@ class PlanEditor:
         return True
 
 
-def _degrees(place: PlanPlace) -> tuple[int, int]:
+def _degrees(place: Place) -> tuple[int, int]:
     return round(place.latitude * DEGREES_SCALE), round(place.longitude * DEGREES_SCALE)

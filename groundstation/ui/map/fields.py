@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import msgspec
 
-from groundstation.mission_commands import CommandParam
+from groundstation.geo import MAX_LATITUDE, MAX_LONGITUDE
 from groundstation.ui.map.commands import CIRCLES, DO_JUMP, POLYGONS, command_title, describe_command, has_location
-from groundstation.ui.map.geometry import DEGREES_SCALE, GLOBAL_FRAMES, MAX_LATITUDE, MAX_LONGITUDE, UNSET
+from groundstation.ui.map.geometry import DEGREES_SCALE, GLOBAL_FRAMES, UNSET
+from groundstation.ui.map.mission_command import CommandParam
 from groundstation.views.plan import PlanItem
 
 LOCAL_SCALE = 1e4
@@ -23,7 +24,7 @@ _LARGEST = 3.4e38
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class ItemField:
     """One editable value of an item."""
 
     key: str
@@ -42,32 +43,32 @@ class Field:
         return f"{self.low:g} or more" if self.low is not None else f"up to {self.high:g}" if self.high else ""
 
 
-_LATITUDE = Field("x", "latitude", "", -MAX_LATITUDE, MAX_LATITUDE)
-_LONGITUDE = Field("y", "longitude", "", -MAX_LONGITUDE, MAX_LONGITUDE)
-_ALTITUDE = Field("z", "altitude", "m")
+_LATITUDE = ItemField("x", "latitude", "", -MAX_LATITUDE, MAX_LATITUDE)
+_LONGITUDE = ItemField("y", "longitude", "", -MAX_LONGITUDE, MAX_LONGITUDE)
+_ALTITUDE = ItemField("z", "altitude", "m")
 _RAW_KEYS = {5: "x", 6: "y", 7: "z"}
 
 
-def fields_of(item: PlanItem) -> tuple[Field, ...]:
+def fields_of(item: PlanItem) -> tuple[ItemField, ...]:
     """Return the fields of an item, the command first. An unknown command has all seven parameters as numbers."""
-    known, command = describe_command(item.command), Field("command", "command")
+    known, command = describe_command(item.command), ItemField("command", "command")
     if known is None:
-        return (command, *(Field(_RAW_KEYS.get(number, str(number)), f"param{number}") for number in range(1, 8)))
+        return (command, *(ItemField(_RAW_KEYS.get(number, str(number)), f"param{number}") for number in range(1, 8)))
     used = tuple(_param_field(param) for param in known.params if item.command not in POLYGONS)
-    place: tuple[Field, ...] = (
+    place: tuple[ItemField, ...] = (
         (_LATITUDE, _LONGITUDE, _ALTITUDE) if known.has_location and item.frame in GLOBAL_FRAMES else ()
     )
     if known.has_location and not place:
-        place = tuple(Field(_RAW_KEYS[number], f"param{number}") for number in (5, 6, 7))
+        place = tuple(ItemField(_RAW_KEYS[number], f"param{number}") for number in (5, 6, 7))
     return (command, *place, *used)
 
 
-def _param_field(param: CommandParam) -> Field:
+def _param_field(param: CommandParam) -> ItemField:
     key = _RAW_KEYS.get(param.number, str(param.number))
-    return Field(key, param.label, param.unit, param.low, param.high, param.step)
+    return ItemField(key, param.label, param.unit, param.low, param.high, param.step)
 
 
-def value_of(item: PlanItem, field: Field, first: int = 0) -> str:
+def value_of(item: PlanItem, field: ItemField, first: int = 0) -> str:
     """Return a value as it is typed; `first` is the number of the first item, for the target of DO_JUMP."""
     if field.key == "command":
         return command_title(item.command)
@@ -87,7 +88,7 @@ def number_text(value: float) -> str:
     return next((text for text in texts if _float32(float(text)) == _float32(value)), f"{value:.9g}")
 
 
-def change_field(item: PlanItem, field: Field, text: str, first: int = 0) -> PlanItem | str:
+def change_field(item: PlanItem, field: ItemField, text: str, first: int = 0) -> PlanItem | str:
     """Return the item with another value; a text that cannot be used gives what is wrong with it, one line."""
     value = _parse(text.strip())
     if isinstance(value, str):
@@ -118,7 +119,7 @@ def change_command(item: PlanItem, command: int) -> PlanItem:
     return PlanItem(command, frame, params, x, y, item.z if located else 0.0, item.autocontinue)
 
 
-def range_fault(field: Field, value: float) -> str:
+def range_fault(field: ItemField, value: float) -> str:
     """Return why a value is out of the range of its field; empty if it is not."""
     if math.isnan(value):
         return f"{field.label} must be a number" if field.key in ("x", "y") else ""
@@ -139,7 +140,7 @@ def _parse(text: str) -> float | str:
     return value if abs(value) <= _LARGEST else f"{text!r} is too large"
 
 
-def _set_coordinate(item: PlanItem, field: Field, value: float) -> PlanItem | str:
+def _set_coordinate(item: PlanItem, field: ItemField, value: float) -> PlanItem | str:
     scale = DEGREES_SCALE if item.frame in GLOBAL_FRAMES else 1 if item.frame == MISSION_FRAME else LOCAL_SCALE
     number = round(value * scale)
     if not -UNSET - 1 <= number <= UNSET:

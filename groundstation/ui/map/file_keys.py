@@ -6,9 +6,11 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any, Protocol
 
-from groundstation.ui.map.files import PlanFileError, open_plan, save_plan
+from groundstation.ui.map.files import MapFileError, open_layer, open_plan, save_plan
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.widgets.line_field import FieldUse, LineField
+
+LAYER_SUFFIXES = (".geojson", ".json")
 
 
 class FileScreen(Protocol):
@@ -21,6 +23,9 @@ class FileScreen(Protocol):
 
     def ask(self, text: str | Callable[[], str], perform: Callable[[], None], *, word: str = "") -> None:
         """Ask before an action."""
+
+    def redraw(self) -> None:
+        """Draw at once."""
 
     def run_worker(self, work: Coroutine[Any, Any, None]) -> Any:
         """Run a coroutine in the event loop."""
@@ -40,7 +45,7 @@ class FileKeys:
             return False
         opens = key == "O"
         use = FieldUse(self._open if opens else self._save)
-        hint = "open: name of a .plan or .waypoints file" if opens else "save as: .plan, .waypoints or .geojson"
+        hint = "open: .plan, .waypoints, or .geojson as a layer" if opens else "save as: .plan, .waypoints or .geojson"
         self._screen.field.open(use, text=self._model.file, placeholder=hint)
         return True
 
@@ -63,14 +68,18 @@ class FileKeys:
 
     async def _read(self, path: Path) -> None:
         try:
-            self._screen.say(self._model.take_file(await open_plan(path), path.name))
-        except PlanFileError as error:
+            if path.suffix.lower() in LAYER_SUFFIXES:
+                self._screen.say(self._model.take_layer(await open_layer(path), path.name))
+            else:
+                self._screen.say(self._model.take_file(await open_plan(path), path.name))
+            self._screen.redraw()
+        except MapFileError as error:
             self._screen.say(str(error))
 
     async def _write(self, path: Path, replace: bool) -> None:
         try:
             await save_plan(path, self._model.document, replace=replace)
-        except PlanFileError as error:
+        except MapFileError as error:
             self._screen.say(str(error))
             return
         self._model.file = path.name

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import msgspec
 
+from groundstation.formats.layer import LayerDocument
 from groundstation.views.plan import PlanDocument
 
 CONVERTER = "groundstation.verbs.plan_converter"
@@ -15,17 +16,22 @@ TIMEOUT = 30.0
 """s for a file of 16 MB on a slow machine."""
 
 
-class PlanFileError(Exception):
+class MapFileError(Exception):
     """A file cannot be read or written; the message is one line for the user."""
 
 
 async def open_plan(path: Path) -> PlanDocument:
-    """Return the plans of a file. Raises PlanFileError."""
+    """Return the plans of a file. Raises MapFileError."""
     return msgspec.msgpack.decode(await _convert(b"", "read", str(path)), type=PlanDocument)
 
 
+async def open_layer(path: Path) -> LayerDocument:
+    """Return the shapes of a GeoJSON file. Raises MapFileError."""
+    return msgspec.msgpack.decode(await _convert(b"", "layer", str(path)), type=LayerDocument)
+
+
 async def save_plan(path: Path, document: PlanDocument, *, replace: bool = False) -> None:
-    """Write plans to a file, whole or not at all. Raises PlanFileError."""
+    """Write plans to a file, whole or not at all. Raises MapFileError."""
     await _convert(msgspec.msgpack.encode(document), "write", str(path), *(["replace"] if replace else []))
 
 
@@ -38,8 +44,8 @@ async def _convert(data: bytes, *arguments: str) -> bytes:
         out, errors = await asyncio.wait_for(process.communicate(data), TIMEOUT)
     except TimeoutError:
         process.kill()
-        raise PlanFileError(f"{arguments[1]}: not done within {TIMEOUT:.0f} s") from None
+        raise MapFileError(f"{arguments[1]}: not done within {TIMEOUT:.0f} s") from None
     if process.returncode:
         lines = errors.decode("utf-8", "replace").splitlines() or [f"the converter ended with {process.returncode}"]
-        raise PlanFileError(lines[-1])
+        raise MapFileError(lines[-1])
     return out

@@ -1,59 +1,27 @@
-"""Places on earth as metres around a reference, and what is computed from them. Points are (north, east) in m."""
+"""Places of items, and what is computed from points on a map: (north, east) in m."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
-from groundstation.vehicles.track import METRES_PER_DEGREE
-from groundstation.views.plan import PlanItem, PlanPlace
-
-Point = tuple[float, float]
+from groundstation.geo import Place, Point, is_on_earth
+from groundstation.views.plan import PlanItem
 
 DEGREES_SCALE = 1e7
 GLOBAL_FRAMES = frozenset({0, 3, 5, 6, 10, 11})
 """MAV_FRAME with latitude and longitude."""
 UNSET = 0x7FFF_FFFF
 """INT32_MAX in MISSION_ITEM_INT: no coordinate."""
-MAX_LATITUDE, MAX_LONGITUDE = 90.0, 180.0
 
 
-@dataclass(frozen=True, slots=True)
-class LocalMap:
-    """Metres around a reference place. The error is 0.1 % at 10 km, more than a small rover drives."""
-
-    reference: PlanPlace
-
-    def to_point(self, place: PlanPlace) -> Point:
-        """Return a place in m; across 180 degrees the short way."""
-        north = (place.latitude - self.reference.latitude) * METRES_PER_DEGREE
-        turned = (place.longitude - self.reference.longitude + 180.0) % 360.0 - 180.0
-        return north, turned * METRES_PER_DEGREE * self._shrink
-
-    def to_place(self, point: Point) -> PlanPlace:
-        """Return a point as a place, kept on earth."""
-        latitude = self.reference.latitude + point[0] / METRES_PER_DEGREE
-        longitude = self.reference.longitude + point[1] / (METRES_PER_DEGREE * self._shrink)
-        return PlanPlace(max(-MAX_LATITUDE, min(MAX_LATITUDE, latitude)), (longitude + 180.0) % 360.0 - 180.0)
-
-    @property
-    def _shrink(self) -> float:
-        return max(1e-6, math.cos(math.radians(self.reference.latitude)))
-
-
-def place_of(item: PlanItem) -> PlanPlace | None:
+def place_of(item: PlanItem) -> Place | None:
     """Return where an item is; None for one without a position, with 0, 0 (here) and for one that is not on earth."""
     if item.frame not in GLOBAL_FRAMES or (item.x, item.y) == (0, 0) or UNSET in (item.x, item.y):
         return None
-    place = PlanPlace(item.x / DEGREES_SCALE, item.y / DEGREES_SCALE)
-    return place if abs(place.latitude) <= MAX_LATITUDE and abs(place.longitude) <= MAX_LONGITUDE else None
-
-
-def bearing(start: Point, end: Point) -> float:
-    """Return the direction from one point to another, degrees clockwise from north, 0..360."""
-    return math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) % 360.0
+    place = Place(item.x / DEGREES_SCALE, item.y / DEGREES_SCALE)
+    return place if is_on_earth(*place) else None
 
 
 def is_inside(point: Point, corners: Sequence[Point]) -> bool:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from enum import Enum, auto
 
-from groundstation.ui.map.geometry import LocalMap, Point
+from groundstation.geo import LocalFrame, Place, Point, keep_on_earth
 from groundstation.ui.map.window import FITTED, MapWindow, fit_window
-from groundstation.views.plan import PlanPlace
 
 
 class Looking(Enum):
@@ -29,10 +28,10 @@ class Ground:
     """`frame` is the map's metres; None as long as nothing has a place."""
 
     def __init__(self) -> None:
-        self.frame: LocalMap | None = None
+        self.frame: LocalFrame | None = None
         self.vehicle: Point | None = None
-        self.cursor: PlanPlace | None = None
-        self.measured: PlanPlace | None = None
+        self.cursor: Place | None = None
+        self.measured: Place | None = None
         """Where the measured line begins."""
         self.looking = Looking.FIT
         self.window = NOT_FITTED
@@ -96,7 +95,7 @@ class Ground:
             return
         scale = self.window.scale
         moved = (point[0] + up * 4 * scale, point[1] + right * 2 * scale)
-        self.cursor = self.frame.to_place(moved)
+        self.cursor = keep_on_earth(self.frame.to_place(moved))
         if self.looking is Looking.FIT and not self.window.shows(moved, *self._size, 0.48):
             self.looking = Looking.FREE
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from groundstation.ui.map.commands import find_command
-from groundstation.ui.map.fields import Field, change_command, change_field
+from groundstation.ui.map.fields import ItemField, change_command, change_field
 from groundstation.ui.map.model import MapModel
 from groundstation.views.plan import PlanKind
 
 
-def choices(model: MapModel, field: Field) -> str:
+def choices(model: MapModel, field: ItemField) -> str:
     """Return what can be typed."""
     if field.key != "command":
         limits = f" {field.limits}" if field.limits else ""
@@ -19,7 +19,7 @@ def choices(model: MapModel, field: Field) -> str:
     return "a command: waypoint, loiter, rtl, speed, jump, delay, relay, servo, roi, a name or a number"
 
 
-def change_item(model: MapModel, field: Field, text: str) -> str | None:
+def change_item(model: MapModel, field: ItemField, text: str) -> str | None:
     """Change the selected item; return what is wrong with the text."""
     row = model.editor.row
     if row is None or not text.strip():

@@ -36,6 +36,9 @@ MAP_KEYS = (
     ScreenKey("f", "Fit", "Show everything"),
     ScreenKey("c", "Follow", "Keep the vehicle in view"),
     ScreenKey("plus", "Zoom", "Zoom in; minus zooms out"),
+    ScreenKey("slash", "Filter", "Show the items of the table with these words; Escape shows all"),
+    ScreenKey("y", "Copy", "Copy latitude and longitude of the cursor"),
+    ScreenKey("l", "Layers", "Hide the GeoJSON layers, or show them again"),
     ScreenKey("D", "Download", "Download the edited plan again; drops the edits of it"),
     ScreenKey("m", "Move here", "Move the selected item to the cursor"),
     ScreenKey("less_than_sign", "Up", "Move the selected item up in the plan; > moves it down"),
@@ -45,7 +48,7 @@ MAP_KEYS = (
     ScreenKey("H", "Home", "Move home to the cursor; asks"),
     ScreenKey("X", "Clear", "Clear the edited plan on the vehicle; asks"),
     ScreenKey("C", "Cancel", "Cancel the transfers that run"),
-    ScreenKey("O", "Open", "Open a plan file: .plan, .waypoints"),
+    ScreenKey("O", "Open", "Open a plan (.plan, .waypoints), or a layer to look at (.geojson)"),
     ScreenKey("S", "Save", "Save the plans: .plan, .waypoints, .geojson"),
     ScreenKey("1", "Mode", "1 MANUAL, 2 HOLD, 3 AUTO, 4 GUIDED, 5 RTL, 6 LOITER; one that moves by itself asks"),
 )

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
+from groundstation.formats.layer import LayerDocument
+from groundstation.geo import LocalFrame, Place, Point
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.map.checks import plan_fault
 from groundstation.ui.map.copies import PlanCopies
 from groundstation.ui.map.editor import PlanEditor
-from groundstation.ui.map.geometry import LocalMap, Point, place_of
+from groundstation.ui.map.geometry import place_of
 from groundstation.ui.map.ground import Ground
+from groundstation.ui.map.layers import MapLayers, describe_layer
 from groundstation.ui.map.plan_intents import PlanIntents
 from groundstation.ui.map.rows import Items
 from groundstation.ui.map.scene import Route, find_reference, find_route
+from groundstation.ui.map.table_filter import TableFilter
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.base import View, ViewRequest
-from groundstation.views.plan import PlanDocument, PlanKind, PlanMode, PlanPlace, PlanView
+from groundstation.views.plan import PlanDocument, PlanKind, PlanMode, PlanView
 from groundstation.views.requests import RequestLine
 
 NEAR = 3.0
@@ -43,12 +48,16 @@ class MapModel:
         self.editor = PlanEditor()
         self.ground = Ground()
         self.intents = PlanIntents(numbers)
+        self.layers = MapLayers()
+        self.filter = TableFilter()
+        self.replay = False
+        """The views are of a log: nothing can be requested."""
         self.file = ""
         """Name of the file that was opened or saved last."""
         self._asked: set[int] = set()
         """Systems whose plans were requested by opening the screen."""
         self._told = 0
-        """Number of the newest request whose end was told."""
+        """Number of the newest request whose end was shown."""
         self._route: tuple[object, Route] | None = None
 
     # ---- views ----
@@ -65,11 +74,13 @@ class MapModel:
 
     def show_view(self, view: View) -> tuple[AnyIntent, ...]:
         """Take a view; return the intents that follow: plans that are not known are downloaded once."""
-        before = self.view.system if self.view is not None else None
+        before, known = self.view.system if self.view is not None else None, set(self.copies.items)
         whole = self.copies.show_view(view)
         if isinstance(view, PlanView) and before not in (None, view.system):
             self.editor = PlanEditor()
             self.ground.reset()
+        for kind in known - self.copies.items.keys():
+            self.editor.load_base(kind, ())
         if whole is not None:
             self.editor.load_base(whole, self.copies.items[whole])
         self.settle()
@@ -78,8 +89,8 @@ class MapModel:
     def settle(self) -> None:
         """Compute anew what follows from views and edits: the map's metres, the vehicle on it, a first cursor."""
         view, ground = self.view, self.ground
-        reference = find_reference(view, [self.editor.items(kind) for kind in PlanKind])
-        ground.frame = None if reference is None else LocalMap(reference)
+        reference = find_reference(view, [self.editor.items(kind) for kind in PlanKind]) or self.layers.place
+        ground.frame = None if reference is None else LocalFrame(reference)
         ground.vehicle = self._to_point(view.place if view is not None else None)
         if ground.cursor is None:
             ground.cursor = (view.place if view is not None else None) or reference
@@ -92,7 +103,7 @@ class MapModel:
 
     # ---- the ground ----
 
-    def _to_point(self, place: PlanPlace | None) -> Point | None:
+    def _to_point(self, place: Place | None) -> Point | None:
         frame = self.ground.frame
         return None if frame is None or place is None else frame.to_point(place)
 
@@ -111,9 +122,29 @@ class MapModel:
             self._route = (id(rows), frame, home), route
         return self._route[1]
 
+    @property
+    def shown_rows(self) -> Sequence[int]:
+        """Indices of the rows of the edited plan that the table shows."""
+        return self.filter.rows(self.editor, self.first)
+
+    @property
+    def hides_selected(self) -> bool:
+        """The table has items, and the selected one is not among those that are shown."""
+        return self.editor.row is not None and self.editor.selected not in self.shown_rows
+
+    def set_filter(self, text: str) -> None:
+        """Show only the rows of the table with these words; select the first if the selected one is not among them."""
+        self.filter.text = text
+        rows = self.shown_rows
+        if rows and self.editor.selected not in rows:
+            self.editor.select(rows[0])
+
     def select(self, by: int) -> None:
-        """Select another row; the cursor goes there."""
-        self.editor.select(max(0, self.editor.selected + by))
+        """Select another row of the table; the cursor goes there."""
+        rows, selected = self.shown_rows, self.editor.selected
+        at = (rows.index(selected) if selected in rows else 0) + by
+        if rows:
+            self.editor.select(rows[max(0, min(len(rows) - 1, at))])
         row = self.editor.row
         place = place_of(row.item) if row is not None else None
         self.ground.cursor = place or self.ground.cursor
@@ -155,6 +186,13 @@ class MapModel:
         self.settle()
         found = ", ".join(f"{PLAN_NAMES[kind]} of {len(items)}" for kind, items in plans.items())
         return f"{name}: {found} · U uploads the {self.plan_name}"
+
+    def take_layer(self, document: LayerDocument, name: str) -> str:
+        """Show the shapes of a file; return what came."""
+        self.layers.add(name, document)
+        self.ground.fit()
+        self.settle()
+        return describe_layer(name, document, self.ground.frame)
 
     @property
     def document(self) -> PlanDocument:
@@ -206,7 +244,7 @@ class MapModel:
     # ---- status ----
 
     def pop_news(self) -> str | None:
-        """Return how the newest request has ended, once; None if that is told already."""
+        """Return how the newest request has ended, once; None if that was shown already."""
         line = self.view.ended[-1] if self.view is not None and self.view.ended else None
         if line is None or line.number == self._told:
             return None

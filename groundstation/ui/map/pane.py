@@ -5,9 +5,9 @@ The screen gives the views that `PlanCopies.requests` names to `PlanCopies.show_
 
 from __future__ import annotations
 
+from groundstation.geo import LocalFrame, Place, Point
 from groundstation.snapshot import VehicleView
 from groundstation.ui.map.copies import PlanCopies
-from groundstation.ui.map.geometry import LocalMap, Point
 from groundstation.ui.map.picture import COMPLETE, no_position
 from groundstation.ui.map.scene import (
     build_legs,
@@ -17,8 +17,8 @@ from groundstation.ui.map.scene import (
     find_route,
     track_points,
 )
-from groundstation.ui.widgets.plan_map import MapMark, PlanMapValue
-from groundstation.views.plan import PlanKind, PlanPlace
+from groundstation.ui.widgets.plan_map_value import MapMark, PlanMapValue
+from groundstation.views.plan import PlanKind
 
 
 def build_pane(copies: PlanCopies, vehicle: VehicleView | None, *, ascii: bool = False) -> PlanMapValue:  # noqa: A002
@@ -27,7 +27,7 @@ def build_pane(copies: PlanCopies, vehicle: VehicleView | None, *, ascii: bool =
     reference = find_reference(view)
     if view is None or reference is None:
         return PlanMapValue(no_position(vehicle))
-    frame = LocalMap(reference)
+    frame = LocalFrame(reference)
     mission = copies.items.get(PlanKind.MISSION, ())
     home, current = _point(frame, view.home), None if view.state == COMPLETE else view.current
     reached = frozenset(range(len(mission)) if view.state == COMPLETE else view.reached)
@@ -47,5 +47,5 @@ def build_pane(copies: PlanCopies, vehicle: VehicleView | None, *, ascii: bool =
     )
 
 
-def _point(frame: LocalMap, place: PlanPlace | None) -> Point | None:
+def _point(frame: LocalFrame, place: Place | None) -> Point | None:
     return None if place is None else frame.to_point(place)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
+from groundstation.geo import Point, bearing
 from groundstation.snapshot import VehicleView
 from groundstation.ui.map.checks import check_fence, fence_shapes
 from groundstation.ui.map.commands import command_title
-from groundstation.ui.map.geometry import Point, bearing, place_of
+from groundstation.ui.map.geometry import place_of
 from groundstation.ui.map.ground import NOT_FITTED, Looking
 from groundstation.ui.map.model import PLAN_NAMES, MapModel
 from groundstation.ui.map.scene import build_legs, build_marks, build_outlines, track_points
-from groundstation.ui.widgets.plan_map import MapMark, PlanMapValue
+from groundstation.ui.widgets.plan_map_value import MapMark, PlanMapValue
 from groundstation.views.plan import PlanKind
 
 LEAST_WAY = 0.05
@@ -36,6 +38,8 @@ def build_map(model: MapModel, vehicle: VehicleView | None, *, ascii: bool = Fal
         track=track_points(model.copies.track, frame),
         legs=build_legs(model.route, model.home, current if mission else None, reached),
         outlines=build_outlines(model.editor.items(PlanKind.FENCE), frame),
+        layers=model.layers.shapes(frame),
+        layer_corners=model.layers.corners(frame),
         marks=_marks(model),
         ascii=ascii,
     )
@@ -160,7 +164,7 @@ def layer_title(model: MapModel) -> str:
     return " · ".join(parts)
 
 
-def outside_rows(model: MapModel, among: range) -> frozenset[int]:
+def outside_rows(model: MapModel, among: Iterable[int]) -> frozenset[int]:
     """Return which of these rows of the edited plan lie outside the fence."""
     frame = model.ground.frame
     if frame is None or model.editor.layer is PlanKind.FENCE:

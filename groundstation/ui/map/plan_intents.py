@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from groundstation.geo import Place
 from groundstation.intents.plan import (
     ChooseMode,
     ClearPlan,
@@ -17,7 +18,7 @@ from groundstation.intents.services import CancelRequest
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.map.rows import Items
 from groundstation.ui.request_numbers import RequestNumbers
-from groundstation.views.plan import PlanKind, PlanMode, PlanPlace, PlanView
+from groundstation.views.plan import PlanKind, PlanMode, PlanView
 
 
 class PlanIntents:
@@ -51,11 +52,11 @@ class PlanIntents:
         """Make a mission item the current one."""
         return JumpToItem(self._numbers.take(), view.system, index)
 
-    def go_to(self, view: PlanView, place: PlanPlace) -> AnyIntent:
+    def go_to(self, view: PlanView, place: Place) -> AnyIntent:
         """Drive to a place."""
         return GoTo(self._numbers.take(), view.system, place)
 
-    def set_home(self, view: PlanView, place: PlanPlace) -> AnyIntent:
+    def set_home(self, view: PlanView, place: Place) -> AnyIntent:
         """Move home to a place."""
         return SetHome(self._numbers.take(), view.system, place)
 

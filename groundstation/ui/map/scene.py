@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from groundstation.geo import LocalFrame, Place, Point
 from groundstation.ui.map.checks import fence_shapes
 from groundstation.ui.map.commands import CIRCLES, POLYGONS, RETURN_POINT, RTL
-from groundstation.ui.map.geometry import LocalMap, Point, place_of
+from groundstation.ui.map.geometry import place_of
 from groundstation.ui.map.rows import Items
-from groundstation.ui.widgets.plan_map import Leg, MapLeg, MapMark, MapOutline
-from groundstation.views.plan import PlanItem, PlanKind, PlanPlace, PlanTrackView, PlanView
+from groundstation.ui.widgets.plan_map_value import Leg, MapLeg, MapMark, MapOutline
+from groundstation.views.plan import PlanItem, PlanKind, PlanTrackView, PlanView
 
 NAV_LAST = 95
 """MAV_CMD_NAV_LAST: those up to it are driven to."""
@@ -34,14 +35,14 @@ class Route:
         return None if number is None else self.points[number]
 
 
-def find_reference(view: PlanView | None, items: Sequence[Items] = ()) -> PlanPlace | None:
+def find_reference(view: PlanView | None, items: Sequence[Items] = ()) -> Place | None:
     """Return the place around which a map is drawn: home, else the vehicle, else the first item of a plan."""
     if view is not None and (view.home or view.place):
         return view.home or view.place
     return next((place for each in items for item in each if (place := place_of(item))), None)
 
 
-def find_route(mission: Sequence[PlanItem], frame: LocalMap, home: Point | None) -> Route:
+def find_route(mission: Sequence[PlanItem], frame: LocalFrame, home: Point | None) -> Route:
     """Return the places of a mission; RETURN_TO_LAUNCH is at home."""
     found = []
     for index, item in enumerate(mission):
@@ -69,12 +70,12 @@ def build_legs(route: Route, start: Point | None, current: int | None, reached: 
     return tuple(legs)
 
 
-def build_outlines(fence: Sequence[PlanItem], frame: LocalMap) -> tuple[MapOutline, ...]:
+def build_outlines(fence: Sequence[PlanItem], frame: LocalFrame) -> tuple[MapOutline, ...]:
     """Return the outlines of a fence."""
     return tuple(MapOutline(shape.corners, shape.inclusion) for shape in fence_shapes(fence, frame))
 
 
-def build_marks(kind: PlanKind, items: Sequence[PlanItem], frame: LocalMap, looks: dict[int, str], first: int = 0,
+def build_marks(kind: PlanKind, items: Sequence[PlanItem], frame: LocalFrame, looks: dict[int, str], first: int = 0,
                 suffix: dict[int, str] | None = None) -> tuple[MapMark, ...]:  # fmt: skip
     """Return the labels of the items of one plan; `looks` and `suffix` by index."""
     marks = []
@@ -98,7 +99,7 @@ def _mark(kind: PlanKind, item: PlanItem, number: int) -> tuple[str, str]:
     return "corner", "×" if item.command in CIRCLES else "r" if item.command == RETURN_POINT else "?"
 
 
-def track_points(track: PlanTrackView | None, frame: LocalMap) -> tuple[Point, ...]:
+def track_points(track: PlanTrackView | None, frame: LocalFrame) -> tuple[Point, ...]:
     """Return a track as points of a map."""
     if track is None or track.origin is None:
         return ()

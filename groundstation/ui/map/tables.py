@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable
 from itertools import pairwise
 
+from groundstation.geo import bearing
 from groundstation.snapshot import VehicleView
 from groundstation.ui.map.checks import item_fault, range_warning
 from groundstation.ui.map.commands import CHANGE_SPEED, DO_JUMP, POLYGONS, command_title, describe_command, short_title
 from groundstation.ui.map.fields import FRAMES, fields_of, number_text, value_of
-from groundstation.ui.map.geometry import bearing, place_of
+from groundstation.ui.map.geometry import place_of
 from groundstation.ui.map.model import PLAN_NAMES, MapModel
 from groundstation.ui.map.picture import fence_text, mark_of, outside_rows, progress_of, title_of, way_text
 from groundstation.ui.widgets.plan_panels import PanelLine, PanelValue, ProgressValue
@@ -29,18 +30,17 @@ LEAST_SPEED = 0.1
 def build_table(model: MapModel, rows: int, *, narrow: bool = False) -> PlanTableValue:
     """Return the part of the edited plan that fits around the selected row; in a narrow table with short names."""
     items, selected = model.editor.rows(), model.editor.selected
-    home = 1 if model.editor.layer is PlanKind.MISSION and model.home is not None else 0
-    top = max(0, min(selected - rows // 2, len(items) + home - rows))
+    found = model.shown_rows
+    home = 1 if model.editor.layer is PlanKind.MISSION and model.home is not None and len(found) == len(items) else 0
+    at = found.index(selected) if selected in found else 0
+    top = max(0, min(at - rows // 2, len(found) + home - rows))
     shown = [_home_row(model)] if home and top == 0 else []
     begin = max(0, top - home)
-    end = min(len(items), begin + rows - len(shown))
-    outside = outside_rows(model, range(begin, end))
-    found = (
-        *shown,
-        *(_row(model, index, outside, short_title if narrow else command_title) for index in range(begin, end)),
-    )
-    at = selected - begin + len(shown) if items else None
-    return PlanTableValue(found, at, _summary(model), "" if items else _empty_note(model))
+    part = found[begin : min(len(found), begin + rows - len(shown))]
+    outside, name = outside_rows(model, part), short_title if narrow else command_title
+    lines = (*shown, *(_row(model, index, outside, name) for index in part))
+    note = _empty_note(model) if not items else "" if found else f"no item has {model.filter.text.strip()!r}"
+    return PlanTableValue(lines, at - begin + len(shown) if found else None, _summary(model), note)
 
 
 def _home_row(model: MapModel) -> PlanTableRow:
@@ -115,6 +115,8 @@ def _empty_note(model: MapModel) -> str:
     if view is None:
         return "no vehicle yet; O opens a file"
     name = PLAN_NAMES[layer]
+    if model.replay and not view.plans[layer].version:
+        return f"no {name} in the log yet"
     for line in view.running:
         if line.what == f"download {name}":
             return f"loading the {name} {line.done}" + (f"/{line.total}" if line.total is not None else "")
@@ -135,7 +137,7 @@ def build_item(model: MapModel, selected: int | None) -> PanelValue:
     """Return the fields of the selected item; `selected` is the field under the cursor."""
     row = model.editor.row
     if row is None:
-        return PanelValue((PanelLine("", "no item: a adds one at the cursor", look="faint"),))
+        return PanelValue((PanelLine("no item", "a adds one here", look="faint"),))
     was, lines = model.editor.was(row), []
     for field in fields_of(row.item):
         value = value_of(row.item, field, model.first)
@@ -168,9 +170,12 @@ def build_plans(model: MapModel) -> PanelValue:
     """Return one line for each plan, the file, and what U does."""
     lines = [_plan_line(model, kind) for kind in PlanKind]
     lines.append(PanelLine("file", model.file or "--", look="" if model.file else "faint"))
+    if layers := model.layers.text:
+        lines.append(PanelLine("layers", layers, "hidden, l" if model.layers.hidden else "l hides"))
     diff, name = model.editor.diff(model.editor.layer), model.plan_name
     if diff.count and model.editor.rows():
-        lines += [PanelLine("", ""), PanelLine("U uploads", f"the {name}: {diff.text}", look="edited")]
+        lines += [] if layers else [PanelLine("", "")]
+        lines.append(PanelLine("U uploads", f"the {name}: {diff.text}", look="edited"))
     return PanelValue(tuple(lines))
 
 
@@ -178,7 +183,9 @@ def _plan_line(model: MapModel, kind: PlanKind) -> PanelLine:
     view, here, diff = model.view, len(model.editor.rows(kind)), model.editor.diff(kind)
     name = PLAN_NAMES[kind]
     if view is None or not view.plans[kind].version:
-        return PanelLine(name, f"{here} here · -- there", "not loaded", "faint")
+        return PanelLine(
+            name, f"{here} here · -- there", "not in the log yet" if model.replay else "not loaded", "faint"
+        )
     there = view.plans[kind].count
     if diff.count:
         return PanelLine(name, f"{here} here · {there} there", diff.text, "edited")

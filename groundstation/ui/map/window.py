@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from groundstation.ui.map.geometry import Point
+from groundstation.geo import Point
 
 SCALES = tuple(step * 10.0**decade for decade in range(-2, 4) for step in (1.0, 1.4, 2.0, 3.0, 5.0, 7.0))
 """m per dot that a map may have."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 from pathlib import Path
 
+from link.runtime.whole_file import replace_file
+
 MAX_NAMES = 1000
 MAX_NAME = 64
 """Characters: a name has 16 bytes, of which each may be escaped."""
@@ -31,9 +33,7 @@ class Favourites:
         path = self._file(autopilot)
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            temporary = path.with_suffix(".new")
-            temporary.write_text("".join(f"{each}\n" for each in sorted(names)), "ascii")
-            temporary.replace(path)
+            replace_file(path, "".join(f"{each}\n" for each in sorted(names)).encode())
         except OSError as error:
             return f"favourites are not saved: {error.strerror}: {path}"
         return None

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,18 +51,3 @@ def read_file(text: str, folder: Path) -> tuple[str, str] | str:
         return path.name, data.decode("utf-8")
     except UnicodeDecodeError:
         return f"{path}: this is not a text file"
-
-
-def write_file(path: Path, text: str) -> str | None:
-    """Write a file, whole or not at all; return why it cannot be written."""
-    temporary = ""
-    try:
-        descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(text)
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except OSError as error:
-        Path(temporary).unlink(missing_ok=True) if temporary else None
-        return f"{path}: {error.strerror}"
-    return None

@@ -196,11 +196,11 @@ class ParamModel:
         """The changes that are not written, by name."""
         return self.changes.by_name
 
-    def propose(self, system: int, change: PendingChange) -> None:
-        """Make a change pending that another screen recommends for this vehicle."""
+    def propose(self, system: int, *changes: PendingChange) -> None:
+        """Make changes pending that another screen recommends for this vehicle, in one step."""
         if system != self._system:
             self._forget_vehicle(system)
-        self.changes.set([change])
+        self.changes.set(changes)
 
     def open_editor(self) -> ValueEditor | None:
         """Begin to change the selected parameter."""

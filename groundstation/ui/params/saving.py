@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from groundstation.ui.params.files import SaveChoice, write_file
+from groundstation.ui.params.files import SaveChoice
 from groundstation.ui.request_numbers import RequestNumbers
+from groundstation.ui.save_file import save_text
 from groundstation.views.params import ParamExport, ParamExportRequest
 
 
@@ -33,6 +34,8 @@ class ParamSaving:
         if choice is None or request is None or view.number != request.number:
             return None
         self._choice = self._request = None
-        problem = view.problem or write_file(choice.path, view.text)
+        problem = view.problem
+        if not problem and (reason := save_text(choice.path, view.text)):
+            problem = f"{choice.path}: {reason}"
         count = "1 parameter" if view.count == 1 else f"{view.count} parameters"
         return f"not saved: {problem}" if problem else f"{count} saved to {choice.path}"

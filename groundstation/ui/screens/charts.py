@@ -20,7 +20,7 @@ from groundstation.ui.widgets.charts.empty import EmptyCharts, EmptyValue
 from groundstation.ui.widgets.charts.field_list import FieldList
 from groundstation.ui.widgets.charts.pane import EMPTY, ChartPane, plot_dots
 from groundstation.ui.widgets.charts.stats import StatsPanel
-from groundstation.ui.widgets.charts.timeline import Timeline, TimelineValue
+from groundstation.ui.widgets.charts.timeline import ChartTimeline, ChartTimelineValue
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.charts import FieldsPage, SeriesPage
@@ -60,7 +60,7 @@ class ChartsScreen(ConsoleScreen):
         self._model = context.keep(ChartsModel, context.folder)
         self._pictures = Pictures(self._model)
         self._panes = [ChartPane(EMPTY, id=f"pane{number}", classes="pane") for number in range(MAX_CHARTS)]
-        self._timeline = Timeline(TimelineValue(), id="timeline")
+        self._timeline = ChartTimeline(ChartTimelineValue(), id="timeline")
         self._list = FieldList((), id="list")
         self._stats = StatsPanel((), id="stats")
         self._empty = EmptyCharts(EmptyValue(), id="empty")
@@ -99,8 +99,7 @@ class ChartsScreen(ConsoleScreen):
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out for the new size."""
-        self.set_class(event.size.width >= WIDE, "-wide")
-        self.set_class(event.size.width >= HUGE, "-huge")
+        self.update_classes({"-wide": event.size.width >= WIDE, "-huge": event.size.width >= HUGE})
         self._show()
         self.call_after_refresh(self._show)
 

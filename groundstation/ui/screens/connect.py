@@ -12,13 +12,13 @@ from textual.widget import Widget
 from groundstation.actions import ACTIONS
 from groundstation.intents.session import StartSimulator
 from groundstation.intents.vehicle import SelectVehicle
-from groundstation.simulators import SIMULATORS
+from groundstation.sitl.simulators import SIMULATORS
 from groundstation.ui.connect_model import ConnectModel, Panel
 from groundstation.ui.display_state import DisplayState, ScreenKey
-from groundstation.ui.files_model import FilesModel
-from groundstation.ui.key_parser import KeyRepeat
+from groundstation.ui.files.model import FilesModel
 from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.connect.tables import heard_value, logs_value, ports_value, recent_value, simulators_value
 from groundstation.ui.widgets.connect.welcome import Welcome, WelcomeValue
 from groundstation.ui.widgets.line_field import FieldUse
@@ -43,10 +43,12 @@ class ConnectScreen(ConsoleScreen):
         ScreenKey("tab", "Panel", "Next list: heard now, recent, serial ports, simulators"),
         ScreenKey("colon", "Type one", "Type an endpoint"),
         ScreenKey("s", "Simulator", "Start a simulated rover; the other simulators are listed with their keys"),
-        ScreenKey("W", "Watch only", "Connect to what is marked, or to a typed endpoint, and never send a byte"),
+        ScreenKey("W", "Watch", "Connect to what is marked, or to a typed endpoint, and never send a byte"),
         ScreenKey("p", "Pin", "Keep a recent endpoint on top of the list, or not any more"),
         ScreenKey("x", "Forget", "Forget a recent endpoint"),
         ScreenKey("b", "Baud", "Next baud rate for a serial port"),
+        ScreenKey("o", "Replay", "Show the telemetry log that is marked in all screens, until Ctrl-Q"),
+        ScreenKey("d", "Find", "Ask the network for vehicles that announce themselves (mDNS), or stop asking"),
     )  # fmt: skip
 
     def __init__(self, context: ScreenContext) -> None:
@@ -76,7 +78,7 @@ class ConnectScreen(ConsoleScreen):
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the request for what can be connected to."""
-        return (ConnectRequest(),)
+        return (ConnectRequest(search=self._model.search),)
 
     def show_view(self, view: View) -> None:
         """Show what is heard, and leave for Drive once the link is open."""
@@ -185,6 +187,10 @@ class ConnectScreen(ConsoleScreen):
             return
         self._open(endpoint, watch_only=watch_only)
 
+    def _replay(self) -> None:
+        name = self._model.choice.file
+        self.open_log(self.context.folder / name if name else None)
+
     def _next_panel(self) -> None:
         self._model.choose_panel(1)
 
@@ -197,6 +203,9 @@ class ConnectScreen(ConsoleScreen):
     def _forget(self) -> None:
         forgotten = self._model.forget()
         self.say(f"{forgotten} forgotten" if forgotten else None)
+
+    def _search(self) -> None:
+        self._model.search = not self._model.search
 
     def _change_baud(self) -> None:
         self._model.change_baud()
@@ -213,7 +222,7 @@ class ConnectScreen(ConsoleScreen):
         if model.chosen is Panel.LOGS and not model.shows_logs:
             model.choose_panel(1)
         self._logs.show(logs_value(model.logs, model.shown_cursor(Panel.LOGS)))
-        self._logs.border_subtitle = "ENTER shows it on the Files screen"
+        self._logs.border_subtitle = "o replays it · ENTER shows it on the Files screen"
         opened = model.view.endpoints if model.view else ()
         self._heard.show(heard_value(model.view, model.shown_cursor(Panel.HEARD)))
         self._recent.show(recent_value(model.entries, opened, model.shown_cursor(Panel.RECENT)))
@@ -247,5 +256,7 @@ _ACTIONS = {
     "p": ConnectScreen._pin,
     "x": ConnectScreen._forget,
     "b": ConnectScreen._change_baud,
+    "d": ConnectScreen._search,
+    "o": ConnectScreen._replay,
 }
 """Key -> what it does; ConnectScreen.KEYS has their names."""

@@ -15,12 +15,12 @@ from groundstation.intents.session import StartSimulator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import active_alerts
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.drive_layout import CLASSES, CONSOLE_SIZE, MIN_STRIP_SIZE, is_smaller, layout_classes
+from groundstation.ui.drive_layout import CLASSES, CONSOLE_SIZE, MIN_STRIP_SIZE, Size, is_smaller, layout_classes
 from groundstation.ui.instruments import INSTRUMENTS
-from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.map.copies import PlanCopies
 from groundstation.ui.panes import SECOND, SPEED_CHART, PaneInput, speed_samples
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.chart import ChartValue
 from groundstation.ui.widgets.pane import CLOSER, WIDER, PaneFrame
 from groundstation.ui.widgets.stops import StopsPanel
@@ -61,6 +61,8 @@ class DriveScreen(ConsoleScreen):
 
     def compose(self) -> ComposeResult:
         """Lay out the places of INSTRUMENTS; drive.tcss sets their sizes."""
+        self._choose_layout(self.app.size)  # before there are widgets, which need no second style then
+        self._mark_condition(self._state)
         with Vertical(id="console"):
             yield from self.build_place("top")
             with Horizontal(id="body"):
@@ -85,12 +87,20 @@ class DriveScreen(ConsoleScreen):
 
     def on_resize(self, event: events.Resize) -> None:
         """Show what fits: a layout of the console, the driving strip, or the size that is needed."""
-        chosen = layout_classes(self.size)
-        for name in CLASSES:
-            self.set_class(name in chosen, name)
-        self.set_class(self.too_small, "-too-small")
-        self.set_class(self._small and not self.too_small, "-strip")
+        self._choose_layout(self.size)
         self._show_small()
+
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Show what has changed while another screen was on top."""
+        if self.is_mounted:
+            self.show_state(self._state)
+
+    def _choose_layout(self, size: Size) -> None:
+        """Set the classes of a size: at once, because each update matches all style rules with all widgets."""
+        chosen = layout_classes(size)
+        too_small = is_smaller(size, MIN_STRIP_SIZE)
+        small = {"-too-small": too_small, "-strip": is_smaller(size, CONSOLE_SIZE) and not too_small}
+        self.update_classes({name: name in chosen for name in CLASSES} | small)
 
     @property
     def too_small(self) -> bool:
@@ -122,10 +132,12 @@ class DriveScreen(ConsoleScreen):
     def show_body(self, now: DisplayState) -> None:
         """Show what depends on the size, the vehicle and the alerts."""
         self._show_small()
+        self._mark_condition(now)
+
+    def _mark_condition(self, now: DisplayState) -> None:
         vehicle = now.snapshot.vehicle
-        self.set_class(vehicle is None, "-waiting")
-        self.set_class(vehicle is None or vehicle.mission is None or not vehicle.mission.legs, "-no-legs")
-        self.set_class(bool(active_alerts(now)), "-alert")
+        no_legs = vehicle is None or vehicle.mission is None or not vehicle.mission.legs
+        self.update_classes({"-waiting": vehicle is None, "-no-legs": no_legs, "-alert": bool(active_alerts(now))})
 
     # ---- panes ----
 

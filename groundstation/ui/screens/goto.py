@@ -12,10 +12,10 @@ from textual.widgets import Static
 
 from groundstation.actions import ACTIONS, OperatorAction
 from groundstation.screens import SCREENS
-from groundstation.ui.colours import DIM, YELLOW
-from groundstation.ui.key_parser import KeyRepeat
-from groundstation.ui.keynames import format_key
+from groundstation.ui.keys.keynames import format_key
+from groundstation.ui.look.colours import DIM, YELLOW
 from groundstation.ui.screens.screen import ScreenContext
+from groundstation.ui.terminal.key_parser import KeyRepeat
 
 NEXT_VEHICLE = "n"
 

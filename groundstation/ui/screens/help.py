@@ -12,8 +12,8 @@ from textual.widgets import Static
 
 from groundstation.actions import ACTIONS
 from groundstation.screens import SCREENS, ScreenRow
-from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
-from groundstation.ui.keynames import format_key
+from groundstation.ui.keys.keynames import format_key
+from groundstation.ui.look.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.navigation import load_screen
 from groundstation.ui.screens.screen import ConsoleScreen
 

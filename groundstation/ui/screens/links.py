@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterable, Sequence
 
 from textual import events
+from textual.containers import Horizontal
 from textual.widget import Widget
 
 from groundstation.actions import ACTIONS
@@ -13,13 +14,17 @@ from groundstation.intents.links import CloseLink
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.ui.alerts import handover_text
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
-from groundstation.ui.key_parser import KeyRepeat
-from groundstation.ui.keynames import format_key
+from groundstation.ui.keys.keynames import format_key
 from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.panels import PanelHeights, share_rows
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.terminal.key_parser import KeyRepeat
+from groundstation.ui.where import build_where
 from groundstation.ui.widgets.control_panel import ControlPanel, ControlPanelValue
 from groundstation.ui.widgets.link_table import LinkTable, LinkTableValue
+from groundstation.ui.widgets.message_bytes import MessageBytes
+from groundstation.ui.widgets.plan_map import PlanMap
+from groundstation.ui.widgets.plan_map_value import PlanMapValue
 from groundstation.ui.widgets.vehicle_table import VehicleTable, VehicleTableValue
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.links import (
@@ -31,6 +36,15 @@ from groundstation.views.links import (
     VehiclesRequest,
     VehiclesView,
 )
+from groundstation.views.messages import MessagesPage, MessagesRequest
+
+WIDE, TALL = 120, 36
+"""Columns from which there is a panel beside the vehicles and the control, and rows from which it gets its own."""
+
+BYTES_ROWS = 9
+"""Messages that are listed by their bytes."""
+BYTES_SOURCES = 60
+"""Rows that are requested for it: the same message of several vehicles is one line."""
 
 CHROME_ROWS = 4
 """Status line, tabs, hint and footer."""
@@ -51,6 +65,7 @@ COMMANDS = ("vehicle.next", "vehicle.control", "vehicle.release", "vehicle.give"
 class LinksScreen(ConsoleScreen):
     """Three panels; TAB chooses the one that has the arrows and the room."""
 
+    CSS_PATH = "links.tcss"
     KEYS = (
         ScreenKey("enter", "Choose", "Choose the vehicle under the cursor; the one before gets neutral first"),
         ScreenKey("tab", "Panel", "Next panel: vehicles, links, control"),
@@ -63,7 +78,15 @@ class LinksScreen(ConsoleScreen):
         self._vehicles = VehicleTable(VehicleTableValue(), id="vehicle-table")
         self._links = LinkTable(LinkTableValue(), id="link-table")
         self._control = ControlPanel(ControlPanelValue(), id="control-panel")
+        self._where = PlanMap(PlanMapValue(), id="where")
+        self._bytes = MessageBytes(None, id="message-bytes")
         self._panels: tuple[Widget, ...] = (self._vehicles, self._links, self._control)
+        self._places: tuple[Widget, ...] = (
+            Horizontal(self._vehicles, self._where),
+            self._links,
+            Horizontal(self._control, self._bytes),
+        )
+        """Rows of the screen: a panel, with what is beside it where there is room."""
         self._chosen = 0
         self._cursor: int | None = None
         """System id under the cursor; None: it follows the selected vehicle."""
@@ -74,13 +97,16 @@ class LinksScreen(ConsoleScreen):
     # ---- what all screens define ----
 
     def compose_body(self) -> Iterable[Widget]:
-        """Lay out the panels below each other."""
-        titles = ("vehicles", "links", "who is in control")
-        return [self.build_panel(*pair) for pair in zip(self._panels, titles, strict=True)]
+        """Lay out the panels below each other, and beside two of them what a wide terminal has room for."""
+        titles = ("vehicles", "links", "who is in control", "where", "bytes by message")
+        for panel, title in zip((*self._panels, self._where, self._bytes), titles, strict=True):
+            self.build_panel(panel, title)
+        return self._places
 
     def requests(self) -> tuple[ViewRequest, ...]:
-        """Return the requests for all three views."""
-        return VehiclesRequest(), LinksRequest(), ControlRequest()
+        """Return the requests for the views of the panels that are shown."""
+        wide = (MessagesRequest(order="bytes", count=BYTES_SOURCES),) if self.size.width >= WIDE else ()
+        return VehiclesRequest(), LinksRequest(), ControlRequest(), *wide
 
     def show_view(self, view: View) -> None:
         """Keep a view for its panel."""
@@ -93,6 +119,9 @@ class LinksScreen(ConsoleScreen):
             case ControlView():
                 keys = (self._state.key("vehicle.control"), self._state.key("vehicle.release"))
                 self._control.show(ControlPanelValue(view, *keys, self._control.value.top))
+            case MessagesPage() if view.order == "bytes":
+                self._bytes.show(view)
+                self._bytes.border_subtitle = f"{view.bytes / 1000:.1f} kB/s"
         self._lay_out()
 
     def show_body(self, now: DisplayState) -> None:
@@ -224,6 +253,8 @@ class LinksScreen(ConsoleScreen):
         self._vehicles.show(VehicleTableValue(view, selected, cursor, snapshot.waiting or ""))
         more = f" of {len(known) + view.not_shown}" if view and view.not_shown else ""
         self._vehicles.border_subtitle = f"{len(known)}{more} heard" if view and known else ""
+        heading = snapshot.vehicle.heading if snapshot.vehicle else None
+        self._where.show(build_where(view, selected, heading, ascii=self._state.ascii))
 
     def _show_links(self, view: LinksView | None) -> None:
         """Show the links with the cursor in sight, if it is in this panel."""
@@ -240,13 +271,15 @@ class LinksScreen(ConsoleScreen):
 
     def _lay_out(self) -> None:
         """Share the rows: all panels as they need it, else the chosen one gets the room."""
-        width = max(1, self.size.width - 2)
-        wanted = (self._vehicles.wanted, self._links.wanted(width), self._control.wanted)
+        width, wide = max(1, self.size.width - 2), self.size.width >= WIDE
+        beside = BYTES_ROWS if wide and self.size.height >= TALL else 0
+        wanted = (self._vehicles.wanted, self._links.wanted(width), max(beside, self._control.wanted))
         heights = share_rows(PanelHeights(wanted, least=(4, 3, 3)), self._chosen, self.size.height - CHROME_ROWS)
-        for number, (panel, height) in enumerate(zip(self._panels, heights, strict=True)):
-            panel.set_class(number == self._chosen, "-chosen")
-            panel.display = height > 0
-            panel.styles.height = height
+        self._where.display = self._bytes.display = wide
+        for number, (place, height) in enumerate(zip(self._places, heights, strict=True)):
+            self._panels[number].set_class(number == self._chosen, "-chosen")
+            place.display = height > 0
+            place.styles.height = height
 
 
 def describe_links(view: LinksView) -> str:

@@ -12,19 +12,21 @@ from textual.widget import Widget
 
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.map.drive_keys import DriveKeys
-from groundstation.ui.map.fields import Field, fields_of, value_of
+from groundstation.ui.map.fields import ItemField, fields_of, value_of
 from groundstation.ui.map.file_keys import FileKeys
 from groundstation.ui.map.item_edit import change_item, choices
 from groundstation.ui.map.keys import MAP_KEYS, STEPS
+from groundstation.ui.map.look_keys import LookKeys
 from groundstation.ui.map.model import MODE_KEYS, MapModel
 from groundstation.ui.map.picture import build_map, cursor_lines, layer_title
 from groundstation.ui.map.tables import build_item, build_plans, build_progress, build_table
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.line_field import FieldUse
-from groundstation.ui.widgets.plan_map import PlanMap, PlanMapValue
+from groundstation.ui.widgets.plan_map import PlanMap
+from groundstation.ui.widgets.plan_map_value import PlanMapValue
 from groundstation.ui.widgets.plan_panels import LinesPanel, PanelValue, ProgressStrip, ProgressValue, TextLine
 from groundstation.ui.widgets.plan_table import PlanTable, PlanTableValue
 from groundstation.views.base import View, ViewRequest
@@ -57,6 +59,7 @@ class MapScreen(ConsoleScreen):
         self._drawn_for = Size(0, 0)
         self._drive = DriveKeys(self, self._model, lambda: self._state.snapshot.vehicle)
         self._files = FileKeys(self, self._model, context.folder)
+        self._look = LookKeys(self, self._model)
 
     # ---- what all screens define ----
 
@@ -97,7 +100,7 @@ class MapScreen(ConsoleScreen):
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""
         key, repeated = event.key, isinstance(event, KeyRepeat)
-        if key == "escape" and self._chosen:
+        if key == "escape" and self._chosen and not self._model.filter.text:
             self._chosen = 1 if self._item is self._panels[self._chosen] and not self._narrow else 0
         elif not (self._move(key) or (not repeated and self._perform(key))):
             return False
@@ -107,11 +110,13 @@ class MapScreen(ConsoleScreen):
 
     def _perform(self, key: str) -> bool:
         """Perform a key that acts once, however long it is held."""
-        if key in _ACTIONS:
+        if key in _ITEM_EDITS and self._model.hides_selected:
+            self.say("the filter hides the selected item: Escape shows all")
+        elif key in _ACTIONS:
             _ACTIONS[key](self)
         elif key in MODE_KEYS:
             self._drive.choose_mode(key)
-        elif not (self._drive.perform(key) or self._files.perform(key)):
+        elif not (self._look.perform(key) or self._drive.perform(key) or self._files.perform(key)):
             return False
         return True
 
@@ -141,18 +146,18 @@ class MapScreen(ConsoleScreen):
             self._open_field(self._fields[min(self._field, len(self._fields) - 1)])
 
     @property
-    def _fields(self) -> Sequence[Field]:
+    def _fields(self) -> Sequence[ItemField]:
         row = self._model.editor.row
         return fields_of(row.item) if row is not None else ()
 
-    def _open_field(self, field: Field) -> None:
+    def _open_field(self, field: ItemField) -> None:
         row = self._model.editor.row
         if row is not None:
             text = value_of(row.item, field, self._model.first) if field.key != "command" else ""
             use = FieldUse(lambda typed: self._change(field, typed))
             self.field.open(use, text=text, placeholder=choices(self._model, field))
 
-    def _change(self, field: Field, text: str) -> None:
+    def _change(self, field: ItemField, text: str) -> None:
         self.say(change_item(self._model, field, text))
         self._model.settle()
         self._show(forced=True)
@@ -182,6 +187,10 @@ class MapScreen(ConsoleScreen):
         for intent in intents:
             self.context.send(intent)
 
+    def redraw(self) -> None:
+        """Draw at once what has changed."""
+        self._show(forced=True)
+
     # ---- drawing ----
 
     @property
@@ -189,6 +198,7 @@ class MapScreen(ConsoleScreen):
         return self.size.width < NARROW
 
     def _show(self, *, forced: bool) -> None:
+        self._model.replay = self._state.snapshot.replay is not None
         now, size = time.monotonic(), self._map.size
         forced = forced or size != self._drawn_for
         self._drawn_for = size
@@ -218,7 +228,9 @@ class MapScreen(ConsoleScreen):
         self._table.show(table.with_reason(self._map.value.note))
         self._table.border_title = model.plan_name
         diff = model.editor.diff(model.editor.layer)
-        self._table.border_subtitle = f"{len(model.editor.rows())} items" + (f" · {diff.text}" if diff.count else "")
+        count, found = len(model.editor.rows()), f"/{model.filter.text} {len(model.shown_rows)} of "
+        items = f"{found if model.filter.text else ''}{count} items"
+        self._table.border_subtitle = items + (f" · {diff.text}" if diff.count else "")
         self._item.show(build_item(model, self._field if self._chosen == 2 else None))
         self._item.border_title = f"item {model.editor.selected + model.first}" if model.editor.row else "item"
         self._plans.show(build_plans(model))
@@ -236,12 +248,7 @@ _ACTIONS: dict[str, Callable[[MapScreen], None]] = {
     "ctrl+r": MapScreen._redo,
     "less_than_sign": lambda screen: screen.say(None if screen._model.editor.move(-1) else "it cannot move up"),
     "greater_than_sign": lambda screen: screen.say(None if screen._model.editor.move(1) else "it cannot move down"),
-    "e": lambda screen: screen._model.editor.next_layer(),
-    "b": lambda screen: screen._model.ground.measure(),
-    "c": lambda screen: screen._model.ground.follow(),
-    "f": lambda screen: screen._model.ground.fit(),
-    "plus": lambda screen: screen._model.ground.zoom(-1),
-    "equals_sign": lambda screen: screen._model.ground.zoom(-1),
-    "minus": lambda screen: screen._model.ground.zoom(1),
 }
-"""Key -> what it does here. Those that go to the vehicle are in map/drive_keys.py, files in map/file_keys.py."""
+"""Key -> what it does here. Others are in map/drive_keys.py (to the vehicle), file_keys.py and look_keys.py."""
+_ITEM_EDITS = ("m", "x", "less_than_sign", "greater_than_sign")
+"""Keys that edit the selected item."""

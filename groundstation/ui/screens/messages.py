@@ -12,10 +12,11 @@ from textual.widget import Widget
 from groundstation.ui.charts.model import ChartsModel
 from groundstation.ui.display_state import ScreenKey
 from groundstation.ui.list_keys import rows_to_move
-from groundstation.ui.message_calls import MessageCalls, parse_rate
-from groundstation.ui.message_csv import MessageCsv
-from groundstation.ui.message_field_cursor import FieldCursor
-from groundstation.ui.messages_model import MessagesModel, key_of
+from groundstation.ui.messages.calls import MessageCalls, parse_rate
+from groundstation.ui.messages.csv_file import MessageCsv
+from groundstation.ui.messages.field_cursor import FieldCursor
+from groundstation.ui.messages.model import MessagesModel, key_of
+from groundstation.ui.messages.state import describe_silence, describe_traffic
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.ui.widgets.message_detail import MessageDetail, MessageDetailValue, detail_lines
@@ -37,7 +38,7 @@ class MessagesScreen(ConsoleScreen):
 
     CSS_PATH = "messages.tcss"
     KEYS = (
-        ScreenKey("slash", "Filter", "Show messages by words: a name, >5Hz, age>3, src:1/1, field:volt, sent"),
+        ScreenKey("slash", "Filter", "Show messages by words: a name, >5Hz, age>3, src:1/1, field:volt, sent, lost"),
         ScreenKey("enter", "Open", "Open or close the source"),
         ScreenKey("o", "Order", "Next order: by source, name, rate, bytes, age"),
         ScreenKey("tab", "Fields", "Choose a field with ↑ ↓ (an item of an array: ← →), or a message again"),
@@ -107,7 +108,8 @@ class MessagesScreen(ConsoleScreen):
     @property
     def advice(self) -> str:
         """Return what the table shows."""
-        parts = ["FROZEN, z goes on"] if self._frozen else []
+        traffic = describe_traffic(self._model.page, self._state.snapshot.links)
+        parts = [*(["FROZEN, z goes on"] if self._frozen else []), *([traffic] if traffic else [])]
         parts += [self._csv.status] if self._csv.status else []
         parts += [f"order: {self._model.order}"] if self._model.order != MESSAGE_ORDERS[0] else []
         parts += [f"filter “{self._model.text}”"] if self._model.text else []
@@ -128,6 +130,11 @@ class MessagesScreen(ConsoleScreen):
         else:
             return False
         self._show_table()
+        return True
+
+    def filter_by(self, text: str) -> bool:
+        """Show the rows that the text describes."""
+        self._model.set_filter(text)
         return True
 
     def _open_filter(self) -> None:
@@ -240,7 +247,8 @@ class MessagesScreen(ConsoleScreen):
         model, page = self._model, self._model.page
         rows = model.window(self._height)
         selected = next((at for at, row in enumerate(rows) if key_of(row) == model.selected), -1)
-        self._table.show(MessageTableValue(rows, selected, model.order == MESSAGE_ORDERS[0], model.closed))
+        note = "" if model.text else describe_silence(model.page, self._state.snapshot.links)
+        self._table.show(MessageTableValue(rows, selected, model.order == MESSAGE_ORDERS[0], model.closed, note))
         self._table.border_subtitle = f"{page.kinds} kinds · {page.rate:.0f}/s · {page.bytes / 1000:.1f} kB/s"
 
     def _show_message(self, view: MessageView) -> None:

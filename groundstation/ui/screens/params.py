@@ -75,8 +75,7 @@ class ParamsScreen(ConsoleScreen):
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out the panels, and show the rows at the size that the table has then."""
-        self.set_class(event.size.width >= WIDE, "-wide")
-        self.set_class(event.size.width >= SIDE, "-side")
+        self.update_classes({"-wide": event.size.width >= WIDE, "-side": event.size.width >= SIDE})
         self.call_after_refresh(self._show)
 
     def show_body(self, now: DisplayState) -> None:
@@ -107,6 +106,11 @@ class ParamsScreen(ConsoleScreen):
         elif not (event.key == "escape" and self._panels.go_back()):
             return False
         self._show()
+        return True
+
+    def filter_by(self, text: str) -> bool:
+        """Show the rows that the text describes."""
+        self._model.set_filter(text)
         return True
 
     def _open_filter(self) -> None:
@@ -183,9 +187,8 @@ class ParamsScreen(ConsoleScreen):
             self.say(self._model.favourites_warning)
         self._model.set_height(self._widgets.height_of("table"))
         self._panels.has_file = bool(self._model.page and self._model.page.file)
-        for name in ("groups", "compare"):
-            self.set_class(self._panels.chosen == name, f"-at-{name}")
-        self.set_class(self._panels.has_file, "-file")
+        at = {f"-at-{name}": self._panels.chosen == name for name in ("groups", "compare")}
+        self.update_classes({**at, "-file": self._panels.has_file})
         self._widgets.show(self._model, self._panels, armed=self._armed, room=self._pending_room)
 
     @property

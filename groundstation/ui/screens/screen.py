@@ -19,9 +19,9 @@ from groundstation.intents.union import AnyIntent
 from groundstation.screens import find_screen
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.instruments import CHROME, InstrumentRow
-from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.question import ANSWER_WITHIN, Question
 from groundstation.ui.request_numbers import RequestNumbers
+from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.ui.widgets.line_field import LineField
 from groundstation.views.base import View, ViewRequest
@@ -45,6 +45,10 @@ class ScreenContext:
     """Returns the newest display state: what a screen shows first."""
     folder: Path
     """Where screens save files."""
+    open_log: Callable[[Path | None, str], str] = lambda file, at: ""
+    """Shows a telemetry log from a time on, "" for its start, in place of this app; returns why not, or ""."""
+    dialect: str | None = None
+    """File of a further dialect, for the programs that a screen starts."""
     numbers: RequestNumbers = field(default_factory=RequestNumbers)
     """Numbers for requests to the station."""
     kept: dict[type, Any] = field(default_factory=dict)
@@ -122,6 +126,10 @@ class ConsoleScreen(Screen[None]):
     def release_key(self, key: str) -> None:
         """Handle the release of a key, on terminals that report it; also while something else has the keys."""
 
+    def filter_by(self, text: str) -> bool:
+        """Show only what a text describes, "" all; return False if this screen has no filter."""
+        return False
+
     def leave(self) -> None:
         """Stop what must not go on while this screen is not on top."""
 
@@ -137,6 +145,10 @@ class ConsoleScreen(Screen[None]):
         """Show a note in the hint line for some seconds; None: there is nothing to say."""
         if text is not None:
             self._note, self._note_until = text, time.monotonic() + NOTE_TIME
+
+    def open_log(self, file: Path | None, at: str = "") -> None:
+        """Show a telemetry log in this terminal until it is quit, or say why not."""
+        self.say(self.context.open_log(file, at) or None)
 
     def ask(self, text: str | Callable[[], str], perform: Callable[[], None], *, word: str = "") -> None:
         """Ask before an action: `y`, or `word` letter by letter, performs it."""
@@ -165,7 +177,8 @@ class ConsoleScreen(Screen[None]):
         return (self.field.is_attached and self.field.is_open) or bool(self.question and self.question.word)
 
     def on_screen_suspend(self, event: events.ScreenSuspend) -> None:
-        """Something else is on top now."""
+        """Something else is on top now: a question is not answered there."""
+        self._question = None
         self.leave()
 
     def on_key(self, event: events.Key) -> None:
@@ -178,6 +191,11 @@ class ConsoleScreen(Screen[None]):
         event.stop()
         if self.is_current:
             self.show_state(self._state)
+
+    def on_paste(self, event: events.Paste) -> None:
+        """Give pasted text to the field; nothing else takes any."""
+        if self.field.is_attached and self.field.is_open:
+            self.field.take_paste(event)
 
     def _answer(self, event: events.Key) -> bool:
         question = self.question
@@ -209,9 +227,13 @@ class ConsoleScreen(Screen[None]):
         row = find_screen(f"{type(self).__module__}:{type(self).__name__}")
         return ScreenInfo(row.id if row else type(self).__name__, self.KEYS, self.hint, self.takes_text)
 
+    def keep_state(self, now: DisplayState) -> None:
+        """Take a state to show later: what a hidden screen draws, Textual paints again on the one on top of it."""
+        self._state = replace(now, screen=self.describe())
+
     def show_state(self, now: DisplayState) -> None:
         """Give every instrument its value; each redraws only the lines that changed."""
-        self._state = replace(now, screen=self.describe())
+        self.keep_state(now)
         self.show_rows()
         self.show_body(self._state)
 

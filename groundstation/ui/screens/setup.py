@@ -11,22 +11,16 @@ from textual.widget import Widget
 
 from groundstation.actions import ACTIONS
 from groundstation.doctor.report import format_report
-from groundstation.intents.setup import (
-    Calibrate,
-    ConfirmPosition,
-    EndCalibration,
-    RebootVehicle,
-    RunChecks,
-    StopMotorTest,
-)
+from groundstation.intents.setup import RebootVehicle, RunChecks, StopMotorTest
 from groundstation.ui.display_state import DisplayState, ScreenKey
-from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.params.kept import keep_params
 from groundstation.ui.params.pending import PendingChange
 from groundstation.ui.save_file import save_text
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.setup.calibration_keys import CalibrationKeys
 from groundstation.ui.setup.model import MOTOR_KEYS, SetupModel
+from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.setup.chain import ChainPanel, ChainValue, counts
 from groundstation.ui.widgets.setup.checks import ChecksPanel, ChecksValue, checks_age
 from groundstation.ui.widgets.setup.lists import CALIBRATION_KEYS, CalibrationPanel, FactsPanel, ListValue, request_text
@@ -38,7 +32,7 @@ WIDE, WIDEST = 120, 180
 """Columns from which on there are further panels, and from which on these are wider."""
 
 PING_STEP = 0.005
-"""s in which the terminal's round trip is told to the station: each other value is a request of its own."""
+"""s in which the terminal's round trip is sent to the station: each other value is a request of its own."""
 
 
 class SetupScreen(ConsoleScreen):
@@ -57,12 +51,14 @@ class SetupScreen(ConsoleScreen):
         ScreenKey("H", "Level", "Calibrate the level"),
         ScreenKey("Y", "Gyro", "Calibrate the gyros, at rest"),
         ScreenKey("P", "Pressure", "Calibrate the pressure sensor"),
+        ScreenKey("R", "Sticks", "Calibrate the RC sticks: ends and centres become pending parameters"),
     )
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
         self._model = SetupModel()
         self._params = keep_params(context)
+        self._calibrations = CalibrationKeys(self, self._model, self._params)
         self._chain = ChainPanel(ChainValue(), id="chain")
         self._checks = ChecksPanel(ChecksValue(), id="checks")
         self._motors = MotorsPanel(MotorsValue(), id="motors")
@@ -130,7 +126,7 @@ class SetupScreen(ConsoleScreen):
         elif event.key in _ACTIONS:
             _ACTIONS[event.key](self)
         elif event.key in _CALIBRATIONS:
-            self._calibrate(_CALIBRATIONS[event.key])
+            self._calibrations.begin(_CALIBRATIONS[event.key])
         else:
             return False
         self._show()
@@ -149,10 +145,10 @@ class SetupScreen(ConsoleScreen):
     # ---- the chain ----
 
     def _do(self) -> None:
-        view, row = self._model.view, self._model.selected
-        if view is not None and view.waits_for_position:
-            self.context.send(ConfirmPosition(view.system))
-        elif row is not None and row.action:
+        row = self._model.selected
+        if self._calibrations.confirm():
+            return
+        if row is not None and row.action:
             self._perform(row)
         elif row is not None:
             self.say(row.advice or "nothing to do here")
@@ -220,21 +216,7 @@ class SetupScreen(ConsoleScreen):
         else:
             self._propose(row.reversal)
 
-    # ---- calibration and the vehicle ----
-
-    def _calibrate(self, name: str) -> None:
-        view = self._model.view
-        row = next((each for each in view.calibrations if each.kind.partition("-")[0] == name), None) if view else None
-        if view is None or row is None or row.state == "cannot":
-            self.say("this vehicle cannot calibrate that" if row else "no vehicle yet")
-            return
-        intent = Calibrate(self.context.numbers.take(), view.system, row.kind)
-        self.ask(f"calibrate {row.title} of {view.name}", lambda: self.context.send(intent))
-
-    def _end_compass(self, *, accept: bool) -> None:
-        view = self._model.view
-        if view is not None and view.system:
-            self.context.send(EndCalibration(view.system, accept))
+    # ---- the vehicle ----
 
     def _reboot(self) -> None:
         view = self._model.view
@@ -278,8 +260,8 @@ _ACTIONS: dict[str, Callable[[SetupScreen], None]] = {
     "plus": lambda screen: screen._model.change_strength(1),
     "minus": lambda screen: screen._model.change_strength(-1),
     "v": SetupScreen._reverse,
-    "W": lambda screen: screen._end_compass(accept=True),
-    "x": lambda screen: screen._end_compass(accept=False),
+    "W": lambda screen: screen._calibrations.write(),
+    "x": lambda screen: screen._calibrations.cancel(),
     "B": SetupScreen._reboot,
     "S": SetupScreen._save_report,
 }

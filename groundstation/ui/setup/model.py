@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from groundstation.intents.setup import TurnMotor
 from groundstation.intents.union import AnyIntent
-from groundstation.views.doctor import DoctorRow, DoctorView, Health, MotorRow
+from groundstation.views.doctor import DoctorRow, DoctorView, MotorRow
 from groundstation.views.requests import RequestLine
+from link.runtime.diagnosis import Health
 
 STRENGTH, STRENGTH_STEP, LEAST = 0.12, 0.02, 0.04
 """Throttle of a motor test, its step and its least value: 12 % turns most motors, and a wheel in the air slowly."""

@@ -10,8 +10,8 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.ui.alerts import Alert, AlertLevel, active_alerts
-from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, WARNING, YELLOW, badge, style
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import AMBER, DEEP_RED, PANEL, TEXT, WARNING, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, strip
 
 LOOKS: dict[AlertLevel, Callable[[], Style]] = {

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.ui.alerts import Alert
-from groundstation.ui.colours import DIM, style
+from groundstation.ui.look.colours import DIM, style
 from groundstation.ui.widgets.alert import LOOKS, MARKS
 from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.ui.wrap import wrap

@@ -9,7 +9,7 @@ from rich.segment import Segment
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import style as style_of
+from groundstation.ui.look.colours import style as style_of
 
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """Bit of each dot in U+2800, by row and column of the cell (Unicode standard, Braille patterns)."""

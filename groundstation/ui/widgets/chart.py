@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import DIM, LINE, style
+from groundstation.ui.look.colours import DIM, LINE, style
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 
@@ -19,6 +19,12 @@ AXIS = 6
 """Cells for the scale at the left."""
 
 Samples = tuple[tuple[float, tuple[float | None, ...]], ...]
+
+
+NAMES_APART = 8
+"""Rows from which the names have a row of their own, above the scale."""
+NOISE = 0.1
+"""Share of a step by which values may leave the scale: a speed that is measured is a little below 0, too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,28 +73,33 @@ class Chart(Instrument[ChartValue]):
         """Draw grid and scale, then the lines, then their names with the newest values."""
         canvas, shown = Canvas(width, height), self.value.shown
         low, high = _scale([value for _, values in shown for value in values if value is not None], self._step)
-        self._draw_grid(canvas, low, high)
+        top = 1 if height >= NAMES_APART else 0
+        self._draw_grid(canvas, low, high, top)
         if not shown:
             canvas.write(AXIS + 1, 0, "nothing yet", style(DIM))
         else:
             for number, series in reversed(list(enumerate(self._series))):
-                self._draw_series(canvas, number, series, shown, (low, high))
+                self._draw_series(canvas, number, series, shown, (low, high), top)
             self._draw_names(canvas, shown)
         return canvas.strips()
 
-    def _draw_grid(self, canvas: Canvas, low: float, high: float) -> None:
-        for row, value in ((0, high), (canvas.height - 1, low)):
+    def _draw_grid(self, canvas: Canvas, low: float, high: float, top: int) -> None:
+        bottom = canvas.height - 1
+        for row, dot, value in ((top, top * 4, high), (bottom, bottom * 4 + 3, low)):
             canvas.write(0, row, f"{value:{AXIS - 1}.1f}", style(DIM))
             for x in range(AXIS * 2, canvas.across, 8):
-                canvas.dot(x, row * 4 + (3 if row else 0), style(LINE))
+                canvas.dot(x, dot, style(LINE))
 
     def _draw_series(
-        self, canvas: Canvas, number: int, series: Series, shown: Samples, scale: tuple[float, float]
+        self, canvas: Canvas, number: int, series: Series, shown: Samples, scale: tuple[float, float], top: int
     ) -> None:
-        newest, (low, high) = shown[-1][0], scale
-        across, down = canvas.across - AXIS * 2, canvas.down - 1
+        newest, high, size = shown[-1][0], scale[1], scale[1] - scale[0]
+        across, down = canvas.across - AXIS * 2, canvas.down - 1 - top * 4
         points = [
-            (AXIS * 2 + (1 - (newest - at) / self.value.span) * (across - 1), (high - value) / (high - low) * down)
+            (
+                AXIS * 2 + (1 - (newest - at) / self.value.span) * (across - 1),
+                top * 4 + _clamp((high - value) / size) * down,
+            )
             for at, values in shown
             if (value := values[number]) is not None
         ]
@@ -109,9 +120,14 @@ class Chart(Instrument[ChartValue]):
         canvas.write(canvas.width - len(span), canvas.height - 1, span, style(DIM))
 
 
+def _clamp(share: float) -> float:
+    return max(0.0, min(1.0, share))
+
+
 def _scale(values: Sequence[float], step: float) -> tuple[float, float]:
-    """Return bounds on whole steps around all values, at least two steps apart."""
+    """Return bounds on whole steps around all values, at least two steps apart; NOISE does not make a step."""
     if not values:
         return 0.0, 2 * step
-    low, high = math.floor(min(values) / step) * step, math.ceil(max(values) / step) * step
+    low = math.floor(min(values) / step + NOISE) * step
+    high = math.ceil(max(values) / step - NOISE) * step
     return (low, high) if high - low >= 2 * step else (low, low + 2 * step)

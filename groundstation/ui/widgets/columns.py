@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import DIM, style
+from groundstation.ui.look.colours import DIM, style
 from groundstation.ui.widgets.instrument import Part, strip
 from groundstation.ui.wrap import clean
 

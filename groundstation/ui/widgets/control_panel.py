@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, DIM, GREEN, RED, TEXT, style
+from groundstation.snapshot.signing import SigningState
+from groundstation.ui.look.colours import AMBER, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.widgets.vehicle_table import age_text
 from groundstation.views.links import ControlView, Program
@@ -45,7 +46,7 @@ class ControlPanel(Instrument[ControlPanelValue]):
         if view is None:
             return [[(" waiting for the station", style(DIM))]]
         if not view.vehicle:
-            return [[(" no vehicle yet", style(DIM))], *map(_fact, _others(view))]
+            return [[(" no vehicle yet", style(DIM))], *map(_fact, (*_signing(view), *_others(view)))]
         return [self._driver(view), *_warnings(view), *map(_fact, (*_takeover(view), *_signing(view), *_others(view)))]
 
     def _driver(self, view: ControlView) -> list[Part]:
@@ -108,12 +109,18 @@ def _takeover(view: ControlView) -> Iterator[tuple[str, str, str]]:
 
 
 def _signing(view: ControlView) -> Iterator[tuple[str, str, str]]:
-    if view.signs:
-        yield "signing", "the vehicle signs; this station cannot sign: it may ignore commands", AMBER
-    elif view.signing:
-        yield "signing", f"not this vehicle; systems that sign: {', '.join(map(str, view.signing))}", TEXT
-    else:
-        yield "signing", "off: nobody signs", TEXT
+    """Yield the state, what was refused beside it, how the clocks differ, and who signs if the vehicle does not."""
+    known = view.signing
+    if known is None:
+        yield "signing", "no vehicle signs, and no frame was refused", DIM
+        return
+    yield "signing", known.text, TEXT if known.well or known.state is SigningState.ON else AMBER
+    if known.refused and known.state is SigningState.ON:
+        yield "refused", f"{known.refused} with its id in 5 s: they are somebody else's, or copies", AMBER
+    if known.clock:
+        yield "clock", known.clock, TEXT
+    if known.state is SigningState.OFF and view.signing_systems:
+        yield "", f"systems that sign: {', '.join(map(str, view.signing_systems))}", TEXT
 
 
 def _others(view: ControlView) -> Iterator[tuple[str, str, str]]:

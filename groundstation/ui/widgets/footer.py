@@ -9,9 +9,9 @@ from textual.strip import Strip
 
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import Keymap
-from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
 from groundstation.ui.display_state import DRIVE_INFO, DisplayState, ScreenInfo
-from groundstation.ui.keynames import format_key, is_character, main_key
+from groundstation.ui.keys.keynames import format_key, is_character, main_key
+from groundstation.ui.look.colours import DIM, PANEL, RED, TEXT, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 FooterItem = tuple[str | None, tuple[str, ...]]
@@ -34,6 +34,9 @@ FOOTER_ITEMS: tuple[FooterItem, ...] = (
 )
 """The most important first: the last ones may not fit."""
 
+REPLAY_ACTIONS = ("app.goto", "view.pane", "vehicle.next", "app.help", "app.quit")
+"""On the Drive screen while a log is shown."""
+
 
 @dataclass(frozen=True, slots=True)
 class FooterValue:
@@ -44,13 +47,16 @@ class FooterValue:
     place: str = ""
     """Which of several vehicles is selected, e.g. "2/16"; "" for one alone."""
     screen: ScreenInfo = DRIVE_INFO
+    replay: bool = False
+    """A log is shown: keys command nothing."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> FooterValue:
         """Return the footer of a display state."""
         vehicle, systems = now.snapshot.vehicle, now.snapshot.vehicles
-        if vehicle is None:
-            return cls(now.keymap, screen=now.screen)
+        replay = now.snapshot.replay is not None
+        if vehicle is None or replay:
+            return cls(now.keymap, screen=now.screen, replay=replay)
         several = len(systems) > 1 and vehicle.system in systems
         place = f"{systems.index(vehicle.system) + 1}/{len(systems)}" if several else ""
         return cls(now.keymap, vehicle.armed, place, now.screen)
@@ -74,8 +80,9 @@ class KeyFooter(Instrument[FooterValue]):
         if screen.drives:
             yield from (self._item(label, ids) for label, ids in self._drive_items())
             return
-        yield _parts(self._stop_key(), "Stop", RED)
-        yield self._item("E-STOP", ("stop.emergency",))
+        yield _parts(self._stop_key(), "Pause" if self.value.replay else "Stop", RED)
+        if not self.value.replay:
+            yield self._item("E-STOP", ("stop.emergency",))
         if screen.text:
             yield _parts("ENTER", "Keep", YELLOW)
             yield _parts("ESC", "Clear", YELLOW)
@@ -86,6 +93,8 @@ class KeyFooter(Instrument[FooterValue]):
 
     def _drive_items(self) -> list[FooterItem]:
         """Return the table; with several vehicles the key that selects the next one takes the place of the speed."""
+        if self.value.replay:
+            return [("Pause", ("drive.stop",)), *((None, (name,)) for name in REPLAY_ACTIONS)]
         if not self.value.place:
             return list(FOOTER_ITEMS)
         following: FooterItem = (f"Vehicle {self.value.place}", ("vehicle.next",))

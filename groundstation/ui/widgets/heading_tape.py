@@ -7,7 +7,7 @@ import math
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
-from groundstation.ui.colours import BLUE, DIM, TEXT, WHITE, YELLOW, style
+from groundstation.ui.look.colours import BLUE, DIM, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none, strip
 
 DEGREES_PER_CELL = 3

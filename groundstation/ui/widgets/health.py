@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from textual.strip import Strip
 
-from groundstation.drive_views import HealthLine
-from groundstation.ui.colours import AMBER, DIM, GREEN, TEXT, style
+from groundstation.snapshot.drive import HealthLine
+from groundstation.ui.look.colours import AMBER, DIM, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.ui.wrap import clean
 

@@ -9,7 +9,7 @@ from itertools import groupby
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
-from groundstation.ui.colours import DIM, GROUND, SKY, WHITE, style
+from groundstation.ui.look.colours import DIM, GROUND, SKY, WHITE, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 HALF_VIEW = math.radians(25)

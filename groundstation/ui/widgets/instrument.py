@@ -12,7 +12,7 @@ from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
-from groundstation.ui.colours import style, theme_changes
+from groundstation.ui.look.colours import style, theme_changes
 
 Value = TypeVar("Value")
 
@@ -58,13 +58,14 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         if value == self._value:
             return
         self._value = value
-        if not self.size or self._drawn_for != (self.size, theme_changes()):  # hidden, or new: render_line draws later
+        size = self.size  # once: the compositor is asked for it
+        if not size or self._drawn_for != (size, theme_changes()):  # hidden, or new: render_line draws later
             self._drawn_for = (Size(0, 0), 0)
             self.refresh()
             return
-        old, new = self._strips, self.draw(*self.size)
+        old, new = self._strips, self.draw(*size)
         self._strips = new
-        changed = [Region(0, y, self.size.width, 1) for y, (a, b) in enumerate(zip(old, new, strict=False)) if a != b]
+        changed = [Region(0, y, size.width, 1) for y, (a, b) in enumerate(zip(old, new, strict=False)) if a != b]
         if len(old) != len(new):
             self.refresh()
         elif changed:
@@ -76,7 +77,8 @@ class Instrument(Widget, Generic[Value], can_focus=False):
 
     def render_line(self, y: int) -> Strip:
         """Return one line; Textual calls this for each line that it must paint."""
-        if self._drawn_for != (self.size, theme_changes()):
-            self._drawn_for = (self.size, theme_changes())
-            self._strips = self.draw(*self.size) if self.size else []
-        return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, style())
+        size = self.size
+        if self._drawn_for != (size, theme_changes()):
+            self._drawn_for = (size, theme_changes())
+            self._strips = self.draw(*size) if size else []
+        return self._strips[y] if y < len(self._strips) else Strip.blank(size.width, style())

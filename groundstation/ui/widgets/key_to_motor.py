@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.drive_views import KeyToMotor, Timing
 from groundstation.snapshot import Snapshot, VehicleView
-from groundstation.ui.colours import AMBER, DIM, GREEN, LINE, RED, TEXT, style
+from groundstation.snapshot.drive import KeyToMotor, Timing
+from groundstation.ui.look.colours import AMBER, DIM, GREEN, LINE, RED, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 NAME, FIGURES, P99, LIMIT = 14, 6, 9, 5

@@ -11,10 +11,10 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
-from groundstation.intents.driving import DriveKeyDown, Stop
-from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, MUTED, RED, TEXT, YELLOW, badge, style
+from groundstation.intents.driving import PAD, DriveKeyDown, Stop
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.keynames import format_key, main_key
+from groundstation.ui.keys.keynames import format_key, main_key
+from groundstation.ui.look.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, MUTED, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 GRID = (
@@ -46,6 +46,8 @@ class KeycapsValue:
     open: bool = False
     ignored: bool = False
     """The key that is held does not count."""
+    gamepad: bool = False
+    """The gamepad drives."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> KeycapsValue:
@@ -61,6 +63,7 @@ class KeycapsValue:
             steering_limit=round(100 * operator.steering_limit),
             open=operator.gate_open,
             ignored=bool(operator.ignored),
+            gamepad=PAD in operator.held,
         )
 
 
@@ -106,7 +109,9 @@ class Keycaps(Instrument[KeycapsValue]):
 
 
 def style_parts(value: KeycapsValue) -> list[Part]:
-    """Return the drive style and the key that changes it."""
+    """Return the drive style and the key that changes it, or that the gamepad drives."""
+    if value.gamepad:
+        return [("GAMEPAD drives", style(GREEN, bold=True))]
     keys = value.keymap.get_keys("drive.style")
     text, look = STYLES.get(value.style, (value.style, style))
     label = (text, look())
@@ -115,6 +120,8 @@ def style_parts(value: KeycapsValue) -> list[Part]:
 
 def bound_parts(value: KeycapsValue) -> list[Part]:
     """Return what ends a drive, and how soon: without key releases only a timer can."""
+    if value.gamepad:
+        return [("stops when you let go", style(DIM))]
     if not math.isfinite(value.stop_bound):
         return [("only a key stops it", style(AMBER))]
     if value.reports_releases:

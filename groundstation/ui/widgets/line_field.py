@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from textual import events
+from textual.actions import SkipAction, parse
 from textual.widgets import Input
 
 
@@ -60,30 +62,40 @@ class LineField(Input):
         return self.screen.focused is self
 
     def take_key(self, event: events.Key) -> None:
-        """Handle what the field has not: ESC, and the keys behind the opening one in one read."""
-        if event.key == "escape":
-            event.stop()
-            self._close(submitted=False)
-        elif event.key == "enter":
-            event.stop()
-            self._close(submitted=True)
+        """Handle a key. The screen calls it for each key, so that keys of one read act in their order."""
+        if event.key in ("escape", "enter"):
+            self._close(submitted=event.key == "enter")
         elif event.is_printable and event.character:
-            event.stop()
-            self.insert_text_at_cursor(event.character)
+            self.replace(event.character, *self.selection)
         elif self._use is not None and (text := self._use.key(event.key)) is not None:
-            event.stop()
             self.value, self.cursor_position = text, len(text)
+        elif not self._edit(event.key):
+            return
+        event.stop()
+
+    def take_paste(self, event: events.Paste) -> None:
+        """Insert the first line of what was pasted."""
+        self._on_paste(event)
+
+    def _edit(self, key: str) -> bool:
+        """Perform what Input binds to a key, at once; return whether it does something."""
+        done = False
+        for binding in self._bindings.key_to_bindings.get(key, ()):
+            _, name, arguments = parse(binding.action)
+            with contextlib.suppress(SkipAction):  # scrolling, which a line does not
+                getattr(self, f"action_{name}")(*arguments)
+                done = True
+        return done
+
+    def _forward_event(self, event: events.Event) -> None:
+        """Leave keys and pastes to the screen: in a queue of its own, this widget would take them out of turn."""
+        self.screen._forward_event(event)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Pass the text on."""
         event.stop()
         if self._use is not None:
             self._use.change(event.value)
-
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Pass the whole text on."""
-        event.stop()
-        self._close(submitted=True)
 
     def _close(self, *, submitted: bool) -> None:
         use, self._use = self._use, None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 from groundstation.ui.wrap import wrap
@@ -110,6 +110,8 @@ def _remarks(link: LinkRow, width: int) -> Iterator[Strip]:
     for line in wrap(link.problem or "", width - 4):
         if line:
             yield strip((f"    {line}", style(RED)))
+    if link.unverified:
+        yield strip((f"    signing has refused frames: {link.unverified}", style(AMBER))).crop(0, width)
     if link.retry_in is not None:
         yield strip((f"    next try in {link.retry_in:.0f} s", style(AMBER)))
     if link.watch_only:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from textual.strip import Strip
 
 from groundstation.snapshot import LinkView
-from groundstation.ui.colours import AMBER, DIM, GREEN, RED, TEXT, style
+from groundstation.ui.look.colours import AMBER, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none, strip
 
 

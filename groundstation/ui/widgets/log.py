@@ -8,13 +8,17 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.snapshot import LogLine
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, YELLOW, badge, style
-from groundstation.ui.log_model import LABELS, LogRow, tag_of
-from groundstation.ui.widgets.instrument import Instrument, Part, strip
+from groundstation.ui.log.filter import LABELS, tag_of
+from groundstation.ui.log.model import LogRow, LogWindow
+from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean
 
 PREFIX = 16
 """Cells in front of the text: time and tag."""
+
+JOINED = " joined "
+"""At the right of lines that belong to the marked one."""
 
 _COLOURS = (RED, RED, RED, RED, AMBER, BLUE, BLUE, DIM)
 """By MAV_SEVERITY."""
@@ -32,17 +36,22 @@ class LogPanel(Instrument[tuple[LogLine, ...]]):
         return [strip(*_line(line)).crop(0, width) for line in self.value[-height:]]
 
 
-class LogRows(Instrument[tuple[LogRow, ...]]):
-    """A window on the whole log, with wrapped lines."""
+class LogRows(Instrument[LogWindow]):
+    """A window on the whole log, with wrapped lines, the marked one and those that belong to it."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the rows; further rows of a line are indented."""
-        return [strip(*_row(row)).crop(0, width) for row in self.value[:height]]
+        return [strip(*_row(row, self.value, width)).crop(0, width) for row in self.value.rows[:height]]
 
 
-def _row(row: LogRow) -> list[Part]:
-    head = _head(row.line) if row.part == 0 else [(" " * PREFIX, style())]
-    return [*head, (row.text, _text_style(row.line))]
+def _row(row: LogRow, window: LogWindow, width: int) -> list[Part]:
+    marked = row.line.number == window.marked
+    ground = FAINT if marked else BACKGROUND
+    head = _head(row.line, "›" if marked else " ", ground) if row.part == 0 else [(" " * PREFIX, style(TEXT, ground))]
+    parts = [*head, (row.text, _text_style(row.line, ground))]
+    room = width - length(parts)
+    joined = JOINED if row.part == 0 and row.line.number in window.joined and room > len(JOINED) else ""
+    return [*parts, (" " * (room - len(joined)), style(TEXT, ground)), (joined, style(DIM, ground))]
 
 
 def _line(line: LogLine) -> list[Part]:
@@ -52,14 +61,18 @@ def _line(line: LogLine) -> list[Part]:
     return parts
 
 
-def _head(line: LogLine) -> list[Part]:
+def _head(line: LogLine, mark: str = " ", ground: str = BACKGROUND) -> list[Part]:
     severity = max(0, min(7, line.severity))
     colour = _COLOURS[severity]
     if severity > 4 and line.label in LABELS:
         colour = _LABEL_COLOURS.get(line.label, BLUE)
     when = time.strftime("%H:%M:%S", time.localtime(line.time))
-    return [(f" {when} ", style(DIM)), (f"{tag_of(line):<5} ", style(colour, bold=severity <= 3))]
+    return [
+        (mark, style(BLUE, ground, bold=True)),
+        (f"{when} ", style(DIM, ground)),
+        (f"{tag_of(line):<5} ", style(colour, ground, bold=severity <= 3)),
+    ]
 
 
-def _text_style(line: LogLine) -> Style:
-    return style(TEXT if line.severity > 2 else RED, bold=line.severity <= 2)
+def _text_style(line: LogLine, ground: str = BACKGROUND) -> Style:
+    return style(TEXT if line.severity > 2 else RED, ground, bold=line.severity <= 2)

@@ -9,7 +9,7 @@ import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, TEXT, selected, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, TEXT, selected, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.wrap import clean, wrap
 from groundstation.views.messages import MessageField, MessageView

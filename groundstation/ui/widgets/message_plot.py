@@ -9,7 +9,7 @@ from textual.strip import Strip
 
 from groundstation.ui.charts.columns import Columns
 from groundstation.ui.charts.points import Points
-from groundstation.ui.colours import DIM, TEXT, style
+from groundstation.ui.look.colours import DIM, TEXT, style
 from groundstation.ui.widgets.charts.pane import PaneLine, PaneValue, draw_chart, nice_scale, plot_dots
 from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.views.messages import FieldPlot

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, style
+from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
-from groundstation.ui.wrap import clean
+from groundstation.ui.wrap import clean, wrap
 from groundstation.views.messages import MessageRow
 
 WIDE = 60
@@ -30,6 +30,8 @@ class MessageTableValue:
     """Messages stand under their source."""
     closed: frozenset[tuple[int, int, bool]] = frozenset()
     """Sources whose messages are not listed."""
+    note: str = ""
+    """Below the rows."""
 
 
 class MessageTable(Instrument[MessageTableValue]):
@@ -40,7 +42,9 @@ class MessageTable(Instrument[MessageTableValue]):
         lines = [_titles(width)]
         for number, row in enumerate(self.value.rows[: height - 1]):
             lines.append(self._line(row, width, chosen=number == self.value.selected))
-        return lines
+        if self.value.note:
+            lines += [strip((f" {line}", style(DIM))).crop(0, width) for line in wrap(self.value.note, width - 2)]
+        return lines[:height]
 
     def _line(self, row: MessageRow, width: int, *, chosen: bool) -> Strip:
         ground = FAINT if chosen else BACKGROUND

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.drive_views import MissionProgress
 from groundstation.snapshot import VehicleView
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, YELLOW, style
+from groundstation.snapshot.drive import MissionProgress
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 ROOMY = 60

@@ -2,136 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
-from enum import Enum
-from itertools import pairwise
-
-from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import (
-    AMBER,
-    BACKGROUND,
-    BLACK,
-    BLUE,
-    DIM,
-    FAINT,
-    GREEN,
-    LINE,
-    RED,
-    TEXT,
-    WHITE,
-    YELLOW,
-    style,
-)
-from groundstation.ui.map.geometry import Point
-from groundstation.ui.map.window import MapWindow, fit_window, ring_spacing
+from groundstation.ui.look.colours import BLUE, DIM, style
+from groundstation.ui.map.window import fit_window
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.instrument import Instrument
-
-WIDE = 70
-"""Columns from which the legend has room."""
-MAX_RINGS = 12
-CROSS = 5
-"""Dots of an arm of the cursor."""
-
-
-class Leg(Enum):
-    """How a leg of the mission is drawn: by line style, not by colour alone."""
-
-    DONE = "done"
-    NOW = "now"
-    TO_GO = "to go"
-
-
-@dataclass(frozen=True, slots=True)
-class MapLeg:
-    """A leg of the mission."""
-
-    start: Point
-    end: Point
-    look: Leg = Leg.TO_GO
-
-
-@dataclass(frozen=True, slots=True)
-class MapMark:
-    """A label at a point."""
-
-    point: Point
-    text: str
-    look: str = "item"
-    """A key of MARKS."""
-
-
-@dataclass(frozen=True, slots=True)
-class MapOutline:
-    """A polygon of the fence; closed."""
-
-    corners: tuple[Point, ...]
-    inclusion: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class PlanMapValue:
-    """Contents of the map; points are (north, east) in m around one place."""
-
-    note: str = "no position yet"
-    """Shown in place of the map; empty: there is a map."""
-    window: MapWindow | None = None
-    """None: everything is in view."""
-    home: Point | None = None
-    vehicle: Point | None = None
-    heading: float | None = None
-    """Clockwise from north, rad."""
-    track: tuple[Point, ...] = ()
-    legs: tuple[MapLeg, ...] = ()
-    outlines: tuple[MapOutline, ...] = ()
-    marks: tuple[MapMark, ...] = ()
-    cursor: Point | None = None
-    measured: Point | None = None
-    """Where the measured line begins; it ends at the cursor."""
-    lines: tuple[str, ...] = ()
-    """Written at the bottom, above the scale."""
-    ascii: bool = False
-    """Draw the vehicle as one character: its outline needs braille."""
-
-    def with_lines(self, lines: tuple[str, ...]) -> PlanMapValue:
-        """Return the map with texts at the bottom."""
-        return replace(self, lines=lines)
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Everything that a fit brings into view."""
-        ends = [point for leg in self.legs for point in (leg.start, leg.end)]
-        corners = [corner for outline in self.outlines for corner in outline.corners]
-        alone = [point for point in (self.home, self.vehicle) if point is not None]
-        return (*ends, *corners, *alone, *(mark.point for mark in self.marks), *self.track)
-
-
-MARKS: dict[str, tuple[str, str]] = {
-    "item": (TEXT, FAINT),
-    "done": (DIM, FAINT),
-    "now": (BLACK, YELLOW),
-    "edited": (BLACK, BLUE),
-    "selected": (BACKGROUND, TEXT),
-    "rally": (BLACK, GREEN),
-    "corner": (RED, BACKGROUND),
-    "other": (AMBER, FAINT),
-}
-"""How a mark is drawn -> colour of its text and of its ground."""
-_LEGS = {Leg.DONE: (GREEN, 2, 2), Leg.NOW: (YELLOW, 1, 0), Leg.TO_GO: (TEXT, 1, 1)}
-"""Colour, dots and gap."""
-
-_LEGEND = (
-    ("⌂", (AMBER, BACKGROUND), "home"),
-    (" R ", MARKS["rally"], "rally"),
-    ("╶╶", (RED, BACKGROUND), "fence"),
-    ("──", (YELLOW, BACKGROUND), "leg now"),
-    ("··", (TEXT, BACKGROUND), "to go"),
-    ("──", (BLUE, BACKGROUND), "track"),
-)
-"""Mark, its colours, and what it is."""
+from groundstation.ui.widgets.plan_drawing import LEGS, PlanDrawing
+from groundstation.ui.widgets.plan_map_value import PlanMapValue
 
 
 class PlanMap(Instrument[PlanMapValue]):
@@ -140,158 +18,23 @@ class PlanMap(Instrument[PlanMapValue]):
     BORDER_TITLE = "map"
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Draw what is farthest from the operator's mind first: rings, fence, track, legs, labels, vehicle, cursor."""
+        """Draw what matters least first: rings, layers, fence, track, legs, cursor, labels, vehicle."""
         canvas, value = Canvas(width, height), self.value
         if value.note:
             canvas.write(max(0, (width - len(value.note)) // 2), height // 2, value.note, style(DIM))
             return canvas.strips()
         window = value.window or fit_window(value.points, canvas.across, canvas.down)
-        drawing = _Drawing(canvas, window)
+        drawing = PlanDrawing(canvas, window)
         drawing.rings(value.home or value.vehicle or (0.0, 0.0))
+        drawing.layers(value.layers)
         for outline in value.outlines:
             drawing.outline(outline)
         drawing.path(value.track, style(BLUE))
         for leg in value.legs:
-            colour, dots, gap = _LEGS[leg.look]
+            colour, dots, gap = LEGS[leg.look]
             drawing.dashes(leg.start, leg.end, style(colour), dots, gap)
         drawing.cross(value.cursor, value.measured)
         drawing.labels(value)
         drawing.vehicle(value)
         drawing.frame(value)
         return canvas.strips()
-
-
-class _Drawing:
-    """A canvas and the part of the ground on it."""
-
-    def __init__(self, canvas: Canvas, window: MapWindow) -> None:
-        self._canvas = canvas
-        self._window = window
-
-    def at(self, point: Point) -> Point:
-        """Return where a point is, in dots."""
-        return self._window.to_dots(point, self._canvas.across, self._canvas.down)
-
-    def dashes(self, start: Point, end: Point, look: Style, dots: int, gap: int) -> None:
-        """Draw a line of dots and gaps; what lies outside costs nothing."""
-        clipped = _clip(self.at(start), self.at(end), self._canvas.across, self._canvas.down)
-        if clipped is None:
-            return
-        (x1, y1), (x2, y2) = clipped
-        steps = max(1, round(max(abs(x2 - x1), abs(y2 - y1))))
-        for step in range(steps + 1):
-            if step % (dots + gap) < dots:
-                part = step / steps
-                self._canvas.dot(round(x1 + (x2 - x1) * part), round(y1 + (y2 - y1) * part), look)
-
-    def path(self, points: tuple[Point, ...], look: Style) -> None:
-        """Connect points."""
-        for start, end in pairwise(points):
-            self.dashes(start, end, look, 1, 0)
-
-    def outline(self, outline: MapOutline) -> None:
-        """Draw a fence: long dashes around where the vehicle may be, short ones around where it may not."""
-        dots, gap = (4, 2) if outline.inclusion else (2, 2)
-        for start, end in zip(outline.corners, (*outline.corners[1:], outline.corners[0]), strict=True):
-            self.dashes(start, end, style(RED), dots, gap)
-        if not outline.inclusion:
-            north, east = (sum(values) / len(outline.corners) for values in zip(*outline.corners, strict=True))
-            self.write((north, east), "✗", style(RED))
-
-    def rings(self, centre: Point) -> None:
-        """Draw faint rings around home."""
-        canvas, (x, y) = self._canvas, self.at(centre)
-        spacing = self.ring / self._window.scale
-        farthest = math.hypot(max(x, canvas.across - x), max(y, canvas.down - y))
-        for number in range(1, min(MAX_RINGS, int(farthest / spacing)) + 1):
-            radius = spacing * number
-            for step in range(count := max(16, int(radius * math.tau / 9))):
-                angle = step * math.tau / count
-                canvas.dot(round(x + radius * math.cos(angle)), round(y + radius * math.sin(angle)), style(LINE))
-
-    @property
-    def ring(self) -> float:
-        """Spacing of the rings, and length of the scale, m."""
-        return ring_spacing(self._window.scale * max(8, min(self._canvas.across, self._canvas.down)) / 5)
-
-    def write(self, point: Point, text: str, look: Style) -> None:
-        """Write a text around a point."""
-        x, y = self.at(point)
-        if abs(x) < 1e6 and abs(y) < 1e6:
-            self._canvas.write((int(x) >> 1) - (len(text) - 1) // 2, int(y) >> 2, text, look)
-
-    def labels(self, value: PlanMapValue) -> None:
-        """Write home and the marks, those that matter most over the others."""
-        if value.home is not None:
-            self.write(value.home, "⌂", style(AMBER, bold=True))
-        order = list(MARKS)
-        last = ("now", "edited", "selected")
-        for mark in sorted(value.marks, key=lambda each: last.index(each.look) if each.look in last else -1):
-            text = mark.text if mark.look == "corner" else f" {mark.text} "
-            self.write(mark.point, text, style(*MARKS[mark.look if mark.look in order else "item"]))
-
-    def vehicle(self, value: PlanMapValue) -> None:
-        """Draw the vehicle with its heading."""
-        if value.vehicle is None:
-            return
-        x, y = self.at(value.vehicle)
-        if value.heading is None or value.ascii:
-            mark = "●" if value.heading is None else "^>v<"[round(value.heading / (math.pi / 2)) % 4]
-            self.write(value.vehicle, mark, style(YELLOW, bold=True))
-            return
-        along, aside = math.sin(value.heading), math.cos(value.heading)
-        corners = [(9.0, 0.0), (-4.5, 4.0), (-2.0, 0.0), (-4.5, -4.0)]  # dots ahead, dots to the right
-        self._canvas.fill([(x + a * along + b * aside, y - a * aside + b * along) for a, b in corners], style(YELLOW))
-
-    def cross(self, cursor: Point | None, measured: Point | None) -> None:
-        """Draw the cursor, and the line that is measured to it."""
-        if cursor is None:
-            return
-        if measured is not None:
-            self.dashes(measured, cursor, style(BLUE), 3, 1)
-            self.write(measured, "○", style(BLUE, bold=True))
-        x, y = (round(each) for each in self.at(cursor))
-        for step in (*range(-2 * CROSS, -2, 2), *range(4, 2 * CROSS + 1, 2)):
-            self._canvas.dot(x + step, y | 1, style(WHITE))
-            self._canvas.dot(x | 1, y + step, style(WHITE))
-        self.write(cursor, "┼", style(WHITE, bold=True))
-
-    def frame(self, value: PlanMapValue) -> None:
-        """Write north, the legend, the scale and the lines about the cursor."""
-        canvas = self._canvas
-        canvas.write(1, 0, "N", style(RED, bold=True))
-        if canvas.width >= WIDE:
-            self._legend(canvas)
-        bar = max(2, round(self.ring / self._window.scale / 2))
-        bottom = canvas.height - 1
-        if bar < canvas.width // 2:
-            canvas.write(1, bottom - len(value.lines), "├" + "─" * (bar - 1) + "┤ " + metres(self.ring), style(DIM))
-        for up, line in enumerate(reversed(value.lines)):
-            canvas.write(max(0, canvas.width - len(line) - 1), bottom - up, line, style(TEXT))
-
-    def _legend(self, canvas: Canvas) -> None:
-        column = canvas.width - sum(len(mark) + len(word) + 2 for mark, _, word in _LEGEND)
-        for mark, look, word in _LEGEND:
-            canvas.write(column, 0, mark, style(*look))
-            canvas.write(column + len(mark) + 1, 0, word, style(DIM))
-            column += len(mark) + len(word) + 2
-
-
-def metres(distance: float) -> str:
-    """Return a distance in words."""
-    return f"{distance:g} m" if distance < 1000 else f"{distance / 1000:g} km"
-
-
-def _clip(start: Point, end: Point, across: int, down: int) -> tuple[Point, Point] | None:
-    """Return the part of a line that is on the canvas (Liang and Barsky); None if none is."""
-    (x, y), (x2, y2) = start, end
-    dx, dy = x2 - x, y2 - y
-    first, last = 0.0, 1.0
-    for step, room in ((-dx, x), (dx, across - x), (-dy, y), (dy, down - y)):
-        if step == 0:
-            if room < 0:
-                return None
-            continue
-        cut = room / step
-        first, last = (max(first, cut), last) if step < 0 else (first, min(last, cut))
-    return ((x + first * dx, y + first * dy), (x + last * dx, y + last * dy)) if first <= last else None

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, FAINT, GREEN, TEXT, WHITE, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, FAINT, GREEN, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, strip
 

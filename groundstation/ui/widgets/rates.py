@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, TEXT, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.ui.wrap import clean
 from groundstation.views.messages import MessageRow, MessagesPage

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import BACKGROUND, BLUE, DIM, FAINT, TEXT, style
+from groundstation.ui.look.colours import BACKGROUND, BLUE, DIM, FAINT, TEXT, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.ui.wrap import wrap

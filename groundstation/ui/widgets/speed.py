@@ -5,7 +5,7 @@ from __future__ import annotations
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
-from groundstation.ui.colours import DIM, GREEN, style
+from groundstation.ui.look.colours import DIM, GREEN, style
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none, strip
 
 GLYPHS = {

@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
-from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot, VehicleView
-from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.snapshot import EmergencyProgress, LinkView, RecordingView, ReplayStatus, Snapshot, VehicleView
+from groundstation.snapshot.signing import SigningState, SigningView
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import (
+    AMBER,
+    BLUE,
+    DEEP_RED,
+    DIM,
+    FAINT,
+    GREEN,
+    RED,
+    TEXT,
+    VIOLET,
+    YELLOW,
+    badge,
+    style,
+)
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 from groundstation.ui.widgets.tabs import WIDE, goto_parts
 
@@ -56,8 +71,10 @@ class StatusBar(Instrument[StatusBarValue]):
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the badges left, the rest right; on two lines the link readings go below."""
         snapshot = self.value.snapshot
-        badges, health = self._badges(), _health(snapshot.vehicle)
+        badges, health = self._badges(), [*_health(snapshot.vehicle), *_recording(snapshot.recording)]
         fields = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
+        signing = _signing(snapshot.signing)
+        fields[1:1] = signing
         if height > 1:
             goto = goto_parts(self.value.keymap)
             if sum(length(each.parts) for each in fields) + length(goto) > width:
@@ -66,23 +83,35 @@ class StatusBar(Instrument[StatusBarValue]):
                 _spread(badges, _fitting(health, width - length(badges)), width),
                 _spread(_fitting(fields, width - length(goto)), goto, width),
             ]
-        readings = [*(fields if width >= WIDE else fields[:1]), *health]
+        readings = [*(fields if width >= WIDE else [fields[0], *signing]), *health]
         return [_spread(badges, _fitting(readings, width - length(badges) - 1), width)]
 
     def _badges(self) -> list[Part]:
         value, vehicle = self.value, self.value.snapshot.vehicle
+        if value.snapshot.replay is not None:
+            return _replay_badges(value.snapshot.replay, vehicle)
         if vehicle is None:
             return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
         parts = [(f" {vehicle.name} ", badge(BLUE)), mode_badge(vehicle)]
         stands = not value.drives and vehicle.in_control and vehicle.armed and vehicle.mode == "MANUAL"
-        who = driver_part(vehicle, station_runs=value.station_runs)
-        if stands and vehicle.alive and value.station_runs:
+        watches = bool(value.snapshot.lease.driver)
+        who = driver_part(vehicle, station_runs=value.station_runs, watches=watches)
+        if stands and not watches and vehicle.alive and value.station_runs:
             who = (f"neutral · {value.drive_key} drives", style(AMBER, bold=True))
         parts += [*arming_badges(vehicle), (" ", style()), who]
         if value.snapshot.also_armed:
             systems = ", ".join(map(str, value.snapshot.also_armed))
             parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
         return parts
+
+
+def _replay_badges(replay: ReplayStatus, vehicle: VehicleView | None) -> list[Part]:
+    """Return the badges of a log: they look like no live vehicle."""
+    shown = time.strftime("%H:%M:%S", time.localtime(replay.wall)) + f".{int(replay.wall * 10) % 10}"
+    parts = [(" REPLAY ", badge(VIOLET))]
+    if vehicle is not None:
+        parts += [(f" {vehicle.name} ", badge(BLUE)), mode_badge(vehicle), *arming_badges(vehicle)]
+    return [*parts, (f" {shown} · nothing is sent", style(VIOLET, bold=True))]
 
 
 def _fitting(fields: list[StatusField], room: int) -> list[Part]:
@@ -113,8 +142,8 @@ def arming_badges(vehicle: VehicleView) -> list[Part]:
     return [state, (" E-STOP SENT ", badge(RED))] if vehicle.emergency_stop else [state]
 
 
-def driver_part(vehicle: VehicleView, *, station_runs: bool) -> Part:
-    """Return who moves the vehicle. `station_runs`: the station process runs and responds."""
+def driver_part(vehicle: VehicleView, *, station_runs: bool, watches: bool) -> Part:
+    """Return who moves the vehicle. `station_runs`: the station responds. `watches`: this screen does not drive."""
     if not station_runs:
         return ("station lost", style(RED, bold=True))
     if not vehicle.alive:
@@ -123,6 +152,8 @@ def driver_part(vehicle: VehicleView, *, station_runs: bool) -> Part:
         return ("obeys another GCS", style(AMBER, bold=True))
     if vehicle.in_control and vehicle.armed and vehicle.emergency_stop:
         return ("", style())  # the keys do not drive, and the badge before it says why
+    if vehicle.in_control and watches:
+        return ("you watch", style(AMBER, bold=True))
     if vehicle.in_control:
         return ("you drive" if vehicle.armed and vehicle.drivable else "you are in control", style(GREEN, bold=True))
     if vehicle.driver:
@@ -150,6 +181,19 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
         _field(2, "loss", "--" if loss is None else f"{100 * loss:.1f}%", TEXT if (loss or 0) < 0.05 else AMBER),
         _field(2, "rtt", "--" if trip is None else f"{1000 * trip:.0f} ms", TEXT if (trip or 0) < 0.2 else AMBER),
     ]
+
+
+_SIGNING = {SigningState.OFF: DIM, SigningState.ON: GREEN, SigningState.NO_KEY: AMBER, SigningState.REQUIRED: AMBER}
+"""State -> its colour; the others are red."""
+
+
+def _signing(signing: SigningView | None) -> list[StatusField]:
+    """Return the state in a word. What is wrong with it stays longest."""
+    if signing is None:
+        return []
+    more = f", refused {signing.refused}" if signing.state is SigningState.ON and signing.refused else ""
+    colour = AMBER if more else _SIGNING.get(signing.state, RED)
+    return [_field(3 if signing.well else 0, "sign", signing.state.value + more, colour)]
 
 
 def _quality(link: LinkView, alive: bool) -> tuple[int, str]:
@@ -195,6 +239,18 @@ def _health(vehicle: VehicleView | None) -> list[StatusField]:
         rest = "" if left is None else f" {100 * left:.0f}%"
         fields.append(_field(1, "batt", f"{volts:.1f} V{rest}", colour))
     return fields
+
+
+def _recording(recording: RecordingView | None) -> list[StatusField]:
+    dot = recording_parts(recording)
+    return [StatusField(0, dot), StatusField(6, (("rec ", style(DIM)),))] if dot else []
+
+
+def recording_parts(recording: RecordingView | None) -> tuple[Part, ...]:
+    """Return the red dot while the session is recorded."""
+    if recording is None or recording.problem or not recording.path:
+        return ()
+    return (("● ", style(RED, bold=True)),)
 
 
 def health_parts(vehicle: VehicleView) -> list[Part]:

@@ -9,7 +9,7 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.snapshot import Snapshot
-from groundstation.ui.colours import AMBER, BLUE, DIM, FAINT, GREEN, PANEL, TEXT, WHITE, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, FAINT, GREEN, PANEL, TEXT, WHITE, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 LABEL, FIGURES = 9, 6

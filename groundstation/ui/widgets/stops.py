@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.drive_views import StopBound
-from groundstation.ui.colours import AMBER, DIM, FAINT, GREEN, PANEL, RED, TEXT, style
+from groundstation.snapshot.drive import StopBound
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import AMBER, DIM, FAINT, GREEN, PANEL, RED, TEXT, style
 from groundstation.ui.stops_model import all_stops
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
@@ -21,8 +21,8 @@ SOON, NEAR = 0.5, 0.8
 """Shares of a bound from which on its bar is amber, and red."""
 
 SHORT = {
-    "key let go": "key", "terminal": "tty", "no command": "cmd", "no station": "gcs", "no key": "you",
-    "... no RC": "no RC",
+    "key let go": "key", "pad let go": "pad", "terminal": "tty", "no command": "cmd", "no station": "gcs",
+    "no key": "you", "... no RC": "no RC",
 }  # fmt: skip
 """Name -> its name in the line of small terminals; those without one are not in it."""
 

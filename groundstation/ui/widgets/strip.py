@@ -8,16 +8,23 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.snapshot import LogLine, OperatorView
-from groundstation.ui.alerts import hint
-from groundstation.ui.colours import BLUE, DIM, PANEL, TEXT, badge, style
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.hints import hint
+from groundstation.ui.look.colours import BLUE, DIM, PANEL, TEXT, badge, style
 from groundstation.ui.widgets.alert import LOOKS, MARKS, AlertValue
 from groundstation.ui.widgets.footer import FooterValue, KeyFooter
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.widgets.keycaps import KeycapsValue, bound_parts, style_parts
 from groundstation.ui.widgets.log import LogPanel
 from groundstation.ui.widgets.speed import speed_text
-from groundstation.ui.widgets.status import StatusBarValue, arming_badges, driver_part, health_parts, mode_badge
+from groundstation.ui.widgets.status import (
+    StatusBarValue,
+    arming_badges,
+    driver_part,
+    health_parts,
+    mode_badge,
+    recording_parts,
+)
 from groundstation.ui.wrap import wrap
 
 HINT_LINES = 2
@@ -78,8 +85,11 @@ class DrivingStrip(Instrument[StripValue]):
             yield [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
             yield [space, (self.value.status.snapshot.waiting or "", style(TEXT))]
             return
-        yield [*arming_badges(vehicle), mode_badge(vehicle), (f" {vehicle.name} ", badge(BLUE))]
-        yield [space, driver_part(vehicle, station_runs=self.value.status.station_runs), space, *health_parts(vehicle)]
+        dot = recording_parts(self.value.status.snapshot.recording)
+        yield [*arming_badges(vehicle), mode_badge(vehicle), (f" {vehicle.name} ", badge(BLUE)), *dot]
+        status = self.value.status
+        who = driver_part(vehicle, station_runs=status.station_runs, watches=bool(status.snapshot.lease.driver))
+        yield [space, who, space, *health_parts(vehicle)]
         demand = _demand(self.value.status.snapshot.operator)
         yield [space, (f"{speed_text(vehicle)} m/s", style(TEXT, bold=True)), ("  " + demand, style(DIM))]
         yield [space, *(bound_parts(caps) if caps.style == "hold" else style_parts(caps))]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
-from groundstation.ui.colours import AMBER, BLUE, DIM, LINE, RED, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, LINE, RED, YELLOW, style
 from groundstation.ui.widgets.canvas import Canvas, Point
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, RED, TEXT, WHITE, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, RED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 from groundstation.ui.wrap import clean
@@ -119,6 +119,7 @@ def _details(each: VehicleRow) -> list[Part]:
         f"firmware {each.firmware}" if each.firmware else "firmware not known",
         each.state,
         f"in control: {_control(each)}",
+        f"signing {each.signing}" if each.signing else "",
         *(f"{component.component} {component.kind}" for component in each.components),
     ]
     for word in filter(None, words):

@@ -5,16 +5,19 @@ from __future__ import annotations
 import textwrap
 from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot import Snapshot
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.waiting_advice import Advice, AdviceKind, advise, describe_link
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 _NO_SNAPSHOT = Snapshot()
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
+TURNS = 4
+"""Turns of the spinner per second: in between the page is the same."""
 STILL = "·"
 """In place of the spinner."""
 _COLOURS = {AdviceKind.TEXT: DIM, AdviceKind.WARNING: AMBER}
@@ -37,7 +40,8 @@ class WaitingValue:
         """Return the page of a display state."""
         if now.snapshot.vehicle is not None:
             return cls()
-        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"), now.still, f"{now.key('app.goto')} c")
+        snapshot = msgspec.structs.replace(now.snapshot, number=0, uptime=int(now.snapshot.uptime * TURNS) / TURNS)
+        return cls(snapshot, now.key("app.simulator"), now.key("app.quit"), now.still, f"{now.key('app.goto')} c")
 
 
 class WaitingPage(Instrument[WaitingValue]):
@@ -55,7 +59,7 @@ class WaitingPage(Instrument[WaitingValue]):
 
     def _lines(self, width: int) -> list[list[Part]]:
         snapshot = self.value.snapshot
-        turn = STILL if self.value.still else _SPINNER[int(snapshot.uptime * 4) % len(_SPINNER)]
+        turn = STILL if self.value.still else _SPINNER[int(snapshot.uptime * TURNS) % len(_SPINNER)]
         lines: list[list[Part]] = [
             [("  m a v h e l m", style(BLUE, bold=True)), ("   the helm of a MAVLink vehicle", style(DIM))],
             [],

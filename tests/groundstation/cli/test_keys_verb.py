@@ -16,7 +16,7 @@ import pytest
 
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, attach_pty
 
-PATIENCE = 30.0
+PATIENCE = 60.0
 
 
 class Keys:

@@ -15,7 +15,8 @@ from termios import TIOCSWINSZ
 
 import pytest
 
-from groundstation.cli.main import main, report_armed
+from groundstation.cli.console import report_armed
+from groundstation.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -54,7 +55,7 @@ def in_terminal(
         (["--keys", "emacs"], "unknown key map 'emacs': choose standard, teleop"),
         (["--keys", "/nowhere/keys.toml"], "No such file"),
         (["udpin:127.0.0.1:14999"], "is not a terminal"),
-        (["drive"], "'drive' is not an endpoint such as udpin:127.0.0.1:14550 (groundstation --help lists them)"),
+        (["walk"], "'walk' is not an endpoint such as udpin:127.0.0.1:14550 (groundstation --help lists them)"),
         (["help"], "'help' is not an endpoint: did you mean --help?"),
         (["sitl"], "'sitl' is not an endpoint: did you mean --sitl?"),
         (["--sitl", "udpin"], "'udpin' is not an endpoint such as udpin:127.0.0.1:14550"),
@@ -157,3 +158,19 @@ def test_a_pipe_for_a_log_file_is_not_waited_for(tmp_path: Path) -> None:
 def test_what_is_left_armed_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     report_armed(("Rover 1 is left ARMED in HOLD",))
     assert capsys.readouterr().err == "groundstation: Rover 1 is left ARMED in HOLD\n"
+
+
+def test_a_gamepad_without_its_packages_is_one_line(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("groundstation.gamepad.child.PACKAGES", ("no_such_package",))
+    monkeypatch.setattr("groundstation.cli.console.check_terminal", lambda: None)
+    assert "pip install 'mavhelm[gamepad]'" in error_line(capsys, "--gamepad", "any", "udpin:127.0.0.1:14999")
+
+
+@pytest.mark.parametrize("before", [("-q",), ("--json", "--quiet")])
+def test_options_of_all_verbs_may_stand_before_the_verb(
+    before: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*before, "export", "none.tlog", "--csv", "out"]) == 2
+    assert "none.tlog: no such file" in capsys.readouterr().err

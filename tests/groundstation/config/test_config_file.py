@@ -159,3 +159,13 @@ def test_the_place_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     assert choose_path(None, {"MAVHELM_CONFIG": ""}) == (default_path(), False)
     assert choose_path(None, {"MAVHELM_CONFIG": "/a.toml"}) == (Path("/a.toml"), True)
     assert choose_path("/b.toml", {"MAVHELM_CONFIG": "/a.toml"}) == (Path("/b.toml"), True)
+
+
+def test_mistakes_in_the_table_of_the_gamepad_have_their_lines(tmp_path: Path) -> None:
+    text = 'gamepad = "any"\n[pad]\ndeadmen = "a"\nexpo = 3\nb = "drive.left"\n'
+    unknown, expo, drives = problems(write(tmp_path, text))
+    assert unknown.endswith("my.toml:3: pad.deadmen: unknown entry; did you mean deadman or dead_zone?")
+    assert expo.endswith("my.toml:4: pad.expo: 3 is not a number from 0 to 1")
+    assert "my.toml:5: pad.b: drive.left drives, which only the sticks do" in drives
+    [both] = problems(write(tmp_path, '[pad]\ndeadman = "x"\nx = "vehicle.hold"\n'))
+    assert both.endswith("my.toml:1: pad: x is the dead-man button and cannot be vehicle.hold as well")

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from groundstation.config.config_file import ConfigError, ConfigFile, read_config
+from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.config.effective import build_keymap, load_config, merge, resolve_endpoints
-from groundstation.config.settings import DEFAULT_ENDPOINT, Settings
+from groundstation.config.settings import Settings
 from groundstation.input.keymap import KEYMAPS
 from link.endpoint import EndpointError
 

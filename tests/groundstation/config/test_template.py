@@ -24,7 +24,7 @@ def test_with_every_line_set_it_has_all_settings_and_their_defaults(tmp_path: Pa
     values = read_config(tmp_path / "my.toml").values
     assert set(values) == set(ROWS)
     defaults = msgspec.to_builtins(Settings())
-    for name in set(ROWS) - set(EXAMPLES) - {"endpoints", "keys"}:
+    for name in set(ROWS) - set(EXAMPLES) - {"endpoints", "keys", "pad"}:
         assert values[name] == defaults[name]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 
-from groundstation.connect.listener import Listener
+from groundstation.connect.listener import VehicleListener
 from groundstation.views.connect import HeardRow
 from tests.groundstation.fake_vehicle import FakeVehicle
 from tests.groundstation.udp_vehicle import UdpVehicle
@@ -15,7 +15,7 @@ from tests.ports import free_port
 IDS = (255, 190)
 
 
-async def heard(listener: Listener, count: int) -> tuple[HeardRow, ...]:
+async def heard(listener: VehicleListener, count: int) -> tuple[HeardRow, ...]:
     loop = asyncio.get_running_loop()
     await until(lambda: len(listener.heard(loop.time())) == count)
     return listener.heard(loop.time())
@@ -23,7 +23,7 @@ async def heard(listener: Listener, count: int) -> tuple[HeardRow, ...]:
 
 async def test_a_vehicle_is_heard_and_hears_nothing() -> None:
     here, there = (f"udpin:127.0.0.1:{free_port()}" for _ in range(2))
-    listener = Listener(IDS, (here, there))
+    listener = VehicleListener(IDS, (here, there))
     listener.listen(())
     assert [row.endpoint for row in listener.listening] == [here, there]
     with UdpVehicle(here) as one, UdpVehicle(there, FakeVehicle(system=7)) as other:
@@ -37,7 +37,7 @@ async def test_a_vehicle_is_heard_and_hears_nothing() -> None:
 
 async def test_the_port_of_a_link_of_ours_is_left_alone_and_free() -> None:
     port = free_port()
-    listener = Listener(IDS, (f"udpin:127.0.0.1:{port}",))
+    listener = VehicleListener(IDS, (f"udpin:127.0.0.1:{port}",))
     listener.listen(())
     listener.listen({port})
     assert not listener.listening
@@ -52,7 +52,7 @@ async def test_the_port_of_a_link_of_ours_is_left_alone_and_free() -> None:
 
 async def test_a_flood_of_system_ids_and_of_noise_is_bounded() -> None:
     here = f"udpin:127.0.0.1:{free_port()}"
-    listener = Listener(IDS, (here,))
+    listener = VehicleListener(IDS, (here,))
     listener.listen(())
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.connect(("127.0.0.1", int(here.rpartition(":")[2])))

@@ -11,8 +11,9 @@ import pytest
 
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.links import AddLink, CloseLink
-from groundstation.intents.session import StartSimulator, Watch
+from groundstation.intents.session import StartSimulator
 from groundstation.intents.vehicle import Disarm
+from groundstation.intents.watch import Watch
 from groundstation.views.connect import ConnectRequest, ConnectView, LinkAttempt
 from groundstation.views.links import LinksRequest, LinksView
 from tests.groundstation.fake_vehicle import FakeVehicle

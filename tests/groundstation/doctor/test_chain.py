@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
 
-from dialects.enums import Sensor
+from dialects.enums import Autopilot, Sensor
 from groundstation.actions import ACTIONS
 from groundstation.doctor.chain import CHAIN, count_faults, examine
 from groundstation.doctor.facts import DoctorFacts, PreArmText, SensorBits, SettingFact
 from groundstation.snapshot import LinkView, OperatorView, OutputView, VehicleView
-from groundstation.views.doctor import DoctorRow, Health, ParamFix, TerminalFacts
+from groundstation.snapshot.drive import StopBound
+from groundstation.vehicles.settings_check import SETTINGS
+from groundstation.vehicles.stop_bounds import find_rules, stop_bounds
+from groundstation.vehicles.stop_rules import StopFacts
+from groundstation.views.doctor import DoctorRow, ParamFix, TerminalFacts
+from link.runtime.diagnosis import Health
 
 OK, WARNING, FAULT, UNKNOWN = Health.OK, Health.WARNING, Health.FAULT, Health.UNKNOWN
 FENCE = int(Sensor.GEOFENCE)
@@ -19,10 +25,33 @@ MOTORS = int(Sensor.MOTOR_OUTPUTS)
 LINK = LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, frames=500, systems=(1,))
 
 
+OURS = {"MAN_TIMEOUT": 0.45, "FS_TIMEOUT": 1.5, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0}
+ARDUPILOT = {"RC_OVERRIDE_TIME": 0.5, "FS_THR_ENABLE": 1.0, "FS_TIMEOUT": 1.5, "FS_ACTION": 2.0,
+             "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0}  # fmt: skip
+PX4 = {"COM_RC_IN_MODE": 1.0, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 1.0, "COM_DL_LOSS_T": 10.0, "NAV_DLL_ACT": 1.0}
+
+
+def stops(params: Mapping[str, float], autopilot: int = 0, *, drives_itself: bool = False) -> tuple[StopBound, ...]:
+    """What the Drive screen shows with these parameters."""
+    rules = find_rules(autopilot, own_dialect=autopilot == 0)
+    return stop_bounds(rules, StopFacts(params=params, drives_itself=drives_itself))
+
+
+def foreign(autopilot: int, params: Mapping[str, float]) -> DoctorFacts:
+    """A vehicle of another autopilot with these parameters, which its settings check has read."""
+    checks = SETTINGS[autopilot].checks
+    settings = tuple(
+        SettingFact(name, value, checks[name](value, 255) or "") for name, value in params.items() if name in checks
+    )
+    view = vehicle(autopilot=autopilot, stops=stops(params, autopilot))
+    return facts(view, rover_dialect=False, settings=settings, params=params)
+
+
 def vehicle(**changes: Any) -> VehicleView:
     values: dict[str, Any] = {
         "system": 1, "name": "Rover 1", "autopilot": 0, "mode": "MANUAL", "armed": False, "status": 3, "alive": True,
         "silence": 0.1, "driver": 0, "prearm": True, "battery_voltage": 12.1, "battery_remaining": 0.76,
+        "stops": stops(OURS),
     }  # fmt: skip
     return VehicleView(**(values | changes))
 
@@ -35,7 +64,7 @@ def link(**changes: Any) -> tuple[LinkView, ...]:
 def facts(view: VehicleView | None = None, **changes: Any) -> DoctorFacts:
     values: dict[str, Any] = {
         "system": 255, "vehicle": view or vehicle(), "links": (LINK,), "endpoints": ("udpin:127.0.0.1:14550",),
-        "terminal": TerminalFacts(0.005), "rover_dialect": True, "manual_timeout": 0.45,
+        "terminal": TerminalFacts(0.005), "rover_dialect": True,
         "operator": OperatorView(reports_releases=True), "params": {"FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0},
     }  # fmt: skip
     return DoctorFacts(**(values | changes))
@@ -92,6 +121,7 @@ CASES: list[tuple[str, DoctorFacts, Health, str]] = [
     ("our_id", facts(settings=setting("MAV_GCS_SYSID", 255.0)), OK, "255"),
     ("our_id", facts(params={"MAV_GCS_SYSID": 0.0}), OK, "255"),
     ("our_id", facts(signs=True), WARNING, "signs"),
+    ("our_id", facts(verified=True), OK, "signed both ways"),
     ("control", facts(), OK, "nobody: arming takes it"),
     ("control", facts(vehicle(driver=None)), OK, "not managed"),
     ("control", facts(vehicle(in_control=True, armed=True)), OK, "this station"),
@@ -115,18 +145,33 @@ CASES: list[tuple[str, DoctorFacts, Health, str]] = [
     ("armed", facts(vehicle(armed=True)), OK, "armed"),
     ("armed", facts(vehicle(emergency_stop=True)), FAULT, "EMERGENCY STOP"),
     ("armed", facts(vehicle(refusal="arm failed: PreArm: battery low")), FAULT, "battery low"),
-    ("stop_bound", facts(), OK, "0.45 s after the last demand"),
+    ("stop_bound", facts(), OK, "neutral 0.45 s (MAN_TIMEOUT), HOLD 1.95 s (FS_TIMEOUT) after the last demand"),
     ("stop_bound", facts(settings=setting("RC_OVERRIDE_TIME", 3.0, "RC_OVERRIDE_TIME 3: drives on; set it to 0.5")),
      WARNING, "RC_OVERRIDE_TIME 3: drives on"),
     ("stop_bound", facts(settings=setting("FS_THR_ENABLE", 0.0, "FS_THR_ENABLE 0: never stops; set it to 1")), FAULT,
      "never stops"),
     ("stop_bound", facts(rover_dialect=False, unread=("RC_OVERRIDE_TIME",)), WARNING, "could not read"),
-    ("stop_bound", facts(vehicle(without_link="it stops after 0.5 s"), rover_dialect=False), OK, "after 0.5 s"),
-    ("stop_bound", facts(rover_dialect=False), UNKNOWN, "not known yet"),
+    ("stop_bound", foreign(Autopilot.ARDUPILOT, ARDUPILOT), OK,
+     "RC input 0.5 s (RC_OVERRIDE_TIME), neutral 0.5 s later without RC (FS_THR_ENABLE), HOLD 2 s later without RC"),
+    ("stop_bound", foreign(Autopilot.ARDUPILOT, ARDUPILOT | {"RC_OVERRIDE_TIME": -1.0}), FAULT, "never stops"),
+    ("stop_bound", foreign(Autopilot.ARDUPILOT, ARDUPILOT | {"FS_THR_ENABLE": 0.0}), FAULT, "never stops"),
+    ("stop_bound", foreign(Autopilot.ARDUPILOT, ARDUPILOT | {"FS_ACTION": 0.0}), WARNING, "without RC (FS_THR_ENABLE), "
+     "then nothing"),
+    ("stop_bound", foreign(Autopilot.PX4, PX4), OK, "HOLD 0.5 s (COM_RC_LOSS_T) after the last demand"),
+    ("stop_bound", foreign(Autopilot.PX4, PX4 | {"NAV_RCL_ACT": 0.0}), FAULT, "never stops"),
+    ("stop_bound", facts(vehicle(stops=stops({}))), UNKNOWN, "not known yet"),
+    ("stop_bound", facts(vehicle(stops=stops({}, 99)), rover_dialect=False), UNKNOWN, "not known yet"),
     ("gcs_failsafe", facts(), OK, "HOLD 5 s after"),
-    ("gcs_failsafe", facts(params={"FS_GCS_ENABLE": 2.0, "FS_GCS_TIMEOUT": 5.0}), OK, "except in AUTO"),
-    ("gcs_failsafe", facts(params={"FS_GCS_ENABLE": 0.0}), WARNING, "no failsafe"),
-    ("gcs_failsafe", facts(params={}), UNKNOWN, "not known yet"),
+    ("gcs_failsafe", facts(vehicle(stops=stops(OURS | {"FS_GCS_ENABLE": 2.0})), params={"FS_GCS_ENABLE": 2.0}), OK,
+     "except in AUTO"),
+    ("gcs_failsafe", facts(vehicle(stops=stops(OURS | {"FS_GCS_ENABLE": 2.0}, drives_itself=True)),
+                           params={"FS_GCS_ENABLE": 2.0}), WARNING, "AUTO goes on"),
+    ("gcs_failsafe", facts(vehicle(stops=stops(OURS | {"FS_GCS_ENABLE": 0.0})), params={"FS_GCS_ENABLE": 0.0}), WARNING,
+     "no failsafe"),
+    ("gcs_failsafe", foreign(Autopilot.ARDUPILOT, ARDUPILOT), OK, "HOLD 6.5 s after"),
+    ("gcs_failsafe", foreign(Autopilot.ARDUPILOT, ARDUPILOT | {"FS_ACTION": 0.0}), WARNING, "action is switched off"),
+    ("gcs_failsafe", foreign(Autopilot.PX4, PX4), OK, "HOLD 10 s after"),
+    ("gcs_failsafe", facts(vehicle(stops=stops({})), params={}), UNKNOWN, "not known yet"),
     ("gcs_failsafe", facts(settings=setting("NAV_DLL_ACT", 0.0, "NAV_DLL_ACT 0: no failsafe; set it to 1")), WARNING,
      "NAV_DLL_ACT 0"),
     ("failsafes", facts(), OK, "none acts"),
@@ -174,4 +219,22 @@ def test_what_a_row_does_exists() -> None:
 def test_a_dangerous_setting_is_proposed_as_a_change() -> None:
     known = facts(settings=setting("RC_OVERRIDE_TIME", 3.0, "RC_OVERRIDE_TIME 3: drives on for 3 s; set it to 0.5"))
     assert row("stop_bound", known).fix == ParamFix("RC_OVERRIDE_TIME", 3.0, 0.5)
-    assert row("gcs_failsafe", facts(params={"FS_GCS_ENABLE": 0.0})).fix == ParamFix("FS_GCS_ENABLE", 0.0, 1.0)
+    off = facts(vehicle(stops=stops(OURS | {"FS_GCS_ENABLE": 0.0})), params={"FS_GCS_ENABLE": 0.0})
+    assert row("gcs_failsafe", off).fix == ParamFix("FS_GCS_ENABLE", 0.0, 1.0)
+
+
+@pytest.mark.parametrize(("autopilot", "params"), [(Autopilot.ARDUPILOT, ARDUPILOT), (Autopilot.PX4, PX4)])
+def test_doctor_and_drive_agree_on_every_setting(autopilot: int, params: dict[str, float]) -> None:
+    """With each parameter off, negative, large and not known: what never stops on Drive is not well here."""
+    for name in params:
+        for value in (0.0, -1.0, 2.0, 3.0, 5.0, None):
+            changed = {**params, name: value}
+            known = {each: number for each, number in changed.items() if number is not None}
+            judged = foreign(autopilot, known)
+            assert judged.vehicle is not None
+            for stop in judged.vehicle.stops:
+                found = row("gcs_failsafe" if stop.name == "no station" else "stop_bound", judged)
+                case = (name, value, stop, found)
+                assert not (stop.never and found.health in (OK, UNKNOWN)), case
+                if found.health is OK and stop.bound is not None:
+                    assert f"{stop.does} {stop.bound:g} s" in found.evidence, case

@@ -6,7 +6,8 @@ import pytest
 
 from groundstation.doctor.chain import examine
 from groundstation.doctor.report import HIDDEN, format_report, hide_addresses
-from groundstation.views.doctor import CheckText, DoctorView, Health, SensorRow
+from groundstation.views.doctor import CheckText, DoctorView, SensorRow
+from link.runtime.diagnosis import Health
 from tests.groundstation.doctor.test_chain import facts, vehicle
 
 

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from pymavlink import mavparm
 
 from groundstation.formats.errors import FileFormatError
-from groundstation.formats.param_file import MAX_LINES, ParamForm, format_params, parse_params
+from groundstation.formats.param_file import MAX_LINES, format_params, parse_params
+from groundstation.formats.param_form import ParamForm
 from link.services.param.client import Param
 from link.services.param.float32 import same_float32, shortest_float32
 from link.services.param.values import NAME_SIZE, REAL32

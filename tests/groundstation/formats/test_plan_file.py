@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from dialects.enums import Autopilot, Command, FenceItem, MissionType
 from groundstation.formats.errors import FileFormatError
-from groundstation.formats.plan import Home, Plan, for_vehicle, from_vehicle
+from groundstation.formats.plan import Plan, PlannedHome, for_vehicle, from_vehicle
 from groundstation.formats.plan_file import format_plan, parse_plan
 from link.services.mission.items import MissionItem, from_message, to_message
 from tests.link.mission_vehicle import plain
@@ -77,7 +77,7 @@ def test_a_plan_is_read() -> None:
             MissionItem(177, 2, (0.0, 5.0, 0.0, 0.0), 0, 0, 0.0),
         )
     )
-    assert plan.home == Home(47.3977419, 8.545594, 487.989)
+    assert plan.home == PlannedHome(47.3977419, 8.545594, 487.989)
     assert [(item.command, item.params[0]) for item in plan.fence] == [
         *[(FenceItem.POLYGON_INCLUSION, 3.0)] * 3,
         (FenceItem.CIRCLE_EXCLUSION, 12.5),
@@ -148,6 +148,7 @@ ITEM = ("mission", "items", 1)
         (broken(*ITEM, "params", 1, value="x"), "f.plan: mission: items 2: params[1] is not a number"),
         (broken(*ITEM, "params", 1, value=True), "f.plan: mission: items 2: params[1] is not a number"),
         (broken(*ITEM, "params", 1, value=1e300), "f.plan: mission: items 2: params[1] is too large"),
+        (broken(*ITEM, "frame", value=10**400), 'f.plan: mission: items 2: "frame" is too large'),
         (broken(*ITEM, "params", 4, value=95), "f.plan: mission: items 2: latitude 95 is not in -90 to 90"),
         (broken(*ITEM, "params", 5, value=-181), "f.plan: mission: items 2: longitude -181 is not in -180 to 180"),
         (

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pymavlink import mavwp
 
 from groundstation.formats.errors import FileFormatError
-from groundstation.formats.plan import Home, Plan
+from groundstation.formats.plan import Plan, PlannedHome
 from groundstation.formats.waypoint_file import format_waypoints, parse_waypoints
 from link.services.mission.files import encode_plan
 from tests.link.mission_vehicle import plain, waypoint
@@ -27,7 +27,7 @@ QGC WPL 110
 
 def test_mission_planners_file_is_written_back_byte_for_byte() -> None:
     plan = parse_waypoints(MISSION_PLANNER, "x")
-    assert plan.home == Home(-35.3632621, 149.1652374, 584.09)
+    assert plan.home == PlannedHome(-35.3632621, 149.1652374, 584.09)
     assert [item.params[0] for item in plan.mission] == [0.0, 0.0], "the jump leads to the first item"
     assert format_waypoints(plan) == MISSION_PLANNER
     assert parse_waypoints(MISSION_PLANNER.replace("\n", "\r\n"), "x") == plan
@@ -49,7 +49,7 @@ def test_a_first_item_that_looks_like_home_is_not_taken_for_it() -> None:
 def test_pymavlink_reads_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("MAVLINK20", raising=False)  # set by other tests, after mavutil has chosen its dialect
     file = tmp_path / "plan.waypoints"
-    file.write_text(format_waypoints(Plan(mission=(waypoint(0), waypoint(1)), home=Home(47.0, 8.0, 400.0))))
+    file.write_text(format_waypoints(Plan(mission=(waypoint(0), waypoint(1)), home=PlannedHome(47.0, 8.0, 400.0))))
     loader: Any = mavwp.MAVWPLoader()  # type: ignore[no-untyped-call]
     assert loader.load(str(file)) == 3
     assert (loader.wp(0).x, loader.wp(0).z) == (47.0, 400.0)

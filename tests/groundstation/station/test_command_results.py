@@ -6,6 +6,8 @@ from dialects import messages as m
 from dialects.enums import Command, Result, Sensor
 from groundstation.intents.vehicle import Arm
 from groundstation.station.command_results import SHOWN_FOR
+from groundstation.ui.log.join import find_group
+from groundstation.views.log import LogRequest
 from tests.groundstation.cockpits import cockpit_with
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
@@ -20,6 +22,26 @@ def test_refusal_comes_with_the_vehicles_reason() -> None:
     cockpit.run(1.0)
     assert cockpit.view.refusal == "arm failed: PreArm: battery low"
     assert not cockpit.view.armed
+
+
+def test_the_log_joins_the_request_the_result_and_the_reason() -> None:
+    vehicle = FakeVehicle()
+    vehicle.answers[ARM], vehicle.reasons[ARM] = Result.FAILED, b"PreArm: battery low"
+    cockpit = cockpit_with(vehicle)
+    cockpit.do(Arm(held=1.0))
+    cockpit.run(1.0)
+    page = cockpit.station.log.build_page(LogRequest(), cockpit.now, cockpit.now)
+    assert page is not None
+    (answer,) = [line for line in page.lines if line.text == "arm failed"]
+    assert answer.origin is not None
+    assert (answer.origin.system, answer.origin.result) == (1, Result.FAILED)
+    group = find_group(page.lines, answer)
+    assert group.request is not None
+    assert group.request.text == "arm"
+    (text,) = group.texts
+    assert text.text == "PreArm: battery low"
+    assert text.origin is not None
+    assert (text.origin.component, text.origin.vehicle) == (1, cockpit.view.name)
 
 
 def test_a_reason_after_the_refusal_counts_and_a_later_text_does_not() -> None:

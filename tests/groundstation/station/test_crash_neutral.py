@@ -14,11 +14,11 @@ from groundstation import client
 from groundstation.intents.driving import DriveKeyDown, SetStyle
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm
-from groundstation.processes import start_module
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.core import Peer, Received
-from tests.groundstation.crashing_station import ORDER
+from link.runtime.child_process import start_module
+from tests.groundstation.host.crashing_station import ORDER
 from tests.groundstation.screen import Screen, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle
 
@@ -94,7 +94,7 @@ def test_a_vehicle_that_was_not_driven_gets_nothing() -> None:
 @pytest.fixture
 def _a_bug_in_the_station(monkeypatch: pytest.MonkeyPatch) -> None:
     def start(module: str, *arguments: Any, **options: Any) -> Any:
-        return start_module("tests.groundstation.crashing_station", *arguments, **options)
+        return start_module("tests.groundstation.host.crashing_station", *arguments, **options)
 
     monkeypatch.setattr(client, "start_module", start)
 

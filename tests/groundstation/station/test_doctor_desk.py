@@ -6,9 +6,17 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result, Sensor
-from groundstation.intents.session import Watch
-from groundstation.intents.setup import Calibrate, ConfirmPosition, EndCalibration, RebootVehicle, RunChecks
-from groundstation.views.doctor import DoctorRequest, DoctorRow, DoctorView, Health, TerminalFacts
+from groundstation.intents.setup import (
+    Calibrate,
+    ConfirmPosition,
+    EndCalibration,
+    RebootVehicle,
+    RunChecks,
+    WatchSticks,
+)
+from groundstation.intents.watch import Watch
+from groundstation.views.doctor import DoctorRequest, DoctorRow, DoctorView, TerminalFacts
+from link.runtime.diagnosis import Health
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 from tests.test_stops import Drive
@@ -198,19 +206,143 @@ def test_the_accelerometers_in_six_positions() -> None:
     assert clinic.doctor.calibration == "accelerometers: done"
 
 
-def test_the_compass_is_written_after_acceptance_only() -> None:
+def measures(clinic: Clinic, compass: int, percent: int, status: int = 2, attempt: int = 1) -> None:
+    """Let a compass of two report its progress."""
+    clinic.vehicle.send(m.MagCalProgress(compass, 3, status, attempt, percent, [0] * 10, 0.0, 0.0, 1.0))
+    clinic.run(0.1)
+
+
+def reports(clinic: Clinic, compass: int, status: int, fitness: float = 8.2, mask: int = 3) -> None:
+    """Let a compass report how it ended."""
+    clinic.vehicle.send(m.MagCalReport(compass, mask, status, 0, fitness, 1, 2, 3, 0, 0, 0, 0, 0, 0))
+    clinic.run(0.1)
+
+
+def compass_is_done(clinic: Clinic) -> bool:
+    return next(row for row in clinic.doctor.calibrations if row.kind == "compass").health is Health.OK
+
+
+def test_the_compasses_with_their_progress_and_fit() -> None:
     clinic = Clinic(FakeArduPilot())
     clinic.do(Calibrate(1, 1, "compass"))
     clinic.run(0.5)
     assert clinic.vehicle.commands(Command.DO_START_MAG_CAL)[0].param3 == 0, "not saved by itself"
-    clinic.vehicle.send(m.MagCalReport(0, 1, 4, 0, 8.2, 1, 2, 3, 0, 0, 0, 0, 0, 0))
-    clinic.run(0.1)
-    assert clinic.doctor.calibration == "compass 1 fit 8.2: W writes it, x cancels"
+    requested = {command.param1 for command in clinic.vehicle.commands(Command.SET_MESSAGE_INTERVAL)}
+    assert requested >= {m.MagCalProgress.id, m.MagCalReport.id}
+    measures(clinic, 0, 40)
+    assert clinic.doctor.calibration_share == 0.0, "the second one has not begun"
+    measures(clinic, 1, 30, attempt=2)
+    assert clinic.doctor.calibration_share == pytest.approx(0.3)
+    assert "compass 1 40 %, compass 2 30 % (attempt 2)" in clinic.doctor.calibration
+    reports(clinic, 0, 4)
+    assert "compass 1 fit 8.2, compass 2 30 % (attempt 2)" in clinic.doctor.calibration
+    assert not clinic.doctor.compass_ready
+    reports(clinic, 1, 4, 11.0)
+    assert clinic.doctor.calibration == "compass 1 fit 8.2, compass 2 fit 11.0: W writes it, x cancels"
+    assert clinic.doctor.compass_ready
+    assert clinic.doctor.calibration_share is None
     assert not clinic.vehicle.commands(Command.DO_ACCEPT_MAG_CAL)
-    clinic.do(EndCalibration(1, accept=True))
-    clinic.run(0.1)
+    assert not compass_is_done(clinic)
+    clinic.do(EndCalibration(2, 1, accept=True))
+    clinic.run(0.5)
     assert len(clinic.vehicle.commands(Command.DO_ACCEPT_MAG_CAL)) == 1
-    assert next(row for row in clinic.doctor.calibrations if row.kind == "compass").health is Health.OK
+    assert compass_is_done(clinic)
+    assert clinic.doctor.calibration == "compass: written; restart the vehicle"
+    assert not clinic.doctor.compass_ready
+
+
+def test_a_refused_result_of_the_compass_is_kept() -> None:
+    clinic = Clinic(FakeArduPilot())
+    clinic.vehicle.answers[Command.DO_ACCEPT_MAG_CAL] = Result.FAILED
+    clinic.do(Calibrate(1, 1, "compass"))
+    clinic.run(0.5)
+    reports(clinic, 0, 4, mask=1)
+    clinic.do(EndCalibration(2, 1, accept=True))
+    clinic.run(2.0)
+    assert [line.state for line in clinic.doctor.requests if "write" in line.what] == ["refused"]
+    assert clinic.doctor.compass_ready
+    assert not compass_is_done(clinic)
+
+
+def test_a_cancelled_calibration_of_the_compass() -> None:
+    clinic = Clinic(FakeArduPilot())
+    clinic.do(Calibrate(1, 1, "compass"))
+    measures(clinic, 0, 40)
+    clinic.do(EndCalibration(2, 1))
+    measures(clinic, 0, 41)  # it was on the way
+    clinic.run(0.5)
+    assert len(clinic.vehicle.commands(Command.DO_CANCEL_MAG_CAL)) == 1
+    assert clinic.doctor.calibration == ""
+    assert clinic.doctor.calibration_share is None
+
+
+@pytest.mark.parametrize(("status", "words"), [(5, "failed"), (7, "the radius"), (10, "residuals"), (200, "failed")])
+def test_a_compass_that_fails(status: int, words: str) -> None:
+    clinic = Clinic(FakeArduPilot(), 2.0)
+    clinic.do(Calibrate(1, 1, "compass"))
+    reports(clinic, 0, 4)
+    reports(clinic, 1, status, float("nan"))
+    assert words in clinic.doctor.calibration
+    assert clinic.doctor.calibration.endswith(": x cancels")
+    assert not clinic.doctor.compass_ready
+
+
+STICK_PARAMS = {f"RC{channel}_{name}": value for channel in (1, 2, 3)
+                for name, value in (("MIN", 1100.0), ("TRIM", 1500.0), ("MAX", 1900.0), ("REVERSED", 0.0))}  # fmt: skip
+
+
+def move_sticks(clinic: Clinic, *pulses: dict[int, int]) -> None:
+    """Hold the sticks in one place after the other, for 0.4 s each."""
+    vehicle = clinic.vehicle
+    assert isinstance(vehicle, FakeArduPilot)
+    for places in pulses:
+        vehicle.sticks |= places
+        clinic.run(0.4)
+
+
+def test_the_ends_and_centres_of_the_sticks_become_changes() -> None:
+    vehicle = FakeArduPilot()
+    vehicle.parameters |= STICK_PARAMS
+    clinic = Clinic(vehicle)
+    vehicle.sticks = {1: 1500, 2: 1500, 3: 1500, 4: 65535, 5: 0}
+    assert clinic.doctor.sticks is None
+    clinic.do(WatchSticks(1))
+    clinic.run(0.6)
+    move_sticks(clinic, {1: 1102, 2: 1450}, {1: 1898, 2: 1550}, {3: 1100, 1: 1504}, {3: 1900}, {3: 1500, 2: 1500})
+    view = clinic.doctor
+    assert view.sticks is not None
+    assert [(row.channel, row.low, row.high, row.now, row.moved) for row in view.sticks] == [
+        (1, 1102, 1898, 1504, True), (2, 1450, 1550, 1500, False), (3, 1100, 1900, 1500, True),
+    ]  # fmt: skip
+    assert "moved: 1, 3" in view.calibration
+    clinic.run(2.0)
+    assert not clinic.doctor.sticks_unread
+    assert [(each.name, each.before, each.value) for each in clinic.doctor.stick_changes] == [
+        ("RC1_MIN", 1100.0, 1102.0), ("RC1_TRIM", 1500.0, 1504.0), ("RC1_MAX", 1900.0, 1898.0),
+    ]  # fmt: skip
+    clinic.do(WatchSticks(1, on=False))
+    assert clinic.doctor.sticks is None
+    clinic.run(0.5)
+    assert not vehicle.all(m.ParamSet), "nothing is written"
+    rates = [each.param2 for each in vehicle.commands(Command.SET_MESSAGE_INTERVAL) if each.param1 == m.RcChannels.id]
+    assert rates[-2:] == [100_000, 500_000]
+
+
+def test_no_sticks_of_an_armed_vehicle() -> None:
+    vehicle = FakeArduPilot()
+    clinic = Clinic(vehicle)
+    vehicle.armed = True
+    clinic.run(2.0)
+    clinic.do(WatchSticks(1))
+    assert clinic.doctor.sticks is None
+    vehicle.armed = False
+    clinic.run(2.0)
+    clinic.do(WatchSticks(1))
+    assert clinic.doctor.sticks is not None
+    vehicle.armed = True
+    clinic.run(2.0)
+    assert clinic.doctor.sticks is None
+    assert clinic.doctor.calibration == "RC sticks: ended, the vehicle is armed"
 
 
 def test_px4_says_in_texts_what_to_do() -> None:

@@ -9,11 +9,12 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from dialects import messages as m
 from dialects.enums import Autopilot, DriveType
-from groundstation.drive_views import StopBound
 from groundstation.intents.driving import DriveKeyUp
-from groundstation.intents.session import ReportKeyReleases, Watch
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.watch import Watch
 from groundstation.ipc import encode
 from groundstation.snapshot import VehicleView
+from groundstation.snapshot.drive import StopBound
 from groundstation.station.station import COMPONENT, Station
 from groundstation.views.base import View
 from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, TrackView

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from dialects import messages as m
@@ -26,13 +28,37 @@ def test_a_key_is_sent_at_once_and_then_at_20_hz() -> None:
     assert 38 <= len(demands) <= 43
 
 
-def test_a_change_is_sent_twice_and_its_repeats_once() -> None:
+def test_a_copy_follows_a_change_and_none_its_repeats() -> None:
     cockpit = armed_cockpit()
     before = cockpit.now
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.3)
-    times = [at for at, x, _ in cockpit.demands(before) if x]
-    assert times[0] == times[1] < times[2] < times[3]
+    proofs = [at for at, message in cockpit.vehicle.all(m.RoverOperatorPresence) if at >= before and message.x == 600]
+    first, copy, *repeats = proofs
+    assert 0.003 <= copy - first <= 0.01
+    assert all(0.035 <= later - earlier <= 0.075 for earlier, later in pairwise([first, *repeats])), repeats
+    assert [at for at, x, _ in cockpit.demands(before) if x] == [first, *repeats], "a copy is the proof alone"
+
+
+def test_a_copy_carries_what_the_keys_demand_when_it_is_sent() -> None:
+    cockpit = driving_cockpit()
+    released = cockpit.now
+    cockpit.do(DriveKeyUp(key="i"))
+    cockpit.do(FORWARD)
+    cockpit.do(DriveKeyUp(key="i"))
+    cockpit.run(0.2)
+    assert {x for at, x, _ in cockpit.demands(released + 0.006)} == {0}
+
+
+def test_no_copy_follows_a_screen_that_hangs() -> None:
+    cockpit = driving_cockpit()
+    cockpit.leasing = False
+    cockpit.run(0.4)
+    assert cockpit.demands()[-1][1] == 0
+    silent = cockpit.now
+    cockpit.do(FORWARD)
+    cockpit.run(0.4)
+    assert all(x == 0 for _, x, _ in cockpit.demands(silent))
 
 
 def test_release_is_neutral_at_once_then_20_hz_for_a_second_then_5_hz() -> None:

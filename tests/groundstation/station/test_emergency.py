@@ -143,7 +143,7 @@ def test_refused_clearing_keeps_the_lock() -> None:
     cockpit.do(ClearEmergencyStop(held=1.0))
     cockpit.run(2.0)
     assert cockpit.view.emergency_stop
-    assert cockpit.view.refusal == "clear emergency stop failed"
+    assert cockpit.view.refusal == "release the emergency stop failed"
 
 
 def test_clearing_where_no_stop_is_on_sends_nothing() -> None:

@@ -12,11 +12,21 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
-from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
+from groundstation.intents.files import (
+    CompareFile,
+    EraseLogs,
+    GetFile,
+    GetLog,
+    ListFolder,
+    ListLogs,
+    PutFile,
+    RemoveFile,
+)
 from groundstation.intents.services import CancelRequest, FetchParams
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm
 from groundstation.views.files import FilesRequest, FilesView
+from link.services.ftp.protocol import crc32
 from tests.groundstation.file_vehicle import FileCockpit, FileVehicle
 
 DATA = random.Random(3).randbytes(120_000)
@@ -236,3 +246,35 @@ def test_on_a_fast_line_they_do_not_wait(tmp_path: Path) -> None:
     pit.until(lambda: drive.demands(drive.now - 0.2)[-1][1] > 0)
     assert pit.end_of(get(1, tmp_path)).state == "accepted"
     assert drive.demands(drive.now - 0.2)[-1][1] > 0
+
+
+def test_a_file_here_is_compared_with_that_of_the_vehicle(tmp_path: Path) -> None:
+    pit = cockpit()
+    here = tmp_path / "copy.tlog"
+
+    def compared(number: int, path: str = "/logs/2.tlog") -> tuple[str, str]:
+        line = pit.end_of(CompareFile(request=number, path=path, file=str(here)))
+        assert (line.service, line.what) == ("files", f"compare {path} with copy.tlog")
+        return line.state, line.detail
+
+    assert compared(1) == ("refused", f"{here}: No such file or directory")
+    here.write_bytes(DATA)
+    assert compared(2) == ("accepted", f"same: CRC {crc32(DATA):08x}")
+    here.write_bytes(DATA[:-1] + b"?")
+    assert compared(3) == (
+        "accepted",
+        f"differs: CRC {crc32(DATA):08x} there, {crc32(here.read_bytes()):08x} here",
+    )
+    assert compared(4, "/logs/9.tlog") == ("refused", "no such file on the vehicle")
+    assert pit.vehicle.logs.files["2.tlog"] == DATA, "nothing was changed there"
+
+
+def test_a_comparison_without_an_answer_fails_and_one_can_be_cancelled(tmp_path: Path) -> None:
+    pit = FileCockpit(FileVehicle(ftp=False))
+    (tmp_path / "a").write_bytes(DATA)
+    pit.cockpit.do(CompareFile(request=1, path="/a", file=str(tmp_path / "a")))
+    pit.run(5.0)
+    pit.cockpit.do(CancelRequest(1))
+    assert pit.ended(1).state == "cancelled"
+    line = pit.end_of(CompareFile(request=2, path="/a", file=str(tmp_path / "a")))
+    assert (line.state, line.detail) == ("no answer", "after 48 tries")

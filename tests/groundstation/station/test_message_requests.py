@@ -9,7 +9,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.intents.services import RequestMessage, ServiceIntent, SetMessageRate
-from groundstation.intents.session import Watch
+from groundstation.intents.watch import Watch
 from groundstation.views.messages import MessageRequest, MessagesPage, MessagesRequest, MessageView
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from tests.groundstation.fake_vehicle import Cockpit

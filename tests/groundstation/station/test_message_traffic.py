@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation.intents.session import Watch
+from groundstation.intents.watch import Watch
 from groundstation.ipc import MAX_PACKET, encode
 from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MAX_KINDS, MAX_ROWS, MessageTraffic
@@ -74,6 +74,8 @@ def test_the_loss_is_that_of_the_source() -> None:
     assert (vehicle.loss, vehicle.lost) == (0.1, 10)
     assert attitude.loss is None
     assert ours.loss is None
+    assert names(made, text="lost heart") == ["1/1", "HEARTBEAT"]
+    assert names(made, text="lost src:51") == []
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,10 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import EmergencyStop, Stop
-from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate, Watch
+from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.setup import StopMotorTest, TurnMotor
 from groundstation.intents.vehicle import Arm, Disarm
+from groundstation.intents.watch import Watch
 from groundstation.station.motor_test import LONGEST
 from groundstation.vehicles.motor_outputs import build_stop, build_turn, is_turn, motors_of
 from groundstation.views.doctor import DoctorRequest

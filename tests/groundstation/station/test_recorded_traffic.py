@@ -17,6 +17,9 @@ from groundstation.views.messages import MessageRequest, MessagesRequest, Messag
 from link.protocol.channel import Channel
 from link.tlog.tlog import read_records
 
+pytestmark = pytest.mark.xdist_group("recorded traffic")
+"""Each worker would play the recording."""
+
 RECORDING = Path(__file__).resolve().parents[4] / "shared" / "data" / "ardurover.tlog"
 KNOWN = {kind.msgname for kind in MESSAGES.values()} & {kind.msgname for kind in ardupilotmega.mavlink_map.values()}
 """Messages of both dialects."""

@@ -6,7 +6,7 @@ import pytest
 
 from dialects import messages as m
 from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
-from groundstation.intents.session import Watch
+from groundstation.intents.watch import Watch
 from groundstation.views.params import ParamPage, ParamPageRequest
 from groundstation.views.requests import RequestLine
 from tests.test_stops import Drive

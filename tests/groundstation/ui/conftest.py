@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.config.settings import ThemeName
-from groundstation.ui.colours import use_theme
+from groundstation.ui.look.colours import use_theme
 from tests.groundstation.ui.programs import Program
 
 

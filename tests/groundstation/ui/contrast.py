@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import re
 from functools import cache
 
 from rich.color import Color, ColorSystem
 from rich.palette import Palette
+from rich.style import Style
 
 TEXT_CONTRAST = 4.5
 """WCAG 2.1, 1.4.3: the least contrast between text and its background."""
@@ -69,3 +71,12 @@ def colour_codes(drawn: bytes) -> set[int]:
     short = re.sub(rb"([34]8);5;[0-9]+", rb"\1", drawn)  # the number of one of 256 follows
     numbers = {int(number) for codes in SGR.findall(short) for number in codes.split(b";") if number}
     return {number for number in numbers if 30 <= number <= 49 or 90 <= number <= 107}
+
+
+def forget_drawn_styles() -> None:
+    """Let all styles be drawn anew: Rich keeps the codes of the terminal that a style was drawn for first."""
+    gc.unfreeze()  # what is exempt from collections is not listed
+    for each in gc.get_objects():
+        if isinstance(each, Style):
+            each._ansi = None
+    gc.freeze()

@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from groundstation.views.files import FileRow, FilesView, FolderRow, LogRow
+from groundstation.views.files import FileRow, FilesView, FolderRow, VehicleLog
 from groundstation.views.requests import RequestLine, RequestsView
 from tests.groundstation.ui.examples import NOON
 
 LOGS = (
-    LogRow(9, 1_699_000_000, 1_900_000), LogRow(10, 0, 12_400_000), LogRow(11, 1_699_600_000, 900_000),
-    LogRow(12, 1_699_800_000, 8_100_000), LogRow(13, 1_699_900_000, 14_200_000), LogRow(14, 1_700_000_000, 3_600_000),
+    VehicleLog(9, 1_699_000_000, 1_900_000), VehicleLog(10, 0, 12_400_000), VehicleLog(11, 1_699_600_000, 900_000),
+    VehicleLog(12, 1_699_800_000, 8_100_000), VehicleLog(13, 1_699_900_000, 14_200_000),
+    VehicleLog(14, 1_700_000_000, 3_600_000),
 )  # fmt: skip
 FOLDERS = (
     FolderRow("/", (FileRow("APM", None), FileRow("@SYS", None), FileRow("crash_dump.bin", 98_000))),

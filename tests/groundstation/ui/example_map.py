@@ -60,7 +60,7 @@ def plan_view(**changes: Any) -> PlanView:
     """Six items are done, the seventh is driven to."""
     view = PlanView(
         system=1, name="Rover 1", autopilot=0, plans=(summary(MISSION), summary(FENCE), summary(RALLY)), current=6,
-        reached=(0, 1, 2, 3, 4, 5), state=3, to_go=16.0, off_line=-0.14, place=at(30, 49), home=HOME,
+        reached=(0, 1, 2, 3, 4, 5), state=3, off_line=-0.14, place=at(30, 49), home=HOME,
         home_altitude=584.0, modes=MODES, neighbours=(Neighbour(2, at(20, -4)),),
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
@@ -87,7 +87,7 @@ def track() -> PlanTrackView:
 
 NONE = (PlanSummary(), PlanSummary(), PlanSummary())
 EMPTY = plan_view(plans=(PlanSummary(1), PlanSummary(1), PlanSummary(1)), current=None, reached=(), state=1,
-                  to_go=None, off_line=None, place=HOME)  # fmt: skip
+                  off_line=None, place=HOME)  # fmt: skip
 LOADING = msgspec.structs.replace(
     EMPTY, plans=NONE, running=(RequestLine(1, "running", "download mission", done=12, total=50, service="plan"),)
 )
@@ -98,7 +98,7 @@ LACKING = msgspec.structs.replace(
 REFUSED = plan_view(
     ended=(RequestLine(1, "refused", "upload mission of 10 items", "item 8: INVALID_PARAM5_X", service="plan"),)
 )
-NOWHERE = plan_view(place=None, home=None, current=None, reached=(), to_go=None, off_line=None, neighbours=(),
+NOWHERE = plan_view(place=None, home=None, current=None, reached=(), off_line=None, neighbours=(),
                     plans=NONE)  # fmt: skip
 
 VIEWS: dict[str, tuple[View, ...]] = {

@@ -10,13 +10,14 @@ from groundstation.views.doctor import (
     CheckText,
     DoctorRow,
     DoctorView,
-    Health,
     MotorRow,
     MotorTestView,
     ParamFix,
     SensorRow,
+    StickRow,
 )
 from groundstation.views.requests import RequestLine
+from link.runtime.diagnosis import Health
 
 OK, WARNING, FAULT, UNKNOWN = Health.OK, Health.WARNING, Health.FAULT, Health.UNKNOWN
 
@@ -60,6 +61,7 @@ CALIBRATIONS = (
     CalibrationRow("gyro", "gyros", UNKNOWN, ""),
     CalibrationRow("pressure", "pressure", UNKNOWN, ""),
     CalibrationRow("compass", "compass", UNKNOWN, ""),
+    CalibrationRow("sticks", "RC sticks", UNKNOWN, ""),
 )
 
 
@@ -101,6 +103,17 @@ TURNING = doctor_view(
     test=MotorTestView(1, "turns at +12%", turning=True),
 )
 LAYING = doctor_view(calibration="lay it nose down, then ENTER (4 of 6)", waits_for_position=True)
+COMPASS = doctor_view(
+    calibration="compass 1 62 %, compass 2 40 % (attempt 2): turn it slowly about every axis; x cancels",
+    calibration_share=0.4,
+)
+STICKS = doctor_view(
+    calibration="move all sticks to their ends, centre them, then ENTER (moved: 1, 3)",
+    sticks=(
+        StickRow(1, 1102, 1898, 1504, moved=True), StickRow(2, 1450, 1550, 1500, moved=False),
+        StickRow(3, 1100, 1901, 1100, moved=True), StickRow(4, 1500, 1500, 1500, moved=False),
+    ),
+)  # fmt: skip
 ASKED = doctor_view(checked=RequestLine(4, "running", "pre-arm checks", service="setup", system=1), texts=())
 UNANSWERED = doctor_view(
     checked=RequestLine(4, "no answer", "pre-arm checks", "after 6 tries", service="setup", system=1), texts=(),
@@ -114,6 +127,7 @@ EMPTY = DoctorView(rows=NO_VEHICLE)
 SETUP_VIEWS = {
     "setup": doctor_view(), "setup_well": WELL, "setup_turning": TURNING, "setup_asked": ASKED,
     "setup_unanswered": UNANSWERED, "setup_lacking": LACKING, "setup_empty": EMPTY, "setup_laying": LAYING,
+    "setup_compass": COMPASS, "setup_sticks": STICKS,
 }  # fmt: skip
 """By the name of the golden frame, without its size."""
 
@@ -131,6 +145,9 @@ def setup_frames(stands: Snapshot, waits: Snapshot) -> dict[str, tuple[tuple[int
         "setup_turning_80x24": (SMALL, stands, ("f8", "m", "y")),
         "setup_turning_140x45": (WIDE, stands, ("f8", "m", "y")),
         "setup_laying_140x45": (WIDE, stands, opened),
+        "setup_compass_140x45": (WIDE, stands, opened),
+        "setup_sticks_80x24": (SMALL, stands, opened),
+        "setup_sticks_140x45": (WIDE, stands, opened),
         "setup_asked_140x45": (WIDE, stands, opened),
         "setup_unanswered_140x45": (WIDE, stands, opened),
         "setup_lacking_140x45": (WIDE, stands, opened),

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import socket
 from array import array
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 import msgspec
 
-from groundstation.drive_views import HealthLine, KeyToMotor, MissionProgress, StopBound, Timing
-from groundstation.intents.session import RenewLease, SetKeyGate, Watch
+from groundstation.intents.session import RenewLease, ReportScreen, SetKeyGate
 from groundstation.intents.union import AnyIntent
+from groundstation.intents.watch import Watch
 from groundstation.snapshot import (
     LinkView,
     LogLine,
@@ -21,6 +22,7 @@ from groundstation.snapshot import (
     StationOutage,
     VehicleView,
 )
+from groundstation.snapshot.drive import HealthLine, KeyToMotor, MissionProgress, StopBound, Timing
 from groundstation.views.base import View
 from groundstation.views.charts import FieldId, FieldInfo
 from groundstation.views.drive import SpeedView, TrackRequest, TrackView
@@ -35,10 +37,18 @@ NOON = 1_700_000_000.0
 Wanted = TypeVar("Wanted")
 
 
-class Recorder:
-    """A station that keeps the intents it gets and gives the snapshots it was offered; its descriptor is real."""
+def _ignore(*intents: AnyIntent) -> None:
+    """Do nothing with intents."""
 
-    def __init__(self) -> None:
+
+class Recorder:
+    """The connection of a screen: passes intents on and keeps them, gives what it was offered; its descriptor is real.
+
+    A station in virtual time has one, whose `handle` is its own.
+    """
+
+    def __init__(self, handle: Callable[..., None] = _ignore) -> None:
+        self._handle = handle
         self.intents: list[AnyIntent] = []
         self.alive = True
         self.outage = StationOutage()
@@ -48,8 +58,9 @@ class Recorder:
         self._ours.setblocking(False)
 
     def send(self, *intents: AnyIntent) -> None:
-        """Note them."""
+        """Note them, and let the station handle them at once."""
         self.intents += intents
+        self._handle(*intents)
 
     def fileno(self) -> int:
         """Readable after `offer`."""
@@ -69,9 +80,10 @@ class Recorder:
         views, self._views = self._views, []
         return views
 
-    def offer_view(self, view: View) -> None:
-        """Let this view come with the next snapshot."""
+    def offer_view(self, view: View) -> bool:
+        """Let this view come with the next snapshot. Returns True, as a connection that took it."""
         self._views.append(view)
+        return True
 
     def offer(self, snapshot: Snapshot) -> None:
         """Let this be the newest snapshot."""
@@ -90,8 +102,8 @@ class Recorder:
 
     @property
     def wishes(self) -> list[AnyIntent]:
-        """The intents without the beat and the gate."""
-        return [intent for intent in self.intents if not isinstance(intent, (RenewLease, SetKeyGate))]
+        """The intents without the beat, the gate and the names of screens."""
+        return [intent for intent in self.intents if not isinstance(intent, (RenewLease, SetKeyGate, ReportScreen))]
 
     def of(self, kind: type[Wanted]) -> list[Wanted]:
         """Those of one kind."""

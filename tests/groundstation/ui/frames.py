@@ -27,9 +27,10 @@ _LINES = {"─": "lr", "│": "ud", "╭": "rd", "╮": "ld", "╰": "ru", "╯"
 """Box characters -> where from the middle they go; capitals are heavy. Drawn, because fonts leave gaps."""
 
 Cell = tuple[str, Style]
+Picture = list[list[Cell]]
 
 
-def cells(app: App[Any]) -> list[list[Cell]]:
+def cells(app: App[Any]) -> Picture:
     """The whole terminal, with the screens below a modal one."""
     update = app.screen._compositor.render_update(full=True, screen_stack=app._background_screens)
     strips = cast(LayoutUpdate, update).strips
@@ -53,9 +54,8 @@ def texts(strips: Iterable[Strip]) -> list[str]:
     return [strip.text for strip in strips]
 
 
-def svg(app: App[Any]) -> str:
-    """A picture in which each character stands exactly in its cell, as a terminal draws it."""
-    rows = cells(app)
+def svg(rows: Picture) -> str:
+    """Return a picture in which each character stands exactly in its cell, as a terminal draws it."""
     width, height = WIDTH * max(map(len, rows)), HEIGHT * len(rows)
     body = "\n".join(part for y, row in enumerate(rows) for part in _row(row, y * HEIGHT))
     return (

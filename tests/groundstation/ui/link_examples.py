@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 
 from groundstation.snapshot import Snapshot
+from groundstation.snapshot.signing import SigningState, SigningView
 from groundstation.views.base import View
 from groundstation.views.links import (
     ComponentRow,
@@ -18,6 +19,7 @@ from groundstation.views.links import (
     VehicleRow,
     VehiclesView,
 )
+from groundstation.views.messages import MessageRow, MessagesPage
 from tests.groundstation.ui.examples import snapshot
 
 OURS = Program(255, 190, 0x1A2B3C4D)
@@ -26,7 +28,7 @@ OURS = Program(255, 190, 0x1A2B3C4D)
 def vehicle_row(system: int = 1, **changes: Any) -> VehicleRow:
     """A rover of ours that stands, 14.9 m north of home."""
     row = VehicleRow(
-        system=system, name=f"Rover {system}", firmware="0.1.0", mode="MANUAL", armed=False, silence=0.1,
+        signing="off", system=system, name=f"Rover {system}", firmware="0.1.0", mode="MANUAL", armed=False, silence=0.1,
         state="standby", battery_voltage=12.1, battery_remaining=0.76, distance=14.9, bearing=357.0, has_position=True,
         driver=0,
     )  # fmt: skip
@@ -35,14 +37,14 @@ def vehicle_row(system: int = 1, **changes: Any) -> VehicleRow:
 
 SIX = VehiclesView(
     (
-        vehicle_row(armed=True, state="active", in_control=True, driver=255,
+        vehicle_row(signing="on", armed=True, state="active", in_control=True, driver=255,
                     components=(ComponentRow(100, "camera"), ComponentRow(154, "gimbal"))),
         vehicle_row(2, name="ArduPilot rover 2", firmware="4.6.1", mode="AUTO", armed=True, state="critical",
                     distance=61.2, bearing=74.0, driver=None, silence=0.3, battery_voltage=11.6,
                     battery_remaining=0.41),
         vehicle_row(3, mode="HOLD", distance=38.0, bearing=212.0, driver=250),
         vehicle_row(4, name="PX4 boat 4", firmware="1.15.4", mode="OFFBOARD", armed=True, state="active",
-                    distance=2120.0, bearing=301.0, silence=1.2, battery_voltage=14.9, battery_remaining=0.23,
+                    distance=212.0, bearing=301.0, silence=1.2, battery_voltage=14.9, battery_remaining=0.23,
                     driver=None),
         vehicle_row(7, name="Vehicle 7", firmware="", distance=None, bearing=None, has_position=False,
                     battery_voltage=None, battery_remaining=None, silence=0.4, driver=None),
@@ -66,13 +68,26 @@ LINKS = LinksView(
 )  # fmt: skip
 """A good link, a radio, one on which nobody is heard, one that is down."""
 
+SIGNED = SigningView(SigningState.ON, "on: both ends sign; our key is laptop (1a2b3c4d)")
 CONTROL = ControlView(
     vehicle="Rover 1", ours=OURS, in_control=True, driver=255, program=OURS, age=0.4,
-    stations=(StationRow(250, 190, 0.6), StationRow(245, 191, 0.2)),
+    stations=(StationRow(250, 190, 0.6), StationRow(245, 191, 0.2)), signing=SIGNED,
 )  # fmt: skip
-VIEWS: tuple[View, ...] = (SIX, LINKS, CONTROL)
+BYTES = MessagesPage(
+    tuple(
+        MessageRow(255 if sent else 1, 1, sent, name, rate, size, 500, 0.1)
+        for name, rate, size, sent in (
+            ("MANUAL_CONTROL", 20.0, 800.0, True), ("SERVO_OUTPUT_RAW", 20.0, 660.0, False),
+            ("ATTITUDE", 10.0, 360.0, False), ("VFR_HUD", 10.0, 320.0, False), ("HEARTBEAT", 1.0, 21.0, False),
+            ("COMMAND_ACK", 0.0, 0.0, False),
+        )
+    ),
+    0, 6, 6, 61.0, 2161.0, order="bytes",
+)  # fmt: skip
 
-FLEET = snapshot(vehicles=(1, 2, 3, 4, 7, 9), also_armed=(2, 4, 9))
+VIEWS: tuple[View, ...] = (SIX, LINKS, CONTROL, BYTES)
+
+FLEET = snapshot(signing=SIGNED, vehicles=(1, 2, 3, 4, 7, 9), also_armed=(2, 4, 9))
 
 
 def many(count: int, not_shown: int = 0) -> VehiclesView:

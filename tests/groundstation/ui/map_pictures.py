@@ -18,7 +18,7 @@ EXCLUDED, RALLY, ADDED = (2.4, 4.9), (-1.2, 7.6), (0.8, 8.2)
 Wait = Callable[[Callable[[], bool]], Awaitable[None]]
 
 
-async def map_picture(app: ConsoleApp, pilot: Pilot[int], wait: Wait) -> str:
+async def map_picture(app: ConsoleApp, pilot: Pilot[int], wait: Wait) -> frames.Picture:
     """Return the screen while AUTO drives, with two edits that are not uploaded."""
     await pilot.press("f2")
     await wait(lambda: isinstance(app.screen, MapScreen))
@@ -42,7 +42,7 @@ async def map_picture(app: ConsoleApp, pilot: Pilot[int], wait: Wait) -> str:
     await _draw(pilot, model, (ADDED,))
     await pilot.press("f")
     await pilot.pause(4.0)
-    return frames.svg(app)
+    return frames.cells(app)
 
 
 async def _draw(pilot: Pilot[int], model: MapModel, points: tuple[tuple[float, float], ...]) -> None:

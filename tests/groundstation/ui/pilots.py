@@ -15,10 +15,11 @@ from textual.pilot import Pilot
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app import ConsoleApp
-from groundstation.ui.appearance import PLAIN, Look
-from groundstation.ui.key_gate import STARTING
-from groundstation.ui.key_parser import KeyEventParser
+from groundstation.ui.keys.key_gate import STARTING
+from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.screens.help import HelpScreen
+from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
@@ -45,6 +46,16 @@ class Console:
         """Press keys one after the other."""
         await self.pilot.press(*keys)
         await self.pilot.pause()
+
+    async def go_home(self) -> None:
+        """Close all screens on top of Drive."""
+        while self.app.screen is not self.app.drive:
+            await self.press("escape")
+
+    def is_clean(self, kind: type[ConsoleScreen]) -> bool:
+        """Return whether a screen of this class is on top and has no text field and no question."""
+        top = self.app.screen
+        return isinstance(top, kind) and not top.takes_text and top.question is None
 
     async def hold(self, key: str, wanted: Callable[[], object]) -> None:
         """Hold a key until it is true."""

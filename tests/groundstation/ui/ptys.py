@@ -18,8 +18,8 @@ from typing import TypeVar
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import ConsoleApp
-from groundstation.ui.appearance import PLAIN, Look
-from groundstation.ui.tty_output import TerminalFile
+from groundstation.ui.look.appearance import PLAIN, Look
+from groundstation.ui.terminal.tty_output import TerminalFile
 from tests.groundstation.ui.examples import Recorder
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])

@@ -9,10 +9,12 @@ import pytest
 
 from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
-from groundstation.snapshot import EmergencyProgress, HandoverNotice, LinkView, Snapshot
-from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts, hint
+from groundstation.snapshot import EmergencyProgress, HandoverNotice, LinkView, RecordingView, Snapshot
+from groundstation.snapshot.lease import LeaseView
+from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts
 from groundstation.ui.display_state import DisplayState, ScreenInfo
-from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD, GateClosure
+from groundstation.ui.hints import hint
+from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD, GateClosure
 from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
 from tests.groundstation.ui.ptys import STANDARD
 
@@ -24,6 +26,19 @@ OTHER = {"in_control": False, "driver": 254}
 CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (snapshot(), {"outage": "station not responding: x"}, AlertLevel.DANGER, "station not responding: x"),
     (snapshot(), {"outage": "y", "station_alive": False}, AlertLevel.DANGER, "y; ^q quits"),
+    (
+        snapshot(lease=LeaseView(asks="screen on pts/4", left=8.2)),
+        {},
+        AlertLevel.QUESTION,
+        "screen on pts/4 asks to drive: Y",
+    ),
+    (
+        snapshot(lease=LeaseView(driver="screen on pts/4")),
+        {},
+        AlertLevel.WARNING,
+        "you watch: screen on pts/4 drives; g asks",
+    ),
+    (snapshot(lease=LeaseView(driver="x", waits=7.9)), {}, AlertLevel.WARNING, "x drives; asked (8 s), stops work"),
     (snapshot(handover=ASKED), {}, AlertLevel.QUESTION, "control of Rover 1: Y gives, N keeps (8 s)"),
     (
         snapshot(vehicle=vehicle(**OTHER, control_wait=6.0)),
@@ -50,6 +65,7 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         "1 more vehicle is not shown: the limit is 16",
     ),
     (snapshot(vehicle=vehicle(limits=("slew", "neutral first"))), {}, AlertLevel.WARNING, "neutral first: release"),
+    (snapshot(recording=RecordingView(problem="not recording: disk full")), {}, AlertLevel.WARNING, "not recording: d"),
     (snapshot(vehicle=vehicle(limits=("stale",))), {}, AlertLevel.WARNING, "stale: the vehicle has no recent command"),
     (
         snapshot(vehicle=vehicle(refusal="arm denied: PreArm: battery low")),

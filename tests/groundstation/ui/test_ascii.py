@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
-from groundstation.ui.appearance import Look
-from groundstation.ui.ascii import to_ascii
+from groundstation.ui.look.appearance import Look
+from groundstation.ui.look.ascii import to_ascii
 from tests.groundstation.ui.ptys import app_on_a_pty, until
 
 

@@ -8,9 +8,9 @@ import pytest
 from rich.color import Color, ColorSystem
 
 from groundstation.config.settings import ThemeName
-from groundstation.ui.colours import badge, style, theme_changes, use_theme
-from groundstation.ui.roles import Role
-from groundstation.ui.themes import THEMES
+from groundstation.ui.look.colours import badge, style, theme_changes, use_theme
+from groundstation.ui.look.roles import Role
+from groundstation.ui.look.themes import THEMES
 
 
 @pytest.fixture(autouse=True)

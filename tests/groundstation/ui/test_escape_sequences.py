@@ -16,9 +16,9 @@ from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencySto
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import SetMode
-from groundstation.ui.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
-from groundstation.ui.key_gate import KeyGate
-from groundstation.ui.key_parser import KeyEventParser
+from groundstation.ui.keys.key_gate import KeyGate
+from groundstation.ui.terminal.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
+from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.ui.examples import Recorder
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, STANDARD, app_on_a_pty, until
 from tests.groundstation.ui.sequences import STOPS, every_sequence, is_stop

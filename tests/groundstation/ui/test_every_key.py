@@ -16,9 +16,9 @@ from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.app import ConsoleApp
-from groundstation.ui.key_parser import KeyEventParser
 from groundstation.ui.navigation import load_screen
 from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.terminal.key_parser import KeyEventParser
 from groundstation.ui.widgets.line_field import FieldUse
 from tests.groundstation.ui.live_station import LiveStation
 from tests.test_stops import Drive
@@ -89,7 +89,7 @@ async def driving_wheels() -> AsyncIterator[Wheels]:
     drive.held = None
     drive.run(2.0)
     station = LiveStation(drive)
-    app = ConsoleApp(station, Keymap("standard", KEYMAPS["standard"]))
+    app = ConsoleApp(station.screen, Keymap("standard", KEYMAPS["standard"]))
     try:
         async with app.run_test(size=(100, 30)) as pilot:
             wheels = Wheels(app, station, pilot)
@@ -97,7 +97,7 @@ async def driving_wheels() -> AsyncIterator[Wheels]:
             await drives(wheels)
             yield wheels
     finally:
-        station.close()
+        station.screen.close()
 
 
 async def drives(wheels: Wheels) -> None:
@@ -150,7 +150,7 @@ async def test_keys_drive_nothing_on_another_screen_and_stops_stop(row: ScreenRo
                 opening(wheels.screen)
                 await wheels.type(data)
                 assert wheels.power == 0.0, data
-        assert any(isinstance(each, DriveKeyDown) for each in wheels.station.intents)
+        assert any(isinstance(each, DriveKeyDown) for each in wheels.station.screen.intents)
         await wheels.type("\x1b")
         await wheels.type("\x1bOP")
         await wheels.until(lambda: wheels.app.screen is wheels.app.drive)
@@ -167,13 +167,13 @@ async def stops_stop(wheels: Wheels) -> None:
     for data, opening in ((" ", None), ("\x0b", None), *(("\x0b", each) for each in STATES.values())):
         if opening is not None:
             opening(wheels.screen)
-        before = wheels.station.intents.count(Stop())
+        before = wheels.station.screen.intents.count(Stop())
         await wheels.type(data)
-        assert wheels.station.intents.count(Stop()) > before, (data, opening)
+        assert wheels.station.screen.intents.count(Stop()) > before, (data, opening)
     for opening in STATES.values():
         opening(wheels.screen)
-        before = wheels.station.intents.count(EmergencyStop())
+        before = wheels.station.screen.intents.count(EmergencyStop())
         await wheels.type("!")
-        assert wheels.station.intents.count(EmergencyStop()) > before, opening
+        assert wheels.station.screen.intents.count(EmergencyStop()) > before, opening
     await wheels.pass_time(0.5)
     assert wheels.station.drive.rover.state is not SafetyState.ARMED

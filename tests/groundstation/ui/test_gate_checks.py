@@ -6,8 +6,8 @@ from dataclasses import fields, replace
 
 import pytest
 
-from groundstation.ui.gate_checks import AppCondition, find_closure
-from groundstation.ui.key_gate import OTHER_SCREEN, GateClosure
+from groundstation.ui.keys.gate_checks import AppCondition, find_closure
+from groundstation.ui.keys.key_gate import OTHER_SCREEN, GateClosure
 
 FINE = AppCondition(
     leaving=None, station_alive=True, outage="", other_screen=None, detached=False, focus=True, too_small=False,
@@ -18,7 +18,10 @@ WRONG: dict[str, tuple[object, str]] = {
     "leaving": (QUITTING, "quitting"),
     "station_alive": (False, "the station has ended"),
     "outage": ("the station does not respond for 1 s", "the station does not respond"),
+    "lent": (True, "a log has the terminal"),
     "other_screen": (OTHER_SCREEN, "another screen is open"),
+    "replay": (True, "this is a replay"),
+    "driver": ("screen on pts/4", "screen on pts/4 drives"),
     "detached": (True, "nobody is attached to tmux"),
     "focus": (False, "this window does not have the focus"),
     "too_small": (True, "the terminal is too small"),

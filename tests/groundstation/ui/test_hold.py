@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from groundstation.intents.vehicle import Arm, Disarm
-from groundstation.ui.key_gate import KeyGate
-from groundstation.ui.key_parser import KeyEventParser
+from groundstation.ui.keys.key_gate import KeyGate
+from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import Recorder
 from tests.groundstation.ui.ptys import STANDARD, app_on_a_pty, until

@@ -10,7 +10,7 @@ from groundstation.input.keymap import KeyEvent
 from groundstation.intents.driving import HOLD_TIME, DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm, SetMode
-from groundstation.ui.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, TEXT_FIELD, GateClosure, KeyGate
+from groundstation.ui.keys.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, TEXT_FIELD, GateClosure, KeyGate
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.examples import Recorder
 from tests.groundstation.ui.ptys import STANDARD

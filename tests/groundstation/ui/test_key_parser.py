@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import string
+
 import pytest
 from textual import events
+from textual._xterm_parser import XTermParser
 from textual.message import Message
 
 from groundstation.input.keymap import KeyEvent
-from groundstation.ui.key_parser import KeyEventParser, KeyRepeat, KeyUp
+from groundstation.ui.terminal.key_parser import KeyEventParser, KeyRepeat, KeyUp
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W
 from tests.groundstation.ui.sinks import Clock, Sink
 
@@ -48,6 +51,21 @@ def feed(*reads: str) -> tuple[Sink, list[Message]]:
 def test_one_read_is_one_batch(data: str, keys: list[KeyEvent]) -> None:
     sink, _ = feed(data)
     assert sink.batches == [keys]
+
+
+@pytest.mark.parametrize("character", string.ascii_letters + string.digits)
+def test_a_plain_character_is_the_key_that_the_stock_parser_makes_of_it(character: str) -> None:
+    (stock,) = XTermParser().feed(character)
+    _, (key,) = feed(character)
+    assert isinstance(stock, events.Key)
+    assert isinstance(key, events.Key)
+    assert (key.key, key.character, key.aliases) == (stock.key, stock.character, stock.aliases)
+
+
+def test_a_character_of_a_paste_is_no_key_if_it_is_read_alone() -> None:
+    sink, found = feed("\x1b[200~", "i", "1", "\x1b[201~", "i")
+    assert [press.key for batch in sink.batches for press in batch] == ["paste", "paste", "i"]
+    assert [event.text for event in found if isinstance(event, events.Paste)] == ["i1"]
 
 
 def test_the_release_of_a_key_has_the_name_of_its_press() -> None:

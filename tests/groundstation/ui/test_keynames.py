@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.ui.keynames import format_key, main_key
+from groundstation.ui.keys.keynames import format_key, main_key
 from tests.groundstation.ui.ptys import STANDARD
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.snapshot import Snapshot
-from groundstation.ui.appearance import Look
+from groundstation.ui.look.appearance import Look
 from tests.groundstation.ui.example_map import EDITS, picture, views_for
 from tests.groundstation.ui.examples import waiting
 from tests.groundstation.ui.pilots import console
@@ -18,7 +18,8 @@ SIZES = {"80x24": (80, 24), "140x45": (140, 45), "190x50": (190, 50)}
 NO_FIX = picture(gps_fix=2, gps_satellites=5, position=None)
 
 FRAMES: dict[str, tuple[Snapshot, tuple[str, ...]]] = {
-    **{f"map_{size}": (picture(), EDITS) for size in SIZES},
+    **{f"map_{size}": (picture(), EDITS) for size in ("80x24", "140x45", "190x50")},
+    "map_empty_item_80x24": (picture(armed=False, mode="MANUAL", drivable=True), ("tab", "tab")),
     **{f"map_empty_{size}": (picture(armed=False, mode="MANUAL", drivable=True), ()) for size in ("80x24", "140x45")},
     **{f"map_{state}_{size}": (picture(), ()) for state in ("loading", "refused") for size in ("80x24", "140x45")},
     **{f"map_lacking_{size}": (picture(mode="MANUAL", drivable=True), ()) for size in ("80x24", "140x45")},

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 
 from groundstation.input.keymap import KeyEvent
 from groundstation.intents.driving import DriveKeyDown, ScaleLimits, Stop
-from groundstation.ui.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
-from groundstation.ui.key_parser import KeyEventParser
-from groundstation.ui.mouse import CAPTURE_MOUSE, RELEASE_MOUSE
-from groundstation.ui.terminal import ConsoleDriver
+from groundstation.ui.terminal.console_driver import ConsoleDriver
+from groundstation.ui.terminal.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
+from groundstation.ui.terminal.key_parser import KeyEventParser
+from groundstation.ui.terminal.mouse import CAPTURE_MOUSE, RELEASE_MOUSE
 from tests.groundstation.ui.programs import Program
 from tests.groundstation.ui.ptys import app_on_a_pty, until
 from tests.groundstation.ui.sinks import Clock, Sink

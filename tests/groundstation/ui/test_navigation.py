@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from groundstation.actions import ACTIONS
@@ -9,14 +11,17 @@ from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.vehicle import Disarm, RequestControl, SelectNextVehicle, SetMode
 from groundstation.screens import SCREENS, ScreenRow
+from groundstation.ui.keys.key_gate import OTHER_SCREEN
 from groundstation.ui.navigation import ROOT, load_screen
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.help import HelpScreen
 from groundstation.ui.screens.log import LogScreen
 from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.widgets.heading_tape import HeadingTape
 from groundstation.ui.widgets.status import StatusBar
+from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.extra_screen import ExtraScreen
-from tests.groundstation.ui.pilots import Console, console
+from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.groundstation.ui.ptys import until
 
 EXTRA = ScreenRow("extra", "Extra", "One more screen", ("f7",), "7", "tests.groundstation.ui.extra_screen:ExtraScreen")
@@ -100,27 +105,89 @@ async def test_a_screen_shows_the_newest_state_from_its_first_frame_on() -> None
         assert "no vehicle" not in screen.text
 
 
-@pytest.mark.parametrize(
-    ("keys", "shown"),
-    [
-        (["f6"], "log"), (["ctrl+g", "6"], "log"), (["ctrl+g", "f6"], "log"), (["f6", "ctrl+g", "1"], "drive"),
-        (["f6", "ctrl+g", "ctrl+g"], "drive"), (["f6", "escape", "ctrl+g", "ctrl+g"], "log"),
-        (["right_square_bracket"], TABS[1]), (["left_square_bracket"], TABS[-1]), (["f4"], "params"),
-        (["f6", "right_square_bracket"], (TABS + TABS)[TABS.index("log") + 1]), (["ctrl+g", "7"], "links"),
-        (["f6", "left_square_bracket"], TABS[TABS.index("log") - 1]),
-        (["f7", "right_square_bracket"], TABS[TABS.index("links") + 1]),
-        (["ctrl+g", "escape"], "drive"), (["ctrl+g", "x"], "drive"),
-        (["f6", "ctrl+g", "escape"], "log"), (["f6", "f6"], "log"), (["question_mark", "f6"], "log"),
-        (["f6", "question_mark", "escape"], "drive"),
-    ],
-)  # fmt: skip
-async def test_ways_between_the_screens(keys: list[str], shown: str) -> None:
+WAYS: list[tuple[list[str], str]] = [
+    (["f6"], "log"), (["ctrl+g", "6"], "log"), (["ctrl+g", "f6"], "log"), (["f6", "ctrl+g", "1"], "drive"),
+    (["f6", "ctrl+g", "ctrl+g"], "drive"), (["f6", "escape", "ctrl+g", "ctrl+g"], "log"),
+    (["right_square_bracket"], TABS[1]), (["left_square_bracket"], TABS[-1]), (["f4"], "params"),
+    (["f6", "right_square_bracket"], (TABS + TABS)[TABS.index("log") + 1]), (["ctrl+g", "7"], "links"),
+    (["f6", "left_square_bracket"], TABS[TABS.index("log") - 1]),
+    (["f7", "right_square_bracket"], TABS[TABS.index("links") + 1]),
+    (["ctrl+g", "escape"], "drive"), (["ctrl+g", "x"], "drive"),
+    (["f6", "ctrl+g", "escape"], "log"), (["f6", "f6"], "log"), (["question_mark", "f6"], "log"),
+    (["f6", "question_mark", "escape"], "drive"),
+]  # fmt: skip
+"""Keys that are pressed on Drive, and the screen that is open then."""
+
+
+async def test_ways_between_the_screens() -> None:
     async with console() as screen:
-        await screen.press(*keys)
-        kind = load_screen(next(row for row in SCREENS if row.id == shown))
-        await until(lambda: isinstance(screen.app.screen, kind))
-        assert len(screen.app.screen_stack) == (2 if shown == "drive" else 3)
-        await until(lambda: (screen.app.gate.closure is None) is (shown == "drive"))
+        for keys, shown in WAYS:
+            await go(screen, keys, shown)
+            await screen.go_home()
+            await until(lambda: screen.app.gate.closure is None)
+
+
+async def go(screen: Console, keys: list[str], shown: str) -> None:
+    """Press keys and check which screen is open then."""
+    await screen.press(*keys)
+    kind = load_screen(next(row for row in SCREENS if row.id == shown))
+    await until(lambda: isinstance(screen.app.screen, kind))
+    assert len(screen.app.screen_stack) == (2 if shown == "drive" else 3), (keys, shown)
+    await until(lambda: (screen.app.gate.closure is None) is (shown == "drive"))
+
+
+async def test_the_key_of_the_menu_and_a_digit_in_one_read() -> None:
+    """A fast typist over SSH. On Drive and Map the digits are modes, on Setup motors."""
+    async with console() as screen:
+        for row in (
+            *(row for row in SCREENS if row.in_tabs and row is not ROOT),
+            ROOT,
+        ):  # each is another one than before
+            type_in(screen, f"\x07{row.digit}")
+            kind = load_screen(row)
+            await until(lambda kind=kind: isinstance(screen.app.screen, kind))  # type: ignore[misc]
+            await screen.pilot.pause()
+            assert isinstance(screen.app.screen, ConsoleScreen)
+            assert screen.app.screen.question is None
+        assert not screen.station.of(SetMode)
+
+
+async def test_the_key_of_the_menu_twice_in_one_read_opens_the_screen_before() -> None:
+    async with console() as screen:
+        await screen.press("f6", "f1")
+        type_in(screen, "\x07\x07")
+        await until(lambda: isinstance(screen.app.screen, LogScreen))
+
+
+@pytest.mark.parametrize("data", ["\x07x3", "\x1b\x073i", "3\x07\x1b[A"], ids=repr)
+async def test_other_keys_in_one_read_with_the_key_of_the_menu_command_nothing(data: str) -> None:
+    async with console() as screen:
+        screen.station.intents.clear()
+        type_in(screen, data)
+        assert screen.station.intents[0] == SetKeyGate(open=False, reason=OTHER_SCREEN.reason)
+        await screen.pilot.pause()
+        assert not screen.station.of(SetMode)
+
+
+async def test_the_menu_ends_a_question() -> None:
+    """Else its answer would still count when the screen is back."""
+    async with console() as screen:
+        await screen.press("f8")
+        performed: list[str] = []
+        shown = screen.app.screen
+        assert isinstance(shown, ConsoleScreen)
+        shown.ask("restart the vehicle", lambda: performed.append("restarted"))
+        await screen.press("ctrl+g", "escape", "y")
+        assert not performed
+
+
+async def test_in_a_text_field_the_key_of_the_menu_opens_nothing() -> None:
+    async with console() as screen:
+        await screen.press("f6", "slash")
+        type_in(screen, "\x073")
+        shown = screen.app.screen
+        assert isinstance(shown, LogScreen)
+        await until(lambda: shown.field.value == "3")
 
 
 async def test_the_menu_commands_nothing_but_the_next_vehicle() -> None:
@@ -156,3 +223,17 @@ async def test_drive_keys_drive_on_drive_only_and_stops_stop_everywhere() -> Non
         assert screen.station.of(DriveKeyDown)
         assert screen.station.of(Stop)
         assert screen.station.of(EmergencyStop)
+
+
+async def test_drive_draws_nothing_while_another_screen_hides_it() -> None:
+    north, east = snapshot(vehicle=vehicle(heading=0.0)), snapshot(vehicle=vehicle(heading=math.pi / 2))
+    async with console(picture=north) as screen:
+        tape = screen.app.drive.query_one(HeadingTape)
+        await screen.press("ctrl+g")
+        await screen.show(east)  # the menu covers a part of Drive only
+        assert tape.value == 90
+        await screen.press("6")
+        await screen.show(north)
+        assert tape.value == 90
+        await screen.press("f1")
+        await until(lambda: tape.value == 0)

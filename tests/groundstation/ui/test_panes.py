@@ -9,7 +9,8 @@ import pytest
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
 from groundstation.intents.driving import DriveKeyDown, Stop
-from groundstation.intents.session import SetKeyGate, Watch
+from groundstation.intents.session import SetKeyGate
+from groundstation.intents.watch import Watch
 from groundstation.ui.panes import PANES, PaneInput
 from groundstation.ui.widgets.pane import PaneFrame
 from groundstation.views.base import ViewRequest
@@ -133,7 +134,7 @@ async def test_the_map_pane_shows_the_plans_of_the_vehicle() -> None:
     async with console((140, 45)) as screen:
         await screen.press("v")
         assert screen.app.drive.query_one("#pane", PaneFrame).pane.id == "map"
-        assert PlanRequest() in watched(screen)
+        await until(lambda: PlanRequest() in watched(screen))
         for view in VIEWS["map"]:
             screen.station.offer_view(view)
         await screen.show(snapshot())

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from groundstation.ui.appearance import Look
+from groundstation.ui.look.appearance import Look
 from tests.groundstation.ui.example_params import STATES
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.test_goldens import GOLDEN, SMALL, STANDING, WIDE

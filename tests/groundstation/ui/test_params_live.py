@@ -144,6 +144,8 @@ async def test_edit_refuse_undo_save_and_compare(kind: Kind, tmp_path: Path, mon
         await at.pilot.press("x")
 
         await at.find(kind.name)
+        written = kind.after if kind.autopilot is None else kind.before  # ours stopped at the refusal
+        await until(lambda: at.model.infos[kind.name].value == written)  # shown a moment after it was confirmed
         now = at.model.infos[kind.name].value
         other = kind.after if now == kind.before else kind.before
         await at.pilot.press("S")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from groundstation.ui.setup.model import SetupModel, chain_lines
-from groundstation.views.doctor import Health
+from link.runtime.diagnosis import Health
 from tests.groundstation.ui.example_setup import EMPTY, ROWS, WELL, doctor_view
 
 

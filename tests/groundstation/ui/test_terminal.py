@@ -6,7 +6,7 @@ import asyncio
 
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
-from groundstation.ui.key_gate import GateClosure
+from groundstation.ui.keys.key_gate import GateClosure
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, app_on_a_pty, until
 
 

@@ -13,11 +13,11 @@ from textual.widgets import Input
 
 import groundstation.ui
 from groundstation.config.settings import ThemeName
-from groundstation.ui.appearance import Look
-from groundstation.ui.roles import Role
-from groundstation.ui.themes import THEMES, Colours, ColourTheme, choose_colours
+from groundstation.ui.look.appearance import Look
+from groundstation.ui.look.roles import Role
+from groundstation.ui.look.themes import THEMES, Colours, ColourTheme, choose_colours
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.contrast import TEXT_CONTRAST, colour_codes, contrast, luminance, shown
+from tests.groundstation.ui.contrast import TEXT_CONTRAST, colour_codes, contrast, forget_drawn_styles, luminance, shown
 from tests.groundstation.ui.examples import snapshot, waiting
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import app_on_a_pty, until
@@ -182,6 +182,7 @@ async def test_the_bytes_for_a_terminal_have_its_colours_only(
 ) -> None:
     monkeypatch.delenv("COLORTERM")
     monkeypatch.setenv("TERM", term)
+    forget_drawn_styles()
     async with app_on_a_pty(look=Look(theme=theme)) as (_, _, terminal):
         terminal.type("\x10")
         await until(lambda: b"earch for commands" in bytes(terminal.drawn))

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from threading import Thread
 
-from groundstation.ui.tty_output import TerminalFile, redirect_output
+from groundstation.ui.terminal.tty_output import TerminalFile, redirect_output
 
 LIMIT = 60.0
 

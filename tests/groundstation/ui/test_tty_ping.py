@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.ui.tty_ping import TerminalPing
+from groundstation.ui.terminal.tty_ping import TerminalPing
 
 
 def test_pings_are_due_four_times_a_second() -> None:

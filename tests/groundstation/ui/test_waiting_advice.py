@@ -55,6 +55,11 @@ def described(name: str = "udpin:0.0.0.0:14550", **changes: Any) -> tuple[bool, 
         ("udpout:rover.local:24999", ["vehicle --config rover.toml udpin:0.0.0.0:24999"]),
         ("tcpout:rover.local:5760", ["vehicle --config rover.toml tcpin:0.0.0.0:5760"]),
         ("serial:/dev/ttyUSB0:57600", []),
+        ("zenoh:alice.json5/farm", ["vehicle --config rover.toml zenoh:rover1.json5/farm/rover1"]),
+        (
+            "zenoh:tcp/10.0.0.2:7447/farm/rover9",
+            ["vehicle --config rover.toml zenoh:tcp/10.0.0.2:7447/farm/rover9"],
+        ),
     ],
 )
 def test_commands_have_the_real_address_and_port(endpoint: str, expected: list[str]) -> None:
@@ -65,7 +70,7 @@ def test_commands_have_the_real_address_and_port(endpoint: str, expected: list[s
 
 def test_every_link_type_has_advice() -> None:
     for scheme in SCHEMES:
-        rest = "/dev/ttyUSB0:57600" if scheme == "serial" else "127.0.0.1:14550"
+        rest = {"serial": "/dev/ttyUSB0:57600", "zenoh": "alice.json5/farm"}.get(scheme, "127.0.0.1:14550")
         assert words(f"{scheme}:{rest}")
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.enums import Autopilot
-from groundstation.vehicles.fleet import MAX_VEHICLES, Fleet, is_vehicle
+from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
 from link.core import Peer, Received
 
 

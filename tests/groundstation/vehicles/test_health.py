@@ -7,8 +7,8 @@ import math
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
-from groundstation.drive_views import HealthLine
-from groundstation.vehicles.health import Health
+from groundstation.snapshot.drive import HealthLine
+from groundstation.vehicles.health import HealthReadings
 from link.protocol.channel import Channel
 
 GYRO, COMPASS, GPS, RC = 1, 4, 32, 1 << 16
@@ -18,7 +18,7 @@ GOOD = 0x033F
 
 def health(*messages: mav.MAVLink_message, at: float = 10.0) -> dict[str, HealthLine]:
     """Return the lines after these messages, which arrived at 10 s, by name."""
-    made = Health()
+    made = HealthReadings()
     channel = Channel("memory", 0, system=255, component=190)
     vehicle = mav.MAVLink(None, srcSystem=1, srcComponent=1)
     for message in messages:

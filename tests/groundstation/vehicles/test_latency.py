@@ -19,6 +19,20 @@ def test_latency_counts_the_first_report_on_a_changed_demand_only() -> None:
     assert meter.latest == pytest.approx(0.02)
 
 
+def test_a_change_and_its_copies_are_one_measurement() -> None:
+    meter = LatencyMeter(KeyTimings())
+    meter.record_sent(7, SentDemand(made=1.0, sent=1.0))
+    meter.record_sent(8, SentDemand(made=1.0, sent=1.003))
+    meter.record_sent(9, SentDemand(made=1.004, sent=1.004))
+    meter.record_applied(7, 1.02, 0.0)
+    meter.record_applied(8, 1.05, 0.0)
+    assert meter.reports == 1
+    assert meter.latest == pytest.approx(0.02)
+    meter.record_applied(9, 1.014, 0.0)
+    assert meter.reports == 2
+    assert meter.latest == pytest.approx(0.01)
+
+
 def test_a_reused_sequence_number_is_ignored() -> None:
     meter = LatencyMeter(KeyTimings())
     meter.record_sent(7, SentDemand(1.0, 1.0))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from dialects.messages import StatusText
 from groundstation.ipc import MAX_PACKET, encode
+from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.vehicles.message_log import MAX_LENGTH, MAX_LINES, NEWEST, PAGE, STATE, MessageLog
 from groundstation.views.log import LogPage, LogRequest
 
@@ -24,6 +25,19 @@ def test_repeats_in_a_row_are_counted() -> None:
         ("WheelEncoder: wheel offset not set!", 50, 1049.0),
         ("ready", 1, 1060.0),
     ]
+
+
+def test_a_line_has_the_source_and_the_first_time_of_its_text() -> None:
+    log = MessageLog()
+    log.name_of = lambda system: "ArduPilot rover 1" if system == 1 else ""
+    for at in (10.0, 12.5):
+        log.handle_statustext(said(b"no space on card"), 1, at, 191)
+    log.handle_statustext(said(b"no space on card"), 2, 13.0, 1)
+    ours, other = log.build_lines(20.0, 1020.0)
+    assert (ours.first, ours.time, ours.count) == (1010.0, 1012.5, 2)
+    assert ours.origin == LogOrigin(1, 191, "ArduPilot rover 1")
+    assert other.origin is not None, "the text of another vehicle is no repeat"
+    assert (other.origin.system, other.first) == (2, None)
 
 
 def test_the_log_is_bounded_and_keeps_the_newest() -> None:

@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation.drive_views import MissionProgress
-from groundstation.vehicles.mission_progress import MissionState
-from groundstation.vehicles.track import METRES_PER_DEGREE
-from groundstation.vehicles.vehicle_details import Place
+from groundstation.geo import METRES_PER_DEGREE, Place
+from groundstation.snapshot.drive import MissionProgress
+from groundstation.vehicles.mission_progress import MissionMessages
 from link.services.mission.items import MissionItem
 
 WAYPOINT, LOITER_TIME, CHANGE_SPEED = 16, 19, 178
@@ -34,7 +33,7 @@ def progress(
     *messages: m.Message, plan: tuple[MissionItem, ...] = (), here: Place | None = None, speed: float | None = 0.5,
     navigates: bool = True, at: float = 10.0,
 ) -> MissionProgress | None:  # fmt: skip
-    state = MissionState()
+    state = MissionMessages()
     for message in messages:
         state.receive(message, 10.0)
     return state.build(plan, here, speed, navigates=navigates, now=at)

@@ -25,6 +25,9 @@ from link.core import LinkReport
 from link.protocol.channel import Channel
 from link.tlog.tlog import Record, read_records
 
+pytestmark = pytest.mark.xdist_group("replay")
+"""Each worker would play the recording."""
+
 RECORDING = Path(__file__).resolve().parents[4] / "shared" / "data" / "ardurover.tlog"
 OURS = 254
 """The recorded station is 255."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects.enums import Autopilot, VehicleType
-from groundstation.drive_views import StopBound
+from groundstation.snapshot.drive import StopBound
 from groundstation.vehicles.stop_bounds import find_rules, stop_bounds
 from groundstation.vehicles.stop_rules import StopFacts
 

@@ -1,12 +1,10 @@
-"""The thinned line of positions, and degrees as metres."""
+"""The thinned line of positions."""
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
-from groundstation.vehicles.track import MAX_POINTS, LocalFrame, Track
+from groundstation.vehicles.track import MAX_POINTS, Track
 
 
 def test_a_vehicle_that_stands_makes_one_point() -> None:
@@ -25,11 +23,3 @@ def test_a_long_drive_is_thinned_and_keeps_both_ends() -> None:
     assert track.points[-1][0] == pytest.approx(3000.0, abs=30)
     gaps = [b[0] - a[0] for a, b in zip(track.points, track.points[1:], strict=False)]
     assert max(gaps) < 4 * min(gaps)
-
-
-def test_degrees_become_metres_from_the_first_position() -> None:
-    frame = LocalFrame()
-    assert frame.to_local(60.0, 10.0) == (0.0, 0.0)
-    north, east = frame.to_local(60.001, 10.001)
-    assert north == pytest.approx(111.3, abs=0.1)
-    assert east == pytest.approx(111.3 * math.cos(math.radians(60)), abs=0.1)

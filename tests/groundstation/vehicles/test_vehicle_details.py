@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation.vehicles.vehicle_details import MAX_COMPONENTS, Place, VehicleDetails, find_way, to_place
+from groundstation.geo import Place
+from groundstation.vehicles.vehicle_details import MAX_COMPONENTS, VehicleDetails, to_place
 from link.core import Peer, Received
 
 PEER = Peer(0, "far")
@@ -13,33 +14,6 @@ PEER = Peer(0, "far")
 
 def receive(details: VehicleDetails, message: m.Message, component: int = 1, now: float = 0.0) -> None:
     details.receive(Received(message, 1, component, 0, PEER, introduced=True), now)
-
-
-@pytest.mark.parametrize(
-    ("end", "distance", "bearing"),
-    [
-        (Place(10.001, 20.0), 111.3, 0.0),
-        (Place(10.0, 20.001), 109.6, 90.0),
-        (Place(9.999, 20.0), 111.3, 180.0),
-        (Place(10.0, 19.999), 109.6, 270.0),
-        (Place(10.0, 20.0), 0.0, 0.0),
-    ],
-)
-def test_ways(end: Place, distance: float, bearing: float) -> None:
-    way = find_way(Place(10.0, 20.0), end)
-    assert way is not None
-    assert tuple(way) == pytest.approx((distance, bearing), abs=0.1)
-
-
-def test_across_the_date_line_the_way_is_short() -> None:
-    way = find_way(Place(0.0, 179.9995), Place(0.0, -179.9995))
-    assert way is not None
-    assert tuple(way) == pytest.approx((111.3, 90.0), abs=0.1)
-
-
-def test_without_both_places_there_is_no_way() -> None:
-    assert find_way(None, Place(1.0, 1.0)) is None
-    assert find_way(Place(1.0, 1.0), None) is None
 
 
 @pytest.mark.parametrize(("latitude", "longitude"), [(0, 0), (900_000_001, 0), (1, 1_800_000_001), (-(2**31), 5)])

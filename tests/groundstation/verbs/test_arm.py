@@ -13,6 +13,8 @@ from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
 
 Capture = pytest.CaptureFixture[str]
 ARM, MODE, PREARM = 400, 176, 0x10000000
+READY_AFTER = 3.0
+"""s, in which a busy machine hears the vehicle and looks once."""
 
 
 def arm(capsys: Capture, vehicle: ForeignVehicle, *arguments: str) -> VerbRun:
@@ -42,7 +44,7 @@ def test_neutral_then_manual_then_armed_then_neutral(capsys: Capture, autopilot:
 def test_it_waits_for_the_pre_arm_bit(capsys: Capture) -> None:
     with ForeignVehicle() as vehicle:
         vehicle.telemetry[1] = sys_status(ready=False)
-        threading.Timer(0.6, lambda: vehicle.telemetry.update({1: sys_status(ready=True)})).start()
+        threading.Timer(READY_AFTER, lambda: vehicle.telemetry.update({1: sys_status(ready=True)})).start()
         armed = arm(capsys, vehicle)
         assert (armed.code, vehicle.armed) == (0, True)
         assert "not ready to arm" in armed.err

@@ -9,24 +9,10 @@ from pathlib import Path
 import pytest
 
 from groundstation.cli.main import main
-from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
-from groundstation.verbs.completion import COMMON, build_script
+from groundstation.verbs.completion import COMMON, LOCAL_COMMON
 from groundstation.verbs.main import build_parser
 from groundstation.verbs.table import ONLY, VERBS
-
-HELPS = {**VERB_HELP, **LOCAL_HELP}
-ASK = """
-COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
-_groundstation; printf '%s\\n' "${{COMPREPLY[@]}}"
-"""
-
-
-def complete(words: str, folder: Path) -> set[str]:
-    """Return what bash proposes for the last word."""
-    script = build_script("bash", HELPS) + ASK.format(words=words)
-    ended = subprocess.run(["bash", "-c", script], cwd=folder, capture_output=True, text=True, timeout=30)
-    assert (ended.returncode, ended.stderr) == (0, "")
-    return set(ended.stdout.split())
+from tests.groundstation.verbs.shell import HELPS, complete, type_and_tab
 
 
 @pytest.mark.parametrize(
@@ -36,19 +22,43 @@ def complete(words: str, folder: Path) -> set[str]:
         ("groundstation es", {"estop"}),
         ("groundstation param ''", {"get", "set", "save", "load", "diff"}),
         ("groundstation param save --c", {"--changed", "--config"}),
+        ("groundstation param save --format ''", {"mavproxy", "qgc", "mp"}),
+        ("groundstation arm ''", {"--wait", "--timeout"}),
+        ("groundstation arm --station o", {"only"}),
         ("groundstation mode H", {"HOLD"}),
         ("groundstation watch VFR", {"VFR_HUD"}),
         ("groundstation command DO_SET_HO", {"DO_SET_HOME"}),
         ("groundstation estop --cl", {"--clear"}),
         ("groundstation config ''", {"check", "show", "init", "path"}),
-        ("groundstation mission put pa", {"patrol.plan"}),
+        ("groundstation calibrate gy", {"gyro"}),
     ],
 )
 def test_bash_proposes(words: str, some: set[str], tmp_path: Path) -> None:
-    (tmp_path / "patrol.plan").touch()
     proposed = complete(words, tmp_path)
     assert some <= proposed
     assert "''" in words or len(proposed) == len(some)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_person_types_and_presses_tab(shell: str, tmp_path: Path) -> None:
+    _skip_without(shell)
+    (tmp_path / "my plan.plan").touch()
+    (tmp_path / "mission").mkdir()
+    expected = {
+        "groundstation esto": "<estop>",
+        "groundstation miss": "<mission>",  # not the folder of this name
+        "groundstation mission pu": "<mission><put>",
+        "groundstation mode HOL": "<mode><HOLD>",
+        "groundstation mission put my": "<mission><put><my plan.plan>",
+        "groundstation param save --chan": "<param><save><--changed>",
+        "groundstation export --mcap my": "<export><--mcap><my plan.plan>",
+    }
+    assert type_and_tab(shell, list(expected), tmp_path) == list(expected.values())
+
+
+def _skip_without(shell: str) -> None:
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
 
 
 def test_every_proposed_option_exists(capsys: pytest.CaptureFixture[str]) -> None:
@@ -57,7 +67,7 @@ def test_every_proposed_option_exists(capsys: pytest.CaptureFixture[str]) -> Non
             with pytest.raises(SystemExit):
                 build_parser(verb).parse_args([*([] if name == ONLY else [name]), "--help"])
             text = capsys.readouterr().out
-            assert all(option in text for option in COMMON), (verb, name)
+            assert all(option in text for option in (LOCAL_COMMON if action.offline else COMMON)), (verb, name)
             assert action.help.lower()[:20] in " ".join(text.lower().split())
 
 
@@ -66,7 +76,6 @@ def test_the_script_is_understood_by_its_shell(shell: str, capsys: pytest.Captur
     assert main(["completion", shell]) == 0
     script = capsys.readouterr().out
     assert all(verb in script for verb in HELPS)
-    if shutil.which(shell) is None:
-        pytest.skip(f"{shell} is not installed")
+    _skip_without(shell)
     ended = subprocess.run([shell, "-n"], input=script, capture_output=True, text=True, timeout=30)
     assert (ended.returncode, ended.stderr) == (0, "")

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.exit_codes import ExitCode
 from tests.groundstation.foreign_vehicle import PX4, ForeignParam, ForeignVehicle
-from tests.groundstation.verbs.verb_runs import run_verb
+from tests.groundstation.verbs.verb_runs import run_verb, wait_until
 from tests.ports import free_port
 
 Capture = pytest.CaptureFixture[str]
@@ -119,3 +121,75 @@ def test_a_calibration_that_is_refused(capsys: Capture, rover: ForeignVehicle) -
     run = run_verb(capsys, "calibrate", "gyro", "-e", rover.endpoint, "-v", "1")
     assert run.code == ExitCode.REFUSED
     assert "Gyro cal failed" in run.err
+
+
+MAG_CAL_START, MAG_CAL_ACCEPT, MAG_CAL_CANCEL, INTERVAL = 42424, 42425, 42426, 511
+
+
+def send_all(rover: ForeignVehicle, *messages: mav.MAVLink_message) -> None:
+    """Send messages one after the other."""
+    for message in messages:
+        rover.send(message)
+
+
+def progress(percent: int) -> mav.MAVLink_mag_cal_progress_message:
+    return mav.MAVLink_mag_cal_progress_message(0, 1, 2, 1, percent, [0] * 10, 0.0, 0.0, 1.0)
+
+
+def report(status: int) -> mav.MAVLink_mag_cal_report_message:
+    return mav.MAVLink_mag_cal_report_message(0, 1, status, 0, 8.2, 1, 2, 3, 1, 1, 1, 0, 0, 0)
+
+
+def commanded(rover: ForeignVehicle, command: int) -> bool:
+    return any(message.command == command for message in rover.of("COMMAND_LONG"))
+
+
+def test_a_compass_is_measured_and_written(capsys: Capture, rover: ForeignVehicle) -> None:
+    rover.on_command[MAG_CAL_START] = partial(send_all, rover, progress(40), progress(90), report(4))
+    run = run_verb(capsys, "calibrate", "compass", "-e", rover.endpoint, "-v", "1", "--json")
+    assert run.code == ExitCode.DONE, run.err
+    assert run.records[-1]["fits"] == [8.2]
+    assert "compass 1 fit 8.2: written" in run.err
+    assert commanded(rover, MAG_CAL_ACCEPT)
+    assert not commanded(rover, MAG_CAL_CANCEL)
+
+
+def test_a_compass_that_fails_is_cancelled(capsys: Capture, rover: ForeignVehicle) -> None:
+    rover.on_command[MAG_CAL_START] = partial(send_all, rover, progress(40), report(10))
+    run = run_verb(capsys, "calibrate", "compass", "-e", rover.endpoint, "-v", "1")
+    assert run.code == ExitCode.REFUSED
+    assert "the residuals are too large" in run.err
+    wait_until(lambda: commanded(rover, MAG_CAL_CANCEL), "it is cancelled")
+    assert not commanded(rover, MAG_CAL_ACCEPT)
+
+
+def test_a_compass_that_never_ends_is_cancelled_at_the_timeout(capsys: Capture, rover: ForeignVehicle) -> None:
+    rover.on_command[MAG_CAL_START] = lambda: rover.send(progress(40))
+    run = run_verb(capsys, "calibrate", "compass", "-e", rover.endpoint, "-v", "1", "--timeout", "3")
+    assert run.code == ExitCode.NO_ANSWER, run.err
+    wait_until(lambda: commanded(rover, MAG_CAL_CANCEL), "it is cancelled")
+
+
+def channels(first: int, second: int) -> mav.MAVLink_rc_channels_message:
+    return mav.MAVLink_rc_channels_message(*[0, 2, first, second, *[0] * 16, 255])
+
+
+def test_the_sticks_are_printed_as_parameters(capsys: Capture, rover: ForeignVehicle) -> None:
+    places = ((1102, 1500), (1898, 1500), (1504, 1510))
+    rover.on_command[INTERVAL] = partial(send_all, rover, *(channels(*each) for each in places))
+    run = run_verb(capsys, "calibrate", "sticks", "--for", "0.5", "-e", rover.endpoint, "-v", "1")
+    assert run.code == ExitCode.DONE, run.err
+    assert [line.split() for line in run.out.splitlines()] == [
+        ["RC1_MIN", "1102"], ["RC1_TRIM", "1504"], ["RC1_MAX", "1898"],
+    ]  # fmt: skip
+    assert not rover.of("PARAM_SET")
+
+
+def test_sticks_that_cannot_be_calibrated(capsys: Capture, rover: ForeignVehicle) -> None:
+    short = ("calibrate", "sticks", "--for", "0.3", "-e", rover.endpoint, "-v", "1")
+    assert run_verb(capsys, *short).code == ExitCode.NO_ANSWER
+    rover.on_command[INTERVAL] = lambda: rover.send(channels(1500, 1500))
+    assert run_verb(capsys, *short).code == ExitCode.DIFFERS
+    rover.armed = True
+    assert run_verb(capsys, *short).code == ExitCode.REFUSED
+    assert run_verb(capsys, "calibrate", "gyro", "--for", "1", "-e", rover.endpoint).code == ExitCode.USAGE

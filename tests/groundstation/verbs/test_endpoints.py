@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.config.settings import DEFAULT_ENDPOINT
+from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.recent.recent_file import RecentFile
-from groundstation.verbs import main
-from groundstation.verbs.main import choose_endpoints
+from groundstation.verbs import endpoints
+from groundstation.verbs.endpoints import choose_endpoints
 from tests.groundstation.foreign_vehicle import ForeignVehicle
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
@@ -53,7 +53,7 @@ def test_the_next_verb_finds_the_vehicle_where_the_last_one_did(
 def test_a_damaged_file_of_endpoints_is_one_note(
     recent: RecentFile, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(main, "DEFAULT_ENDPOINT", f"udpin:127.0.0.1:{free_port()}")
+    monkeypatch.setattr(endpoints, "DEFAULT_ENDPOINT", f"udpin:127.0.0.1:{free_port()}")
     recent.path.parent.mkdir(parents=True)
     recent.path.write_text("{")
     lines = [run_verb(capsys, "modes", "--wait", "0.05").err.splitlines() for _ in range(2)]

@@ -17,6 +17,7 @@ from tests.groundstation.foreign_vehicle import PX4, ForeignVehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
+LOG_ERASE = 121
 DATA = random.Random(5).randbytes(60_000)
 
 
@@ -122,7 +123,7 @@ def test_logs(capsys: Capture, vehicle: ForeignVehicle, here: Path) -> None:
     (here / "b.bin.part").write_bytes(DATA[:3000])
     assert verb(capsys, vehicle, "log", "get", "1", "b.bin").code == 0
     assert (here / "b.bin").read_bytes() == DATA[:5000]
-    assert [message.ofs for message in vehicle.of("LOG_REQUEST_DATA")][-1] == 2970
+    assert [message.ofs for message in vehicle.of("LOG_REQUEST_DATA")][-1] == 2880  # the last whole piece again
 
 
 def test_logs_over_a_link_that_loses(capsys: Capture, here: Path) -> None:
@@ -138,3 +139,18 @@ def test_a_vehicle_without_files_and_logs(capsys: Capture, here: Path) -> None:
         none = verb(capsys, vehicle, "log", "list")
         assert (none.code, "list logs: no answer, after 12 tries" in none.err) == (ExitCode.NO_ANSWER, True)
         assert verb(capsys, vehicle, "ftp", "ls", "--timeout", "2").code == ExitCode.NO_ANSWER
+
+
+def test_all_logs_are_erased_only_with_yes(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    refused = verb(capsys, vehicle, "log", "erase")
+    assert (refused.code, refused.err) == (2, "groundstation: this erases ALL logs of the vehicle; --yes does it\n")
+    assert len(vehicle.logs) == 2
+    assert verb(capsys, vehicle, "log", "erase", "--yes").code == 0
+    assert vehicle.logs == []
+
+
+def test_a_vehicle_that_keeps_its_logs(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    vehicle.silent = {LOG_ERASE}
+    kept = verb(capsys, vehicle, "log", "erase", "--yes")
+    assert kept.code == ExitCode.REFUSED
+    assert "erase all logs: refused, 2 logs are still there" in kept.err

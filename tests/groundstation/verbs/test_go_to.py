@@ -51,6 +51,27 @@ def test_goto_by_metres_from_where_it_is(capsys: Capture) -> None:
         assert (north, east) == (pytest.approx(10, abs=0.02), pytest.approx(-5, abs=0.02))
 
 
+def item(number: int, command: int, x: int, y: int) -> mav.MAVLink_mission_item_int_message:
+    return mav.MAVLink_mission_item_int_message(255, 190, number, 3, command, 0, 1, 0, 0, 0, 0, x, y, 0.0)
+
+
+def test_goto_an_item_of_the_mission(capsys: Capture) -> None:
+    with armed() as vehicle:
+        vehicle.missions.items[0] = [
+            item(0, 16, 473977420, 85455940), item(1, 178, 0, 0), item(2, 16, 473980000, 85460000)
+        ]  # fmt: skip
+        assert verb(capsys, vehicle, "goto", "wp", "2").code == 0
+        [command] = vehicle.of("COMMAND_INT")
+        assert (command.command, command.x, command.y) == (REPOSITION, 473980000, 85460000)
+        for number, words in (
+            ("1", "item 1 has no place: DO_CHANGE_SPEED"),
+            ("3", "no item 3, its mission has 3 items"),
+        ):
+            refused = verb(capsys, vehicle, "goto", "wp", number)
+            assert (refused.code, words in refused.err) == (ExitCode.DIFFERS, True), refused.err
+        assert len(vehicle.of("COMMAND_INT")) == 1
+
+
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_home_and_speed(capsys: Capture, autopilot: int) -> None:
     with armed(autopilot) as vehicle:
@@ -58,6 +79,23 @@ def test_home_and_speed(capsys: Capture, autopilot: int) -> None:
         assert verb(capsys, vehicle, "speed", "0.6").code == 0
         [speed] = [each for each in vehicle.of("COMMAND_LONG") if each.command == SPEED]
         assert (speed.param1, speed.param2, speed.param3) == (1, pytest.approx(0.6), -1)
+
+
+HOLD = 4
+"""custom_mode of ArduPilot Rover."""
+
+
+@pytest.mark.parametrize(("metres", "code"), [(1.0, ExitCode.DONE), (5.0, ExitCode.REFUSED)])
+def test_home_where_it_is_home_already(capsys: Capture, metres: float, code: int) -> None:
+    """The rover arrives at once and holds; no heartbeat with RTL may have come in between."""
+    x = 600000000 + round(metres / 111319.5 * 1e7)
+    with armed() as vehicle:
+        vehicle.on_command[RETURN] = lambda: vehicle.change_mode(HOLD)
+        vehicle.telemetry[33] = mav.MAVLink_global_position_int_message(0, x, 100000000, 0, 0, 0, 0, 0, 0)
+        vehicle.telemetry[242] = mav.MAVLink_home_position_message(
+            600000000, 100000000, 0, 0, 0, 0, [1.0, 0.0, 0.0, 0.0], 0, 0, 0
+        )
+        assert verb(capsys, vehicle, "home").code == code
 
 
 def test_an_answer_without_the_mode_is_no_start(capsys: Capture) -> None:
@@ -81,7 +119,9 @@ def test_refusals(capsys: Capture) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("goto", "write LAT LON in degrees, or --by"), ("goto 5", "write LAT LON"), ("goto 0 0", "is no latitude"),
+        ("goto", "write LAT LON in degrees, or --by"), ("goto 5", "write LAT LON"),
+        ("goto wp", "goto wp 7"), ("goto wp 1.5", "1.5 is no number of an item"),
+        ("goto wp -1", "no number of an item"), ("goto wp 1 --by 1 2", "goto wp 7"), ("goto 0 0", "is no latitude"),
         ("goto 91 0", "91 0 is no latitude"), ("goto nan 0", "'nan' is not a number"), ("goto --by 1", "expected 2"),
         ("goto 1 2 --by 1 2", "not both"), ("goto --by 1e9 0", "m at most"), ("speed 0", "not a speed"),
         ("speed inf", "is not a number"), ("speed -1", "not a speed"),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from dialects import messages as m
+from dialects.enums import Command
 from groundstation.verbs.exit_codes import ExitCode
 from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
@@ -48,6 +50,15 @@ def test_a_change_is_done_when_the_heartbeat_reports_it(capsys: Capture, autopil
         assert vehicle.mode == custom
         [record] = changed.records
         assert (record["ok"], record["mode"], record["verb"]) == (True, name.upper(), "mode")
+
+
+def test_a_usual_mode_does_not_wait_for_the_list(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.modes = SHORT
+        assert verb(capsys, vehicle, "mode", "HOLD").code == 0
+        assert vehicle.mode == 4
+        wanted = [each.param1 for each in vehicle.received if getattr(each, "command", 0) == Command.REQUEST_MESSAGE]
+        assert m.AvailableModes.id not in wanted
 
 
 def test_a_mode_that_is_accepted_and_not_reported_is_not_done(capsys: Capture) -> None:

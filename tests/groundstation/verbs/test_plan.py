@@ -12,7 +12,7 @@ from groundstation.verbs.exit_codes import ExitCode
 from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.formats.test_waypoint_file import MISSION_PLANNER
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_until_answered, run_verb
 
 Capture = pytest.CaptureFixture[str]
 
@@ -81,7 +81,7 @@ def test_show_and_clear(capsys: Capture, vehicle: ForeignVehicle, plan_file: str
 def test_the_item_that_is_refused_is_named_and_the_old_plan_stays(
     capsys: Capture, vehicle: ForeignVehicle, plan_file: str
 ) -> None:
-    verb(capsys, vehicle, "mission", "put", plan_file)
+    assert verb(capsys, vehicle, "mission", "set", plan_file).code == 0  # another word for put
     before = vehicle.missions.items[0]
     vehicle.missions.refuse = {1: 10}
     refused = verb(capsys, vehicle, "mission", "put", plan_file)
@@ -101,8 +101,9 @@ def test_a_vehicle_without_missions(capsys: Capture, vehicle: ForeignVehicle) ->
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_a_plan_over_a_link_that_loses(capsys: Capture, autopilot: int, plan_file: str, tmp_path: Path) -> None:
     with ForeignVehicle(autopilot, loss=0.2) as vehicle:
-        assert verb(capsys, vehicle, "mission", "put", plan_file).code == 0
-        assert verb(capsys, vehicle, "mission", "get", str(tmp_path / "b.plan")).code == 0
+        for words in (("put", plan_file), ("get", str(tmp_path / "b.plan"))):
+            run = run_until_answered(capsys, "mission", *words, "-e", vehicle.endpoint, "-v", "1")
+            assert run.code == 0, run.err
         ours = json.loads((tmp_path / "b.plan").read_text())
         assert ours["mission"]["items"] == document()["mission"]["items"]
 

@@ -5,61 +5,24 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import pytest
 
-from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
 from tests.groundstation.foreign_vehicle import PX4, ForeignVehicle
-from tests.groundstation.udp_vehicle import UdpVehicle
-from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb, wait_until
-from tests.ports import free_port
+from tests.groundstation.verbs.driving_process import check_signal, check_standstill
+from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb
 
 Capture = pytest.CaptureFixture[str]
 DRIVE = ("send", "MANUAL_CONTROL", "z=400", "--rate", "20", "--for", "30", "--yes")
 
 
-@contextmanager
-def driving() -> Iterator[tuple[FakeArduPilot, subprocess.Popen[str]]]:
-    """An armed vehicle that holds a demand for 3 s as ArduPilot does, driven by the real program."""
-    core = FakeArduPilot(station=254)
-    core.armed = True
-    endpoint = f"udpin:127.0.0.1:{free_port()}"
-    words = [sys.executable, "-m", "groundstation", *DRIVE, "-e", endpoint]
-    with UdpVehicle(endpoint, core), subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
-        try:
-            wait_until(lambda: core.moves, "the wheels do not turn")
-            yield core, process
-        finally:
-            process.kill()
-
-
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_a_process_that_a_signal_ends_leaves_no_demand(number: signal.Signals) -> None:
-    with driving() as (core, process):
-        process.send_signal(number)
-        at = time.monotonic()
-        wait_until(lambda: not core.moves, "the wheels turn on")
-        assert core.stopped_at - at < LATCH / 2
-        code = process.wait(PATIENCE)
-        assert code == (-9 if number == signal.SIGKILL else 128 + number)
-        assert "Traceback" not in (process.stderr.read() if process.stderr else "")
+    check_signal(number, *DRIVE)
 
 
 def test_a_process_that_stands_still_leaves_no_demand_and_does_not_drive_on() -> None:
-    with driving() as (core, process):
-        process.send_signal(signal.SIGSTOP)
-        at = time.monotonic()
-        wait_until(lambda: not core.moves, "the wheels turn on")
-        assert core.stopped_at - at < LATCH / 2
-        changes = len(core.turning)
-        process.send_signal(signal.SIGCONT)
-        assert process.wait(PATIENCE) == 1
-        assert len(core.turning) == changes, core.turning
-        assert process.stderr is not None
-        assert "stood still" in process.stderr.read()
+    check_standstill(*DRIVE)
 
 
 def test_a_demand_begins_and_ends_with_neutral_in_the_axes_of_the_vehicle() -> None:

@@ -54,3 +54,10 @@ def test_links_show_what_arrives_with_and_without_a_vehicle(capsys: Capture) -> 
         assert (both.code, states) == (0, [" MAVLink".strip(), "nothing heard"])
         alone = run_verb(capsys, "links", "--for", "1.1", "--wait", "0.1", "--json", "-e", silent)
         assert (alone.code, alone.records[0]["frames"]) == (ExitCode.NO_VEHICLE, 0)
+
+
+def test_a_vehicle_is_chosen_by_its_printed_name(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        assert run_verb(capsys, "status", "-v", "ArduPilot rover 1", "-e", vehicle.endpoint).code == 0
+        wrong = run_verb(capsys, "status", "-v", "Rover", "-e", vehicle.endpoint)
+        assert (wrong.code, "nor a name as 'Rover 1'" in wrong.err) == (ExitCode.USAGE, True), wrong.err

@@ -11,7 +11,7 @@ from contextlib import ExitStack
 import pytest
 
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
-from groundstation.intents.session import Quit
+from groundstation.intents.session import Quit, RenewLease
 from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
 from tests.groundstation.line_vehicle import LINES, LineVehicle
 from tests.groundstation.screen import FORWARD, Screen, children, running, until
@@ -118,6 +118,18 @@ def test_a_station_that_drives_nothing_leaves_nothing_behind() -> None:
     with Screen() as screen:
         screen.see(lambda seen: seen.number > 2)
         (watchdog,) = children(screen.client.pid)
+        os.kill(screen.client.pid, signal.SIGKILL)
+        until(lambda: not running(watchdog))
+        screen.client.receive()
+        assert screen.client.outage.text == "station process ended: nothing is sent"
+
+
+def test_the_report_is_read_behind_intents_that_the_station_has_not_read() -> None:
+    with Screen() as screen:
+        screen.see(lambda seen: seen.number > 2)
+        (watchdog,) = children(screen.client.pid)
+        os.kill(screen.client.pid, signal.SIGSTOP)
+        screen.client.send(RenewLease())
         os.kill(screen.client.pid, signal.SIGKILL)
         until(lambda: not running(watchdog))
         screen.client.receive()

@@ -17,10 +17,9 @@ from groundstation.snapshot import StationOutage
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.stall import STALL_TIMEOUT
 from groundstation.station.station import Station
-from groundstation.watchdog.report import Route, StationReport
+from groundstation.watchdog.report import DemandRoute, StationReport
 from groundstation.watchdog.watchdog import SEND_FOR, Watchdog
 from link.core import Peer, Received
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 
 STEP = 0.005
@@ -85,7 +84,7 @@ class FrozenStation:
         for _, target, frame in self.watchdog.tick(self.now):
             self.watchdog.record_sent(target, None)
             ((number, _, _, _, raw),) = Framer(stream=False).feed(frame, self.now)
-            assert is_neutral(codec.decode(number, payload_of(raw)))
+            assert is_neutral(codec.decode_frame(number, raw))
             self.neutrals.append(self.now)
 
     def _flush(self) -> None:
@@ -100,7 +99,7 @@ class FrozenStation:
 
     def _report(self) -> None:
         vehicles = self.station.report_to_watchdog(self.now)
-        routes = tuple(Route(index, None, 0) for index in range(len(vehicles)))
+        routes = tuple(DemandRoute(index, None, 0) for index in range(len(vehicles)))
         self.watchdog.handle_report(StationReport(vehicles=vehicles, routes=routes), self.now)
 
     def _lease(self) -> None:
@@ -150,7 +149,7 @@ ARDUROVER = DrivenVehicle(system=2, component=1, name="ArduPilot rover 2", autop
 def watching(*vehicles: DrivenVehicle) -> Watchdog:
     """A watchdog with the report of a station that drives these, at 100 s; packet 10 was the newest."""
     watchdog = Watchdog()
-    routes = tuple(Route(index, None, 10) for index in range(len(vehicles)))
+    routes = tuple(DemandRoute(index, None, 10) for index in range(len(vehicles)))
     watchdog.handle_report(StationReport(vehicles=vehicles, routes=routes), 100.0)
     return watchdog
 
@@ -164,7 +163,7 @@ def sent(watchdog: Watchdog, start: float, seconds: float, error: str | None = N
             watchdog.record_sent(target, error)
             ((number, system, component, _, raw),) = Framer(stream=False).feed(data, now)
             assert (system, component) == (255, 190)
-            frames.append((now, codec.decode(number, payload_of(raw))))
+            frames.append((now, codec.decode_frame(number, raw)))
     return frames
 
 

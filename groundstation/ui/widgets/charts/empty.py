@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import DIM, GREEN, TEXT, WHITE, YELLOW, style
+from groundstation.ui.look.colours import DIM, GREEN, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, YELLOW, style
 from groundstation.ui.widgets.charts.pane import COLOURS, SAMPLES
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean

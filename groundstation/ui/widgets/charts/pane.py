@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.charts.columns import Column
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, WHITE, YELLOW, style
+from groundstation.ui.charts.columns import DotColumn
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
@@ -39,7 +39,7 @@ class PaneLine:
     name: str
     value: str
     """At the cursor, or the newest; "--" where there is none."""
-    columns: Sequence[Column]
+    columns: Sequence[DotColumn]
     slot: int
     """Index of its colour and its pattern."""
     chosen: bool = False

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import DIM, style
+from groundstation.ui.look.colours import DIM, style
 from groundstation.ui.widgets.charts.pane import COLOURS
 from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.ui.wrap import clean

@@ -1,4 +1,4 @@
-"""Timeline: modes as bars, events and own keys as marks, and the times under the charts."""
+"""ChartTimeline: modes as bars, events and own keys as marks, and the times under the charts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, LINE, RED, TEXT, WHITE, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, LINE, RED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.charts.pane import AXIS
 from groundstation.ui.widgets.instrument import Instrument, strip
@@ -55,7 +55,7 @@ class TimelineMark:
 
 
 @dataclass(frozen=True, slots=True)
-class TimelineValue:
+class ChartTimelineValue:
     """What happened in the window."""
 
     dots: int = 2
@@ -68,7 +68,7 @@ class TimelineValue:
     cursor_time: str = ""
 
 
-class Timeline(Instrument[TimelineValue]):
+class ChartTimeline(Instrument[ChartTimelineValue]):
     """Three rows: modes, marks, time; with a header where there is room."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
@@ -122,7 +122,7 @@ def _sign(mark: TimelineMark) -> tuple[str, Style]:
     return sign, style(colour, bold=True)
 
 
-def _draw_times(canvas: Canvas, value: TimelineValue, width: int) -> None:
+def _draw_times(canvas: Canvas, value: ChartTimelineValue, width: int) -> None:
     """Draw the time of the cursor, and those at the edges where there is room beside it."""
     size = len(value.cursor_time)
     at = AXIS + (value.cursor or 0) // 2 - size // 2

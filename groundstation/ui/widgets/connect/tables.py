@@ -6,9 +6,9 @@ import time
 from collections.abc import Sequence
 
 from groundstation.recent.recent import RecentEndpoint
-from groundstation.simulators import SIMULATORS
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, TEXT, WHITE, YELLOW
+from groundstation.sitl.simulators import SIMULATORS
 from groundstation.ui.local_files import LocalFile
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, TEXT, WHITE, YELLOW
 from groundstation.ui.widgets.columns import Column
 from groundstation.ui.widgets.files.tables import size_text
 from groundstation.ui.widgets.row_table import Cell, RowTableValue, dim
@@ -49,6 +49,8 @@ def heard_value(view: ConnectView | None, cursor: int | None) -> RowTableValue:
 
 
 def _heard(each: HeardRow) -> tuple[Cell, ...]:
+    if each.announced:
+        return _announced(each)
     control = "--" if each.driver is None else "nobody" if each.driver == 0 else f"driven by {each.driver}"
     flow = f"{each.rate:.0f}/s {each.bytes_per_second / 1000:.1f} kB/s" if each.rate else "open" if each.open else "--"
     host, port = each.address.rpartition(":")[0], each.endpoint.rpartition(":")[2]
@@ -65,14 +67,32 @@ def _heard(each: HeardRow) -> tuple[Cell, ...]:
     )
 
 
+def _announced(each: HeardRow) -> tuple[Cell, ...]:
+    """Return the row of a vehicle that announces itself: all else is known once it is connected."""
+    return (
+        Cell(str(each.system or "--"), WHITE, bold=True),
+        Cell(each.name, TEXT),
+        dim("--"),
+        dim("announced"),
+        dim(each.endpoint.partition(":")[2]),
+        dim("mDNS"),
+        dim("--"),
+        dim("--"),
+    )
+
+
 def _heard_notes(view: ConnectView) -> list[Cell]:
     notes = [Cell(f"{row.endpoint}: {row.problem}", AMBER) for row in view.listening if row.problem]
     free = [row.endpoint.removeprefix("udpin:") for row in view.listening if not row.problem]
     if not view.heard:
         where = f" on {' and '.join(free)}" if free else ""
         notes.append(dim(f"nothing heard{where} · ENTER starts a simulated rover"))
-    elif any(not row.open for row in view.heard):
+    elif any(not row.open and not row.announced for row in view.heard):
         notes.append(dim("a heartbeat is enough to be listed; nothing is sent to it before ENTER"))
+    if view.search_problem:
+        notes.append(Cell(view.search_problem, AMBER))
+    elif view.searching:
+        notes.append(dim("searching the network for vehicles that announce themselves"))
     for attempt in view.attempts:
         if attempt.state == "failed":
             again = "" if attempt.retry_in is None else f"; next try in {attempt.retry_in:.0f} s"

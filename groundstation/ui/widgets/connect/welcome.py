@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import BLUE, DIM, GREEN, TEXT, WHITE, YELLOW, style
+from groundstation.ui.look.colours import BLUE, DIM, GREEN, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BACKGROUND, DIM, FAINT, GREEN, TEXT, style
+from groundstation.ui.look.colours import AMBER, BACKGROUND, DIM, FAINT, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.widgets.params.table import shortened
 from groundstation.ui.wrap import clean

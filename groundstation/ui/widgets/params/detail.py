@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, WHITE, style
+from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, WHITE, style
 from groundstation.ui.params.checks import Level, check_value, is_rounded, range_text
 from groundstation.ui.params.reasons import reason_for
 from groundstation.ui.widgets.instrument import Instrument, Part, strip

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, TEXT, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, TEXT, YELLOW, style
 from groundstation.ui.params.scope import ALL, ParamScope, ScopeKind, ScopeRow
 from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.ui.wrap import clean

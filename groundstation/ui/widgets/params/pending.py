@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.params.checks import Level, check_value, meaning_of, needs_care
 from groundstation.ui.params.pending import PendingChange
 from groundstation.ui.widgets.columns import Column, fit, header, row

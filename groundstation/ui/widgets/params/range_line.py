@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, style
 from groundstation.ui.widgets.instrument import Part
 from link.services.param.float32 import value_text
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, MUTED, TEXT, WHITE, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, MUTED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.params.checks import meaning_of
 from groundstation.ui.params.pending import PendingChange
 from groundstation.ui.widgets.columns import Column, fit, header, row

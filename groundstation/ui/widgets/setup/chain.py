@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, FAINT, GREEN, RED, TEXT, WHITE, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, FAINT, GREEN, RED, TEXT, WHITE, style
 from groundstation.ui.setup.model import ChainLine, chain_lines
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean
-from groundstation.views.doctor import DoctorRow, Health
+from groundstation.views.doctor import DoctorRow
+from link.runtime.diagnosis import Health
 
 MARKS: dict[Health, tuple[str, str]] = {
     Health.OK: ("✓", GREEN), Health.WARNING: ("!", AMBER), Health.FAULT: ("✗", RED), Health.UNKNOWN: ("·", DIM),

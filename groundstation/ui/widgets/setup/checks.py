@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import BLUE, DIM, GREEN, RED, TEXT, WHITE, style
+from groundstation.ui.look.colours import BLUE, DIM, GREEN, RED, TEXT, WHITE, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.widgets.setup.chain import MARKS
 from groundstation.ui.wrap import clean, wrap
-from groundstation.views.doctor import DoctorView, Health
+from groundstation.views.doctor import DoctorView
+from link.runtime.diagnosis import Health
 
 
 @dataclass(frozen=True, slots=True)

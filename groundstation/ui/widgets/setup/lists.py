@@ -6,13 +6,17 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import BLUE, DIM, GREEN, RED, TEXT, YELLOW, style
+from groundstation.ui.look.colours import BLUE, DIM, GREEN, RED, TEXT, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.wrap import clean, wrap
-from groundstation.views.doctor import CalibrationRow, DoctorView, Health
+from groundstation.views.doctor import CalibrationRow, DoctorView, StickRow
 from groundstation.views.requests import RequestLine
+from link.runtime.diagnosis import Health
 
-CALIBRATION_KEYS = {"accel": "A", "level": "H", "gyro": "Y", "pressure": "P", "compass": "C"}
+STICK_CELLS = 16
+"""Cells of the travel of an RC channel."""
+
+CALIBRATION_KEYS = {"accel": "A", "level": "H", "gyro": "Y", "pressure": "P", "compass": "C", "sticks": "R"}
 """Kind, without the autopilot's suffix -> its key."""
 
 
@@ -39,10 +43,13 @@ class CalibrationPanel(Instrument[ListValue]):
         if height == 1:
             return [strip(*(_running(view, ended=False) or _in_one_line(view))).crop(0, width)]
         running = _running(view, ended=True)
-        lines = [_line(row) for row in view.calibrations]
         below = [running] if running else []
+        below += [] if view.calibration_share is None else [_bar(view.calibration_share, width)]
         below += [[(f" {text}", style(BLUE, bold=True))] for text in wrap(view.calibration, width - 2)]
-        return [strip(*line).crop(0, width) for line in [*lines, *([[]] if below else []), *below][:height]]
+        room = height - len(below) - 1 if below else height  # what to do comes before what could be done
+        lines = [_line(row) for row in view.calibrations] if view.sticks is None else _stick_lines(view.sticks)
+        shown = [*lines[: max(0, room)], *([[]] if below else []), *below]
+        return [strip(*line).crop(0, width) for line in shown[:height]]
 
 
 def _line(row: CalibrationRow) -> list[Part]:
@@ -56,6 +63,28 @@ def _line(row: CalibrationRow) -> list[Part]:
     ]
 
 
+def _bar(share: float, width: int) -> list[Part]:
+    """Return the progress of a calibration."""
+    room = max(1, width - 8)
+    full = round(share * room)
+    return [(f" {share:4.0%} ", style(TEXT)), ("█" * full, style(BLUE)), ("░" * (room - full), style(DIM))]
+
+
+def _stick_lines(sticks: tuple[StickRow, ...]) -> list[list[Part]]:
+    """Return a line for each RC channel, those that were moved first."""
+    rows = sorted(sticks, key=lambda row: not row.moved)
+    return [_stick(row) for row in rows] or [[(" no RC channel is reported yet", style(DIM))]]
+
+
+def _stick(row: StickRow) -> list[Part]:
+    """Return the travel of a channel on a line from 900 to 2100 us, and where it is."""
+    low, high, now = (max(0, min(STICK_CELLS - 1, (each - 900) * STICK_CELLS // 1200)) for each in row.pulses)
+    cells = "".join("┃" if at == now else "█" if low <= at <= high else "·" for at in range(STICK_CELLS))
+    look = style(TEXT) if row.moved else style(DIM)
+    end = ("✓", style(GREEN)) if row.moved else ("", style(DIM))
+    return [(f" {row.channel:>2} {row.low:>4} ", look), (cells, look), (f" {row.high:>4} ", look), end]
+
+
 def _in_one_line(view: DoctorView) -> list[Part]:
     if view.calibration:
         return [(f" {clean(view.calibration)}", style(BLUE, bold=True))]
@@ -63,7 +92,7 @@ def _in_one_line(view: DoctorView) -> list[Part]:
     for row in view.calibrations:
         if row.state != "cannot":
             done = " ✓" if row.health is Health.OK else ""
-            parts += [(f"  {calibration_key(row)} ", style(YELLOW, bold=True)), (f"{row.title}{done}", style(TEXT))]
+            parts += [(f" {calibration_key(row)} ", style(YELLOW, bold=True)), (f"{row.title}{done}", style(TEXT))]
     return parts if len(parts) > 1 else [(" calibration: this vehicle cannot", style(DIM))]
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, DIM, GREEN, TEXT, YELLOW, style
+from groundstation.ui.look.colours import AMBER, DIM, GREEN, TEXT, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean, wrap
 from groundstation.views.doctor import DoctorView, MotorRow

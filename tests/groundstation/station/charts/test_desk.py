@@ -7,8 +7,9 @@ from array import array
 from dialects import messages as m
 from groundstation.intents.charts import PinSeries
 from groundstation.intents.driving import HOLD_TIME, DriveKeyDown
-from groundstation.intents.session import SetKeyGate, Watch
+from groundstation.intents.session import SetKeyGate
 from groundstation.intents.vehicle import Arm, SetMode
+from groundstation.intents.watch import Watch
 from groundstation.views.base import View
 from groundstation.views.charts import STATION, FieldId, FieldsPage, FieldsRequest, SeriesPage, SeriesRequest
 from tests.groundstation.fake_vehicle import Cockpit

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from groundstation.ui.map.geometry import LocalMap
-from groundstation.views.plan import PlanItem, PlanPlace
+from groundstation.geo import LocalFrame, Place
+from groundstation.views.plan import PlanItem
 
-HOME = PlanPlace(-35.3632621, 149.1652374)
-AROUND = LocalMap(HOME)
+HOME = Place(-35.3632621, 149.1652374)
+AROUND = LocalFrame(HOME)
 
 
-def at(north: float, east: float) -> PlanPlace:
+def at(north: float, east: float) -> Place:
     """A place so many metres from home."""
     return AROUND.to_place((north, east))
 

@@ -8,9 +8,9 @@ import msgspec
 import pytest
 
 from groundstation.ui.map.checks import check_fence, fence_shapes, item_fault, plan_fault, range_warning
-from groundstation.ui.map.geometry import LocalMap, bearing, distance_to_line, is_inside, place_of
-from groundstation.views.plan import PlanItem, PlanPlace
-from tests.groundstation.ui.map.plans import AROUND, HOME, at, item, square, task
+from groundstation.ui.map.geometry import distance_to_line, is_inside, place_of
+from groundstation.views.plan import PlanItem
+from tests.groundstation.ui.map.plans import AROUND, item, square, task
 
 
 def test_a_fence_of_inclusions_and_exclusions() -> None:
@@ -71,16 +71,6 @@ def test_places_and_ways() -> None:
     assert place_of(task(20)) is None
     assert place_of(PlanItem(16, 3, (0.0, 0.0, 0.0, 0.0), 0x7FFF_FFFF, 5, 0.0)) is None
     assert place_of(msgspec.structs.replace(item(16), x=950_000_000)) is None
-    assert bearing((0, 0), (0, 5)) == 90.0
     assert distance_to_line((3, 5), (0, 0), (0, 10)) == 3.0
     assert distance_to_line((3, 5), (0, 5), (0, 5)) == 3.0
     assert is_inside((1, 1), [(0, 0), (0, 4), (4, 4), (4, 0)])
-    assert AROUND.to_point(at(12.5, -7.25)) == pytest.approx((12.5, -7.25), abs=1e-6)
-
-
-def test_the_date_line_and_the_pole() -> None:
-    frame = LocalMap(PlanPlace(10.0, 179.9999))
-    assert frame.to_point(PlanPlace(10.0, -179.9999)) == pytest.approx((0.0, 21.9), abs=0.1)
-    assert frame.to_place((0.0, 50.0)).longitude < 0
-    assert LocalMap(PlanPlace(90.0, 0.0)).to_place((100.0, 100.0)).latitude == 90.0
-    assert AROUND.to_point(HOME) == (0.0, 0.0)

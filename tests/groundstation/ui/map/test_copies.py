@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from groundstation.ui.map.copies import PlanCopies
+from groundstation.ui.map.model import MapModel
+from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.plan import (
     PAGE,
     PlanItem,
@@ -64,6 +66,18 @@ def test_an_empty_plan_is_whole() -> None:
     copies.show_view(view(count=0))
     assert copies.show_view(PlanPage(1, 0, 1, 0, 0, ())) is PlanKind.MISSION
     assert copies.items[PlanKind.MISSION] == ()
+
+
+def test_a_plan_that_a_log_does_not_have_yet_is_forgotten() -> None:
+    model = MapModel(RequestNumbers())
+    model.show_view(view())
+    model.show_view(page(0, ITEMS[:PAGE]))
+    model.show_view(page(PAGE, ITEMS[PAGE:]))
+    assert model.editor.items(PlanKind.MISSION) == ITEMS
+    model.show_view(view(version=0, count=0))
+    assert model.editor.items(PlanKind.MISSION) == ()
+    model.show_view(view())
+    assert page_request(model.copies) == PlanPageRequest(1, 0, 1, 0)
 
 
 def test_another_vehicle_has_plans_of_its_own() -> None:

@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.ui.map.commands import command_title, find_command, short_title
-from groundstation.ui.map.fields import Field, change_command, change_field, fields_of, number_text, value_of
+from groundstation.ui.map.fields import ItemField, change_command, change_field, fields_of, number_text, value_of
 from groundstation.views.plan import PlanItem, PlanKind
 from tests.groundstation.ui.map.plans import item, square, task
 
 MISSION, FENCE, RALLY = PlanKind
 
 
-def field(of: PlanItem, label: str) -> Field:
+def field(of: PlanItem, label: str) -> ItemField:
     return next(each for each in fields_of(of) if each.label == label)
 
 

@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 from msgspec.msgpack import encode
 
-from groundstation.ui.map.files import PlanFileError, open_plan, save_plan
+from groundstation.geo import Place
+from groundstation.ui.map.files import MapFileError, open_plan, save_plan
 from groundstation.verbs.exit_codes import VerbError
 from groundstation.verbs.plan_converter import main, write
-from groundstation.views.plan import PlanDocument, PlanPlace
+from groundstation.views.plan import PlanDocument
 from tests.groundstation.ui.map.plans import HOME, item, square, task
 
 MISSION = (item(16, 1, 2, 3.0), task(178, 1.0, 0.5), task(31_999, 7.0), task(177, 0.0, 2.0))
@@ -26,8 +27,8 @@ async def test_a_plan_comes_back_as_it_was_saved(tmp_path: Path) -> None:
     assert again.plans[0][:2] == DOCUMENT.plans[0][:2]
     assert again.plans[0][2].command == 31_999, "an unknown command is kept"
     assert again.plans[1:] == DOCUMENT.plans[1:]
-    assert again.home == PlanPlace(round(HOME.latitude, 7), round(HOME.longitude, 7))
-    with pytest.raises(PlanFileError, match="exists already"):
+    assert again.home == Place(round(HOME.latitude, 7), round(HOME.longitude, 7))
+    with pytest.raises(MapFileError, match="exists already"):
         await save_plan(file, DOCUMENT)
 
 

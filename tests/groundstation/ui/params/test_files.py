@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.ui.params.favourites import Favourites
-from groundstation.ui.params.files import MAX_SIZE, SaveChoice, parse_save, read_file, write_file
+from groundstation.ui.params.files import MAX_SIZE, SaveChoice, parse_save, read_file
 
 HERE = Path("/here")
 
@@ -35,13 +35,6 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     assert read_file(".", tmp_path) == f"{tmp_path}: there is no such file"
     assert read_file("binary", tmp_path) == f"{tmp_path}/binary: this is not a text file"
     assert read_file("large", tmp_path) == f"{tmp_path}/large: more than {MAX_SIZE} bytes: this is not a parameter file"
-
-
-def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
-    assert write_file(tmp_path / "a", "text") is None
-    assert (tmp_path / "a").read_text() == "text"
-    assert write_file(tmp_path / "no" / "a", "text") == f"{tmp_path}/no/a: No such file or directory"
-    assert [each.name for each in tmp_path.iterdir()] == ["a"]
 
 
 def test_favourites_outlive_the_program(tmp_path: Path) -> None:

@@ -11,12 +11,13 @@ import pytest
 
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.links import AddLink, CloseLink
-from groundstation.intents.session import StartSimulator, Watch
+from groundstation.intents.session import StartSimulator
 from groundstation.intents.vehicle import SelectVehicle
+from groundstation.intents.watch import Watch
 from groundstation.recent.recent_file import RecentFile
 from groundstation.snapshot import Snapshot
 from groundstation.ui.screens.connect import ConnectScreen
-from groundstation.views.connect import ConnectRequest, ConnectView, LinkAttempt
+from groundstation.views.connect import ConnectRequest, ConnectView, HeardRow, LinkAttempt
 from tests.groundstation.ui.example_connect import (
     CONNECT,
     FAILED,
@@ -190,3 +191,30 @@ async def test_where_there_is_no_room_for_the_logs_the_arrows_do_not_go_there(tm
         await open_connect(screen)
         await screen.press("shift+tab")
         assert "ENTER starts a simulator" in screen.text
+
+
+async def test_d_asks_the_network_and_enter_connects_to_what_announces_itself() -> None:
+    announced = HeardRow(
+        endpoint="udpout:10.0.0.7:14550",
+        system=7,
+        name="Rover 7 on pi",
+        mode="",
+        armed=False,
+        silence=0.0,
+        announced=True,
+    )
+    async with console(picture=UNCONNECTED) as screen:
+        await open_connect(screen, NOTHING)
+        await screen.press("d")
+        await until(lambda: screen.station.of(Watch)[-1] == Watch((ConnectRequest(search=True),)))
+        await offer(screen, msgspec.structs.replace(NOTHING, heard=(announced,), searching=True))
+        assert "Rover 7 on pi" in screen.text
+        assert "searching the network" in screen.text
+        await screen.press("enter")
+        assert [each.endpoint for each in screen.station.of(AddLink)] == ["udpout:10.0.0.7:14550"]
+        await offer(
+            screen, msgspec.structs.replace(NOTHING, searching=True, search_problem="discovery needs the extra")
+        )
+        assert "discovery needs the extra" in screen.text
+        await screen.press("d")
+        await until(lambda: screen.station.of(Watch)[-1] == Watch((ConnectRequest(),)))

@@ -6,15 +6,26 @@ from pathlib import Path
 
 import msgspec
 
-from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
+from groundstation.intents.files import (
+    CompareFile,
+    EraseLogs,
+    GetFile,
+    GetLog,
+    ListFolder,
+    ListLogs,
+    PutFile,
+    RemoveFile,
+)
 from groundstation.intents.services import CancelRequest
-from groundstation.intents.session import Watch
+from groundstation.intents.watch import Watch
+from groundstation.snapshot import RecordingView
 from groundstation.ui.task_list import TaskList
 from groundstation.views.base import View
 from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from tests.groundstation.ui.example_files import FILES, FOLDERS, NO_TASKS, TASKS, fill_folder
 from tests.groundstation.ui.examples import snapshot
+from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
@@ -84,12 +95,12 @@ async def test_nothing_is_deleted_or_erased_before_a_word_is_typed() -> None:
     async with console(WIDE) as screen:
         await open_files(screen)
         await screen.press("X")
-        assert "choose a file of the vehicle first" in screen.text
-        await screen.press("E")
         assert "erase 6 logs on Rover 1, which cannot be undone · type erase" in screen.text
-        await screen.press(*"eras", "x", "E", *"erase")
+        await screen.press(*"eras", "x", "X", *"erase")
         assert len(screen.station.of(EraseLogs)) == 1
-        await screen.press("tab", "end", "X")
+        await screen.press("tab", "X")
+        assert "choose a file first" in screen.text
+        await screen.press("end", "X")
         assert "delete /crash_dump.bin on Rover 1, which cannot be undone · type delete" in screen.text
         await screen.press("y", "X", *"delete")
         (remove,) = screen.station.of(RemoveFile)
@@ -148,3 +159,60 @@ def test_the_speed_and_the_time_left_are_those_of_the_last_seconds() -> None:
     assert (speed.per_second, speed.left) == (1000.0, 12.0)
     tasks.show(RequestsView((), ()), 9.0)
     assert tasks.speed(line) is None
+
+
+async def test_a_file_here_is_deleted_after_the_word_and_not_while_it_arrives(tmp_path: Path) -> None:
+    async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
+        arriving = RequestLine(3, "running", "download log 13", total=14_200, service="files", system=1)
+        await open_files(screen, tasks=RequestsView((arriving,), ()))
+        await screen.press("tab", "tab", "X")
+        assert "1-00013.bin is being downloaded: x stops that first" in screen.text
+        await screen.press("end")
+        recording = RecordingView(path=str(tmp_path / "threads.txt"), seconds=1.0, size=1100)
+        await screen.show(snapshot(recording=recording))
+        await screen.press("X")
+        assert "threads.txt is the recording of this session" in screen.text
+        await screen.show(snapshot())
+        await screen.press("X")
+        assert "delete threads.txt here, 1.1 kB, which cannot be undone · type delete" in screen.text
+        await screen.press("y")
+        assert (tmp_path / "threads.txt").exists()
+        await screen.press("X", *"delete")
+        await until(lambda: "threads.txt is deleted" in screen.text)
+        assert not (tmp_path / "threads.txt").exists()
+        (tmp_path / "2-00003.bin").unlink()
+        await screen.press("end", "X", *"delete")
+        await until(lambda: "2-00003.bin: not deleted: No such file or directory" in screen.text)
+
+
+async def test_a_file_there_is_compared_with_the_one_here(tmp_path: Path) -> None:
+    name = "crash_dump.bin"
+    async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
+        await open_files(screen)
+        await screen.press("C")
+        assert "choose a file of the vehicle first" in screen.text
+        await screen.press("tab", "end", "C")
+        (first,) = screen.station.of(CompareFile)
+        assert (first.path, first.file) == (f"/{name}", str(tmp_path / "1-00013.bin")), "none here has its name"
+        (tmp_path / name).write_bytes(b"x")
+        await screen.press("R", "C")
+        compare = screen.station.of(CompareFile)[-1]
+        assert compare.file == str(tmp_path / name)
+        line = RequestLine(compare.request, "accepted", f"compare /{name} with {name}", "differs: CRC 1 there, 2 here",
+                           service="files", system=1)  # fmt: skip
+        await offer(screen, RequestsView((), (line,)))
+        assert "✗ differs: CRC 1 there, 2 here" in screen.text
+        (tmp_path / name).write_bytes(b"another")
+        await screen.press("R")
+        await offer(screen, NO_TASKS)
+        assert "differs" not in screen.text, "it is another file now"
+
+
+async def test_a_telemetry_log_here_shows_its_vehicle_and_its_length(tmp_path: Path) -> None:
+    (tmp_path / "drive.tlog").write_bytes(log(HEARTBEATS, seconds=754.0))
+    (tmp_path / "broken.tlog").write_bytes(b"no log")
+    async with console(WIDE, folder=tmp_path) as screen:
+        await open_files(screen)
+        await until(lambda: "id 1 7" in screen.text)
+        (row,) = (line for line in screen.text.splitlines() if "drive.tlog" in line)
+        assert "12:34" in row

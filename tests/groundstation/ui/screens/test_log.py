@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
-from groundstation.intents.session import SetKeyGate, Watch
+from groundstation.intents.session import SetKeyGate
+from groundstation.intents.watch import Watch
 from groundstation.snapshot import LogLine
-from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
-from groundstation.ui.screens.log import LogScreen, short_path
+from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
+from groundstation.ui.local_files import short_path
+from groundstation.ui.screens.log import LogScreen
 from groundstation.views.log import LogPage, LogRequest
 from groundstation.views.requests import RequestsRequest
 from tests.groundstation.ui.examples import DRIVE_WATCH, LOG_PAGE, NOON, snapshot, vehicle
@@ -55,6 +57,12 @@ async def test_under_the_menu_it_stays_live() -> None:
         assert "go to" in screen.text
 
 
+def marked(screen: Console) -> str:
+    """Return the row with the cursor, without the frames."""
+    (row,) = (row for row in screen.text.splitlines() if row.startswith("│›"))
+    return row[2:].split("│")[0].rstrip()
+
+
 @pytest.mark.parametrize("size", [(80, 24), (140, 45), (60, 15)])
 async def test_arrows_and_pages_scroll(size: tuple[int, int]) -> None:
     async with console(size) as screen:
@@ -63,13 +71,14 @@ async def test_arrows_and_pages_scroll(size: tuple[int, int]) -> None:
         await screen.press("home")
         await until(lambda: "line 1." in screen.text)
         assert "line 100." not in screen.text
-        await until(lambda: "scrolled: END follows" in screen.text)
+        await until(lambda: "END follows the newest line" in screen.text)
+        assert marked(screen).endswith(" line 1.")
         await screen.press("down")
+        await until(lambda: marked(screen).endswith(" line 2."))
+        await screen.press("up", "pagedown", "pagedown")
         await until(lambda: "line 1." not in screen.text)
-        await screen.press("up", "pagedown")
-        await until(lambda: "line 1." not in screen.text and "line 2." not in screen.text)
-        await screen.press("pageup")
-        await until(lambda: "line 1." in screen.text)
+        await screen.press("pageup", "pageup")
+        await until(lambda: marked(screen).endswith(" line 1."))
         await screen.press("end")
         await until(lambda: "line 100." in screen.text and "live, newest below" in screen.text)
 
@@ -88,7 +97,7 @@ async def test_all_alerts_are_listed_whole_and_can_be_scrolled_where_they_are_ma
         await screen.press("tab", "end")
         await until(lambda: SETTINGS[11] in screen.text)
         await screen.press("tab", "home")
-        await until(lambda: "line" not in screen.text or "scrolled" in screen.text)
+        await until(lambda: "END follows the newest line" in screen.text)
         assert SETTINGS[11] in screen.text
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ from groundstation.intents.plan import (
     UploadPlan,
 )
 from groundstation.intents.services import CancelRequest
-from groundstation.intents.session import Watch
+from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.screens.map import MapScreen
@@ -34,6 +35,8 @@ from tests.groundstation.ui.example_map import (
     plan_view,
     track,
 )
+from tests.groundstation.ui.examples import waiting
+from tests.groundstation.ui.map.plans import at
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
@@ -235,3 +238,96 @@ async def test_files_are_saved_and_opened(tmp_path: Path) -> None:
         await screen.press("escape", "O", *["backspace"] * 9)
         await type_text(screen, "no.plan")
         await until(lambda: "No such file" in screen.app.screen.hint)  # type: ignore[attr-defined]
+
+
+def write_layer(file: Path, *features: tuple[str, object, str]) -> None:
+    found = [
+        {"type": "Feature", "geometry": {"type": kind, "coordinates": coordinates}, "properties": {"name": name}}
+        for kind, coordinates, name in features
+    ]
+    file.write_text(json.dumps({"type": "FeatureCollection", "features": found}))
+
+
+def around(*points: tuple[float, float]) -> list[list[float]]:
+    return [[at(*point).longitude, at(*point).latitude] for point in points]
+
+
+async def test_a_geojson_file_is_a_layer_behind_the_plans(tmp_path: Path) -> None:
+    corners = around((60, -20), (60, 20), (-30, 20), (-30, -20))
+    write_layer(tmp_path / "a.geojson", ("Polygon", [corners], "meadow"), ("Point", around((5, 5))[0], "gate"))
+    async with console((140, 45), folder=tmp_path) as screen:
+        model = await open_map(screen)
+        before = screen.text
+        await screen.press("O")
+        await type_text(screen, "a.geojson")
+        await until(lambda: "a.geojson: 1 point, 1 area" in screen.text)
+        await screen.show(STANDING)
+        assert "meadow" in screen.text
+        assert "gate" in screen.text
+        assert not model.editor.edited, "it is no plan"
+        await screen.press("l")
+        assert "layers hidden" in screen.text
+        assert "meadow" not in screen.text
+        await screen.press("l", "l", "f")
+        assert [line for line in screen.text.splitlines() if "⌂" in line] == [
+            line for line in before.splitlines() if "⌂" in line
+        ], "the map is as before"
+
+
+async def test_a_damaged_layer_is_one_line_and_one_far_away_is_named_and_not_fitted(tmp_path: Path) -> None:
+    (tmp_path / "bad.geojson").write_text('{"type": "Point", "coordinates": [8.0, NaN]}')
+    write_layer(tmp_path / "far.geojson", ("Point", [2.35, 48.85], "Paris"))
+    async with console((140, 45), folder=tmp_path) as screen:
+        model = await open_map(screen)
+        scale = model.ground.window.scale
+        await screen.press("O")
+        await type_text(screen, "bad.geojson")
+        await until(lambda: "bad.geojson: position 1: latitude nan is not in -90 to 90" in screen.text)
+        await screen.press("O", *["backspace"] * 11)
+        await type_text(screen, "far.geojson")
+        await until(lambda: "far.geojson: 1 point, 1" in screen.text)
+        assert "km away at" in screen.text
+        assert "f does not show it" in screen.text
+        assert model.ground.window.scale == scale
+
+
+async def test_a_layer_alone_makes_a_map_without_any_vehicle(tmp_path: Path) -> None:
+    write_layer(tmp_path / "a.geojson", ("LineString", around((0, 0), (0, 30)), "path"))
+    async with console((140, 45), waiting(), folder=tmp_path) as screen:
+        await screen.press("f2", "O")
+        await type_text(screen, "a.geojson")
+        await until(lambda: "1 line" in screen.text)
+        await screen.show(waiting())
+        assert "path" in screen.text
+
+
+async def test_the_place_of_the_cursor_is_copied() -> None:
+    async with console() as screen:
+        model = await open_map(screen)
+        await screen.press("y")
+        assert model.ground.cursor is not None
+        text = f"{model.ground.cursor.latitude:.7f}, {model.ground.cursor.longitude:.7f}"
+        assert screen.app.clipboard == text
+        assert f"copied {text}" in screen.text
+
+
+async def test_the_table_is_filtered_and_its_arrows_stay_in_what_is_shown() -> None:
+    async with console((140, 45)) as screen:
+        model = await open_map(screen)
+        await screen.press("slash", *"loiter", "enter")
+        shown = list(model.shown_rows)
+        assert len(shown) == 1
+        assert f"/loiter 1 of {len(MISSION)} items" in screen.text
+        assert "WAYPOINT" not in screen.text.split("LOITER_TIME")[0].splitlines()[-1]
+        await screen.press("tab", "down", "up", "end")
+        assert model.editor.selected == shown[0]
+        await screen.press("slash", *["backspace"] * 6, *"nothing", "enter")
+        assert "no item has 'nothing'" in screen.text
+        count = len(model.editor.rows())
+        await screen.press("down", "x")
+        assert "the filter hides the selected item" in screen.text
+        assert len(model.editor.rows()) == count
+        await screen.press("escape")
+        assert len(model.shown_rows) == len(model.editor.rows())
+        await screen.press("a", "slash", *"new", "enter")
+        assert [model.editor.rows()[index].origin for index in model.shown_rows] == [None]

@@ -17,9 +17,10 @@ from groundstation.intents.services import (
     StoreParams,
     WriteParams,
 )
-from groundstation.intents.session import SetKeyGate, Watch
+from groundstation.intents.session import SetKeyGate
+from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
-from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
+from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.params import ParamsScreen
 from groundstation.views.base import ViewRequest
 from groundstation.views.params import (

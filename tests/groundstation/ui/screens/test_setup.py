@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.intents.session import SetKeyGate, Watch
+from groundstation.intents.session import SetKeyGate
 from groundstation.intents.setup import (
     Calibrate,
     ConfirmPosition,
@@ -16,13 +16,15 @@ from groundstation.intents.setup import (
     RunChecks,
     StopMotorTest,
     TurnMotor,
+    WatchSticks,
 )
 from groundstation.intents.vehicle import SetMode
+from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
-from groundstation.ui.key_parser import KeyUp
 from groundstation.ui.params.model import ParamModel
 from groundstation.ui.screens.setup import SetupScreen
-from groundstation.views.doctor import DoctorRequest, DoctorView
+from groundstation.ui.terminal.key_parser import KeyUp
+from groundstation.views.doctor import DoctorRequest, DoctorView, ParamFix, StickRow
 from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.example_setup import EMPTY, LACKING, LAYING, doctor_view
 from tests.groundstation.ui.examples import snapshot, vehicle
@@ -212,8 +214,6 @@ async def test_calibrations_ask_first() -> None:
         await offer(screen, LAYING)
         await screen.press("enter")
         assert screen.station.of(ConfirmPosition) == [ConfirmPosition(1)]
-        await screen.press("W", "x")
-        assert [intent.accept for intent in screen.station.of(EndCalibration)] == [True, False]
 
 
 async def test_what_the_vehicle_cannot_calibrate() -> None:
@@ -247,3 +247,55 @@ async def test_the_tab_counts_what_stops_the_operator() -> None:
     async with console((140, 45)) as screen:
         await screen.show(snapshot(faults=2))
         await until(lambda: "F8 Setup 2✗" in screen.text)
+
+
+STICKS = (StickRow(1, 1102, 1898, 1504, moved=True), StickRow(2, 1450, 1550, 1500, moved=False))
+MOVED = doctor_view(
+    sticks=STICKS, stick_changes=(ParamFix("RC1_MIN", 1100.0, 1102.0), ParamFix("RC1_MAX", 1900.0, 1898.0)),
+    calibration="move all sticks to their ends, centre them, then ENTER (moved: 1)",
+)  # fmt: skip
+
+
+async def test_the_result_of_a_compass_is_written_when_it_is_there() -> None:
+    async with console((140, 45)) as screen:
+        await open_setup(screen, doctor_view(calibration="compass 1 40 %: turn it", calibration_share=0.4))
+        await until(lambda: " 40% " in screen.text)
+        await screen.press("W")
+        await until(lambda: "there is no result of a compass to write" in screen.text)
+        assert not screen.station.of(EndCalibration)
+        await offer(screen, doctor_view(calibration="compass 1 fit 8.2", compass_ready=True))
+        await screen.press("W", "x")
+        assert [(intent.system, intent.accept) for intent in screen.station.of(EndCalibration)] == [
+            (1, True), (1, False),
+        ]  # fmt: skip
+
+
+async def test_the_sticks_become_pending_parameters() -> None:
+    async with console((140, 45)) as screen:
+        top = await open_setup(screen)
+        await screen.press("R", "n", "R", "y")
+        assert screen.station.of(WatchSticks) == [WatchSticks(1)]
+        await offer(screen, doctor_view(sticks=STICKS[1:]))
+        await screen.press("enter")
+        await until(lambda: "no stick was moved" in screen.text)
+        await offer(screen, doctor_view(sticks=STICKS, sticks_unread=("RC1_TRIM",)))
+        await screen.press("enter")
+        await until(lambda: "RC1_TRIM is being read" in screen.text)
+        await offer(screen, MOVED)
+        await until(lambda: "1102" in screen.text and "1898" in screen.text)
+        await screen.press("enter")
+        await until(lambda: "2 changes are pending: F4, then W writes them" in screen.text)
+        assert screen.station.of(WatchSticks) == [WatchSticks(1), WatchSticks(1, on=False)]
+        params = top.context.keep(ParamModel)
+        assert {each.name: each.value for each in params.pending.values()} == {"RC1_MIN": 1102.0, "RC1_MAX": 1898.0}
+        await screen.press("x")
+        assert screen.station.of(WatchSticks)[-1] == WatchSticks(1, on=False)
+        assert not screen.station.of(EndCalibration)
+
+
+async def test_the_sticks_of_an_armed_vehicle_are_not_calibrated() -> None:
+    async with console() as screen:
+        await open_setup(screen, doctor_view(armed=True))
+        await screen.press("R", "y")
+        await until(lambda: "disarm it before the sticks are calibrated" in screen.text)
+        assert not screen.station.of(WatchSticks)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.colours import style
+from groundstation.ui.look.colours import style
 from groundstation.ui.widgets.canvas import Canvas
 from tests.groundstation.ui.frames import texts
 

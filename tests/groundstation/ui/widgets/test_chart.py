@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 
-from groundstation.ui.roles import Role
+from groundstation.ui.look.roles import Role
 from groundstation.ui.widgets.chart import Chart, ChartValue, Samples, Series
 from tests.groundstation.ui.frames import texts
 
 SERIES = (Series("", Role.GOOD), Series("asked", Role.CAUTION, dotted=True))
 
 
-def chart(samples: Samples, span: float = 60.0) -> list[str]:
+def chart(samples: Samples, span: float = 60.0, rows: int = 6) -> list[str]:
     made = Chart(ChartValue(samples, span), title="speed", unit="m/s", series=SERIES, step=0.5, id="x")
-    return texts(made.draw(60, 6))
+    return texts(made.draw(60, rows))
 
 
 def test_gaps_and_strange_numbers_are_no_values() -> None:
@@ -35,3 +35,16 @@ def test_a_shorter_span_shows_less() -> None:
 def test_both_series_are_named_with_their_newest_value() -> None:
     assert "0.80 m/s  asked 0.90 m/s" in chart(((1.0, (0.8, 0.9)),))[0]
     assert "nothing yet" in chart(())[0]
+
+
+def test_noise_around_a_step_of_the_scale_does_not_widen_it() -> None:
+    samples = tuple((float(at), (-0.01 if at % 2 else 1.02, None)) for at in range(60))
+    lines = chart(samples)
+    assert lines[0].lstrip().startswith("1.0")
+    assert lines[-1].lstrip().startswith("0.0")
+
+
+def test_a_high_chart_has_its_names_above_the_lines() -> None:
+    lines = chart(tuple((float(at), (1.0, 0.0)) for at in range(60)), rows=9)
+    assert "1.00 m/s  asked 0.00 m/s" in lines[0]
+    assert lines[1].lstrip().startswith("1.0")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 import pytest
 
+from groundstation.snapshot.signing import SigningState, SigningView
 from groundstation.ui.widgets.control_panel import ControlPanel, ControlPanelValue
 from groundstation.views.links import Program
 from tests.groundstation.ui import frames
@@ -31,9 +32,11 @@ from tests.groundstation.ui.link_examples import CONTROL
         ({"silent": True}, "the driver is silent"),
         ({"takeover": True}, "granted without asking the driver"),
         ({"waits": 7.0}, "the driver may answer for 7 s"),
-        ({"signs": True, "signing": (1,)}, "the vehicle signs; this station cannot sign"),
-        ({"signing": (7, 9)}, "not this vehicle; systems that sign: 7, 9"),
-        ({}, "off: nobody signs"),
+        ({"signing": SigningView(SigningState.NO_KEY, "the vehicle signs")}, "signing     the vehicle signs"),
+        ({"signing": SigningView(SigningState.OFF, "off"), "signing_systems": (7, 9)}, "systems that sign: 7, 9"),
+        ({"signing": SigningView(SigningState.ON, "on", "3 replayed")}, "refused     3 replayed with its id"),
+        ({"signing": SigningView(SigningState.ON, "on", "", "its clock is 3 h ahead")}, "clock       its clock is 3 h"),
+        ({"signing": None}, "no vehicle signs"),
     ],
 )
 def test_who_is_in_control(changes: dict[str, object], words: str) -> None:

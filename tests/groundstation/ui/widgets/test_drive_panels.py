@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from groundstation.drive_views import HealthLine, KeyToMotor, MissionProgress, StopBound, Timing
 from groundstation.snapshot import Snapshot
-from groundstation.ui.colours import AMBER, DIM, GREEN, RED
+from groundstation.snapshot.drive import HealthLine, KeyToMotor, MissionProgress, StopBound, Timing
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import AMBER, DIM, GREEN, RED
 from groundstation.ui.stops_model import all_stops, is_near
 from groundstation.ui.widgets.health import HealthPanel
 from groundstation.ui.widgets.key_to_motor import WayPanel, WayValue

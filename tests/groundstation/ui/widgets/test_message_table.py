@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.colours import DIM, TEXT, style
+from groundstation.ui.look.colours import DIM, TEXT, style
 from groundstation.ui.widgets.message_detail import MessageDetail, MessageDetailValue
 from groundstation.ui.widgets.message_table import MessageTable, MessageTableValue
 from groundstation.views.messages import MessageRow, MessageView

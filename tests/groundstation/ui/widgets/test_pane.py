@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.ui.ascii import to_ascii
 from groundstation.ui.charts.columns import Columns
 from groundstation.ui.charts.points import Points
+from groundstation.ui.look.ascii import to_ascii
 from groundstation.ui.widgets.charts.pane import (
     PATTERNS,
     PaneLine,
@@ -21,7 +21,7 @@ from groundstation.ui.widgets.charts.pane import (
     plot_dots,
     scale_text,
 )
-from groundstation.ui.widgets.charts.timeline import Timeline, TimelineMark, TimelineMode, TimelineValue
+from groundstation.ui.widgets.charts.timeline import ChartTimeline, ChartTimelineValue, TimelineMark, TimelineMode
 from tests.groundstation.ui.frames import texts
 
 WIDTH = 38
@@ -113,12 +113,12 @@ def test_scales_that_people_read(low: float, high: float, wanted: tuple[float, f
 
 
 def test_the_timeline_draws_modes_then_events_then_keys_where_there_is_room() -> None:
-    value = TimelineValue(
+    value = ChartTimelineValue(
         60, (TimelineMode(0, 30, "HOLD"), TimelineMode(30, 60, "MANUAL")),
         (TimelineMark(30, "armed", "armed"), TimelineMark(33, "key", "i"), TimelineMark(50, "link", "link lost")),
         "10:00:00", "10:01:00", 59, "10:01:00",
     )  # fmt: skip
-    modes, marks, times = texts(Timeline(value).draw(WIDTH, 3))
+    modes, marks, times = texts(ChartTimeline(value).draw(WIDTH, 3))
     assert "━━ HOLD ━" in modes
     assert "━━ MANUAL ━" in modes
     assert marks[8 + 15] == "▲"

@@ -7,7 +7,8 @@ import math
 from groundstation.ui.map.copies import PlanCopies
 from groundstation.ui.map.pane import build_pane
 from groundstation.ui.map.window import MapWindow
-from groundstation.ui.widgets.plan_map import Leg, MapLeg, MapMark, PlanMap, PlanMapValue
+from groundstation.ui.widgets.plan_map import PlanMap
+from groundstation.ui.widgets.plan_map_value import Leg, MapLeg, MapMark, PlanMapValue
 from tests.groundstation.ui.example_map import pages, picture, plan_view, track
 from tests.groundstation.ui.frames import texts
 

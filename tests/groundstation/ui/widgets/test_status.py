@@ -6,8 +6,10 @@ from typing import Any
 
 import pytest
 
-from groundstation.snapshot import EmergencyProgress
+from groundstation.snapshot import EmergencyProgress, RecordingView
+from groundstation.snapshot.signing import SigningState, SigningView
 from groundstation.ui.display_state import DisplayState, ScreenInfo
+from groundstation.ui.look.ascii import to_ascii
 from groundstation.ui.widgets.status import StatusBar, StatusBarValue
 from tests.groundstation.ui.examples import helm, snapshot, vehicle
 from tests.groundstation.ui.frames import texts
@@ -20,6 +22,21 @@ def test_on_two_lines_nothing_important_is_left_out(width: int) -> None:
     lines = " ".join(texts(StatusBar(value).draw(width, 2)))
     for words in ("ARMED", "you drive", "link", "loss", "rtt", "cmd", "key→motor", "tty", "batt", "gps", "^g"):
         assert words in lines
+
+
+@pytest.mark.parametrize("state", list(SigningState))
+def test_the_state_of_signing_is_always_in_the_header(state: SigningState) -> None:
+    picture = snapshot(operator=helm(), signing=SigningView(state))
+    for width, height in ((80, 2), (140, 1)):
+        lines = " ".join(texts(StatusBar(StatusBarValue(picture, STANDARD, 0.004)).draw(width, height)))
+        assert f" sign {state.value} " in lines
+        assert "batt" in lines
+
+
+def test_what_is_refused_of_a_vehicle_that_signs_is_in_the_header() -> None:
+    picture = snapshot(signing=SigningView(SigningState.ON, "on", "3 wrong key"))
+    lines = " ".join(texts(StatusBar(StatusBarValue(picture, STANDARD)).draw(80, 2)))
+    assert "sign on, refused 3 wrong key" in lines
 
 
 def first_line(width: int = 80, **changes: Any) -> str:
@@ -104,3 +121,29 @@ def test_a_lost_station_drives_nothing() -> None:
     line = StatusBar(StatusBarValue(snapshot(), STANDARD, station_runs=False)).draw(80, 2)[0].text
     assert "station lost" in line
     assert "you drive" not in line
+
+
+RECORDING = RecordingView(path="/logs/2026-11-22_14-05-09.tlog", seconds=31.0, size=420_000)
+
+
+@pytest.mark.parametrize(("width", "height"), [(80, 2), (80, 1), (119, 1), (140, 1)])
+def test_a_dot_at_the_end_of_the_first_line_shows_that_the_session_is_recorded(width: int, height: int) -> None:
+    value = StatusBarValue(snapshot(operator=helm(), recording=RECORDING), STANDARD, 0.004)
+    line = StatusBar(value).draw(width, height)[0].text.rstrip()
+    assert line.endswith((" ●", " ● rec"))
+    assert "batt" in line
+    assert to_ascii(line).endswith((" #", " # rec"))
+
+
+def test_the_word_behind_the_dot_is_whole_or_not_there() -> None:
+    seen = set()
+    for width in range(60, 120):
+        line = StatusBar(StatusBarValue(snapshot(recording=RECORDING), STANDARD)).draw(width, 2)[0].text.rstrip()
+        seen.add(line.rpartition("●")[2])
+    assert seen == {"", " rec"}
+
+
+@pytest.mark.parametrize("recording", [None, RecordingView(), RecordingView(path="/x", problem="not recording: full")])
+def test_no_dot_without_a_file_that_is_being_written(recording: RecordingView | None) -> None:
+    line = StatusBar(StatusBarValue(snapshot(recording=recording), STANDARD)).draw(140, 1)[0].text
+    assert "●" not in line

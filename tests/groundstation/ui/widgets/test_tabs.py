@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from groundstation.screens import SCREENS, ScreenRow
-from groundstation.ui.colours import BLUE, RED
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.look.colours import BLUE, RED
 from groundstation.ui.params.model import ParamModel
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.ui.tab_marks import TabMark
@@ -21,7 +21,7 @@ def bar(model: ParamModel, width: int) -> str:
     return TabBar(value).draw(width, 1)[0].text
 
 
-@pytest.mark.parametrize(("width", "mark"), [(140, "Params✎1 "), (80, "Param✎ ")])
+@pytest.mark.parametrize(("width", "mark"), [(140, "Params✎1 "), (80, "Par✎ ")])
 def test_a_pencil_stands_there_while_changes_are_not_sent(width: int, mark: str) -> None:
     model = ParamModel(RequestNumbers())
     model.set_height(10)

@@ -1,0 +1,252 @@
+"""Opens the screen: starts a station, or attaches to one, checks the terminal before that, and runs the UI."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import errno
+import os
+import shutil
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from platformdirs import user_log_path
+
+from groundstation.cli.local_verb import UsageError, load_settings, report_mistakes
+from groundstation.cli.options import REPLAY_SETTINGS, build_parser, option_words
+from groundstation.cli.terminal import needs_ascii
+from groundstation.cli.unknown_options import describe_unknown
+from groundstation.client import StationClient
+from groundstation.config.effective import Effective, build_keymap, resolve_endpoints
+from groundstation.config.settings import Settings, ThemeName
+from groundstation.gamepad.child import GamepadChild, missing_package
+from groundstation.input.pad_mapping import OFF, add_buttons, build_mapping
+from groundstation.recent.recent_file import RecentFile
+from groundstation.recording.options import RecordOptions
+from link.runtime.whole_file import PRIVATE
+
+if TYPE_CHECKING:
+    from groundstation.ui.look.appearance import Look  # the UI is imported while the station starts
+
+MIN_TERMINAL_SIZE = (40, 10)
+"""Columns and rows below which not even the message fits that the terminal is too small."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run `groundstation` without a verb; return the exit code."""
+    parser, names = build_parser()
+    options, unknown = parser.parse_known_args(parser.reject_empty(arguments))
+    if unknown:
+        parser.error(describe_unknown(unknown, names))
+    word = arguments[0] if arguments else ""
+    return report_mistakes(lambda: _run(options, names), word)
+
+
+def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
+    effective = load_settings(options)
+    settings = effective.settings
+    endpoints = _endpoints(options, effective, names)
+
+    def start(log_file: Path | None) -> StationClient:
+        return StationClient.start(
+            endpoints,
+            system=settings.system,
+            style=settings.style,
+            speed=settings.speed,
+            sitl=options.sitl,
+            log_file=log_file,
+            dialect=settings.dialect_path,
+            sign_key=settings.sign_key,
+            require_signing=settings.require_signing,
+            param_docs=docs_file(settings.param_docs),
+            record=record_options(settings, log_file),
+            terminal=terminal_path(),
+            keep=settings.keep,
+            meanwhile=import_screen,
+        )
+
+    return open_screen(settings, start, "drive" if endpoints or options.sitl else "connect", endpoints)
+
+
+def open_screen(
+    settings: Settings, connect: Callable[[Path | None], StationClient], first: str, opened: Sequence[str] = ()
+) -> int:
+    """Run the UI to its end with a station; return the exit code. `connect` gets the log file.
+
+    `first` is the screen that is shown at first; `opened` are the endpoints to remember.
+
+    Raises UsageError, KeymapError, StationError.
+    """
+    keymap = build_keymap(settings)
+    check_terminal()
+    gamepad = _gamepad(settings)
+    if gamepad is not None:
+        keymap = add_buttons(keymap, gamepad.mapping)
+    log_file = find_log_file(settings.log_file)
+    folder = _folder(settings.folder, log_file)
+    client = connect(log_file)
+    quits = False
+    try:
+        from groundstation.ui.run import run as run_ui
+
+        remember(opened)
+        code = run_ui(
+            client,
+            keymap=keymap,
+            log_file=log_file,
+            folder=folder,
+            look=_look(settings),
+            first=first,
+            first_request=client.first_request,
+            dialect=settings.dialect_path,
+            replay_options=option_words(settings, REPLAY_SETTINGS),
+            gamepad=gamepad,
+        )
+        quits = code == 0
+        return code
+    finally:
+        if gamepad is not None:
+            gamepad.stop()
+        client.close(quits=quits)
+        remember(opened, client.vehicle_name)
+        report_armed(client.left_armed)
+
+
+def _gamepad(settings: Settings) -> GamepadChild | None:
+    """Return the gamepad to start. Raises UsageError without the packages that it needs."""
+    if settings.gamepad == OFF:
+        return None
+    if problem := missing_package():
+        raise UsageError(problem)
+    return GamepadChild(build_mapping(settings.pad), settings.gamepad)
+
+
+def _look(settings: Settings) -> Look:
+    from groundstation.ui.look.appearance import Look
+
+    return Look(
+        theme=settings.theme or ThemeName.DARK,
+        ascii=needs_ascii() if settings.ascii is None else settings.ascii,
+        reduce_motion=settings.reduce_motion,
+    )
+
+
+def remember(endpoints: Sequence[str], vehicle: str = "") -> None:
+    """Note the endpoints as used; `vehicle` was heard there."""
+    file = RecentFile()
+    file.update(lambda recent: recent.add_all(endpoints, time.time(), vehicle))
+    if file.warning:
+        print(f"groundstation: {file.warning}", file=sys.stderr)
+
+
+def import_screen() -> None:
+    """Import the screen, which takes 0.2 s: after the arguments are checked, and while the station starts."""
+    import groundstation.ui.run  # noqa: F401
+
+
+def report_armed(lines: Sequence[str]) -> None:
+    """Print which vehicles are left armed; the terminal may be closed."""
+    with contextlib.suppress(OSError):
+        for line in lines:
+            print(f"groundstation: {line}", file=sys.stderr, flush=True)
+
+
+def _endpoints(options: argparse.Namespace, effective: Effective, names: Sequence[str]) -> list[str]:
+    """Return what to open. Without an endpoint on the command line or in the settings, the Connect screen comes first.
+
+    A simulator alone opens nothing that the command line does not name.
+    """
+    settings = effective.settings
+    if not options.endpoints and (options.sitl or "open" not in effective.sources):
+        return []
+    for text in options.endpoints:
+        if f"--{text}" in names and text not in settings.endpoints:
+            raise UsageError(f"{text!r} is not an endpoint: did you mean --{text}?")
+    return resolve_endpoints(settings.open, settings)
+
+
+def check_terminal() -> None:
+    """Raise UsageError where no screen can be shown."""
+    if os.environ.get("TERM") == "dumb":
+        raise UsageError(
+            "TERM=dumb cannot place text on the screen: run groundstation in a terminal such as xterm or tmux"
+        )
+    for name, stream in (("input", sys.stdin), ("output", sys.stdout)):
+        if stream is None or not stream.isatty():
+            raise UsageError(
+                f"standard {name} is not a terminal: run groundstation in one, without a pipe or redirection"
+            )
+    columns, rows = shutil.get_terminal_size()
+    least_columns, least_rows = MIN_TERMINAL_SIZE
+    if columns < least_columns or rows < least_rows:
+        raise UsageError(
+            f"the terminal is {columns}x{rows}: make it at least {least_columns}x{least_rows}, better 80x24"
+        )
+
+
+def terminal_path() -> str | None:
+    """Return the path of the terminal; None where it has none, as in some containers."""
+    try:
+        return os.ttyname(sys.stdout.fileno())
+    except OSError:
+        return None
+
+
+def _folder(requested: str | None, log_file: Path | None) -> Path:
+    """Return the folder in which screens save files. Raises UsageError if the requested one cannot be made."""
+    if requested is None:
+        return log_file.parent if log_file else Path.home()
+    return _make_folder("folder", requested)
+
+
+def record_options(settings: Settings, log_file: Path | None) -> RecordOptions | None:
+    """Return how to record: by default beside what screens save. Raises UsageError if the folder cannot be made."""
+    if not settings.record:
+        return None
+    folder = _folder(settings.folder, log_file)
+    if settings.record_folder is not None:
+        folder = _make_folder("--record-to", settings.record_folder)
+    return RecordOptions(folder, settings.record_file_size, settings.record_folder_size)
+
+
+def _make_folder(what: str, requested: str) -> Path:
+    path = Path(requested).expanduser().absolute()
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"{what} {path}: {error.strerror}") from error
+    return path
+
+
+def find_log_file(requested: str | None) -> Path | None:
+    """Return the requested log file, or the default one, or None if the default cannot be written.
+
+    Raises UsageError if the requested file cannot be written.
+    """
+    path = Path(requested).expanduser() if requested else user_log_path("mavhelm") / "groundstation.log"
+    try:
+        if requested is None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        if path.is_fifo():
+            raise OSError(errno.EINVAL, "a pipe; name a file")  # opening it would block until a reader comes
+        with open(path, "a", encoding="utf-8", opener=lambda name, flags: os.open(name, flags, PRIVATE)):
+            return path.absolute()
+    except OSError as error:
+        if requested is None:
+            return None
+        raise UsageError(f"log file {path}: {error.strerror}") from error
+
+
+def docs_file(requested: str | None) -> Path | None:
+    """Return the file with texts of parameters. Raises UsageError if it cannot be read."""
+    if requested is None:
+        return None
+    path = Path(requested).expanduser()
+    try:
+        with path.open("rb"):
+            return path.absolute()
+    except OSError as error:
+        raise UsageError(f"--param-docs {path}: {error.strerror}") from error

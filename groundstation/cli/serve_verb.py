@@ -1,0 +1,126 @@
+"""`groundstation serve`: a station without a screen, for verbs, `groundstation attach` and browsers of this machine."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+
+from groundstation.cli.console import docs_file, find_log_file, record_options
+from groundstation.cli.local_verb import UsageError, load_settings, run_local
+from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_settings, option_words
+from groundstation.client import StationError
+from groundstation.config.effective import resolve_endpoints
+from groundstation.config.settings import Settings
+from groundstation.station_socket.folder import FolderError, make_folder
+from groundstation.web.launch import DEFAULT_PORT, WebLaunch, missing_package
+from link.runtime.command_line import CommandLineParser
+
+TAB_SETTINGS = tuple(name for name in REPLAY_SETTINGS if name != "ascii")
+"""Settings that the screens of the tabs take over."""
+
+TAB_OPTIONS = ("--watch", "--no-ascii", "--gamepad=off")
+"""Of each tab. A gamepad is at this machine, and the tab may not be."""
+
+EPILOG = """\
+It drives nothing by itself: without a screen it sends no demand and no heartbeat, so that the failsafes of a vehicle
+act as without a ground station. Ctrl-C or SIGTERM ends it, after neutral.
+
+--web prints an address with a token, for browsers of this machine: tabs watch until `g` takes the keys.
+
+exit codes: 0 after its end, 1 if it crashed, 2 for wrong arguments
+"""
+
+
+def build_parser() -> CommandLineParser:
+    """Return the parser."""
+    parser = CommandLineParser(
+        prog="groundstation serve",
+        description="Run a station that verbs and `groundstation attach` use.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("endpoints", nargs="*", metavar="ENDPOINT|NAME", help="where vehicles are")
+    parser.add_argument("--headless", action="store_true", help="without a screen")
+    parser.add_argument("--web", action="store_true", help="with screens in browsers of this machine; docs/browser.md")
+    parser.add_argument("--port", type=_port, default=DEFAULT_PORT, help=f"of --web (default: {DEFAULT_PORT})")
+    parser.add_argument("--sitl", action="store_true", help="start a simulated rover, and end it with the station")
+    add_settings(parser)
+    add_config(parser)
+    return parser
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run `groundstation serve`; return the exit code."""
+    return run_local(build_parser(), arguments, _serve)
+
+
+def _serve(options: argparse.Namespace) -> int:
+    if not options.headless and not options.web:
+        raise UsageError("give --headless or --web; `groundstation --keep` opens a screen whose station survives it")
+    settings = load_settings(options).settings
+    try:
+        make_folder()
+    except FolderError as error:  # nothing could use this station
+        raise StationError(str(error)) from error
+    endpoints = [] if options.sitl and not options.endpoints else resolve_endpoints(settings.open, settings)
+    from groundstation.host import station_process as process  # loads the dialect, which the screen does without
+
+    launch = _listen(options.port) if options.web else None
+    try:
+        if launch is not None:
+            launch.start(["attach", str(os.getpid()), *TAB_OPTIONS, *option_words(settings, TAB_SETTINGS)])
+        given = _station_options(settings, endpoints, sitl=options.sitl)
+        return process.run_station(given, None, lambda opened: _announce(opened, launch))
+    except process.StartError as error:
+        raise StationError(str(error)) from error
+    finally:
+        if launch is not None:
+            launch.stop()
+
+
+def _port(text: str) -> int:
+    if not text.isascii() or not text.isdecimal() or not 1 <= int(text) <= 65535:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 65535")
+    return int(text)
+
+
+def _listen(port: int) -> WebLaunch:
+    """Return the port for browsers. Raises UsageError."""
+    if problem := missing_package():
+        raise UsageError(problem)
+    try:
+        return WebLaunch(port)
+    except OSError as error:
+        raise UsageError(f"--port {port}: {os.strerror(error.errno or 0)}; choose another one") from error
+
+
+def _station_options(settings: Settings, endpoints: Sequence[str], *, sitl: bool) -> argparse.Namespace:
+    log_file = find_log_file(settings.log_file)
+    record = record_options(settings, log_file)
+    return argparse.Namespace(
+        fd=None,
+        keep=False,
+        terminal=None,
+        endpoints=endpoints,
+        sitl=sitl,
+        system=settings.system,
+        style=settings.style,
+        speed=settings.speed,
+        log_file=log_file,
+        dialect=settings.dialect_path,
+        sign_key=settings.sign_key,
+        require_signing=settings.require_signing,
+        param_docs=docs_file(settings.param_docs),
+        record_to=record.folder if record else None,
+        record_file_size=settings.record_file_size,
+        record_folder_size=settings.record_folder_size,
+    )
+
+
+def _announce(endpoints: tuple[str, ...], launch: WebLaunch | None) -> None:
+    where = " ".join(endpoints) or "no link yet"
+    print(f"station {os.getpid()} on {where}; `groundstation attach` opens a screen", file=sys.stderr, flush=True)
+    if launch is not None:
+        print(f"in a browser on this machine: {launch.url}", file=sys.stderr, flush=True)

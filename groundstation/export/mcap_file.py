@@ -1,0 +1,166 @@
+"""MCAP for Foxglove and ROS 2: every message as a topic of its own, and the telemetry as standard messages of ROS.
+
+The container is written by mcap, standard types and CDR come from rosbags; both are in the extra "bags".
+https://mcap.dev/spec/registry#ros2: every channel needs `offered_qos_profiles`, which may be empty.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from mcap.writer import Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from dialects.enums import Autopilot
+from dialects.messages import Heartbeat, ManualControl, Message, RoverOperatorPresence
+from groundstation.disk.new_file import NewFile
+from groundstation.export.exporter import LogInfo
+from groundstation.export.log_time import iso_time
+from groundstation.export.ros_types import RosType
+from groundstation.export.ros_vehicle import ODOMETRY, RosVehicle, Values, transforms
+from groundstation.export.sample import Sample
+
+SECONDS_MAX = 0x7FFFFFFF
+"""builtin_interfaces/Time ends in 2038."""
+
+_TYPES = get_typestore(Stores.ROS2_HUMBLE)
+"""Standard types of the oldest supported release of ROS 2, and those made so far: each costs 10 ms."""
+
+
+class McapExport:
+    """Writes topics /sys1/comp1/NAME, and /fix, /imu, /odom, /cmd_vel, /battery_state of the first vehicle.
+
+    Those of further vehicles are below /sys2.
+    """
+
+    learns = True
+
+    def __init__(self, path: str, log: LogInfo) -> None:
+        self.target = NewFile(path)
+        self.count = 0
+        self._topics = _Topics(Writer(self.target.file), log)
+        self._kinds: dict[int, RosType] = {}
+        self._vehicles: dict[int, RosVehicle] = {}
+
+    def add(self, sample: Sample) -> None:
+        """Write a message, and what it says in ROS. Messages that are not chosen are only learned from."""
+        if sample.kind is None:
+            return
+        if sample.chosen:
+            self._topics.write_message(sample, self._kind(sample.kind))
+            self.count += 1
+        self._add_standard(sample)
+
+    def finish(self) -> None:
+        """Write the index."""
+        self._topics.writer.finish()  # type: ignore[no-untyped-call]
+
+    def discard(self) -> None:
+        """Remove what is not in its place."""
+        self.target.discard()
+
+    def _kind(self, kind: type[Message]) -> RosType:
+        found = self._kinds.get(kind.id)
+        if found is None:
+            found = self._kinds[kind.id] = RosType(kind)
+        return found
+
+    def _add_standard(self, sample: Sample) -> None:
+        if sample.kind is ManualControl or sample.kind is RoverOperatorPresence:
+            self._add_demand(sample)
+            return
+        vehicle = self._vehicle(sample)
+        made = vehicle.take(sample) if vehicle is not None else None
+        if vehicle is not None and made is not None and sample.chosen:
+            self._write(sample, vehicle, *made)
+
+    def _add_demand(self, sample: Sample) -> None:
+        message = sample.message
+        assert isinstance(message, ManualControl | RoverOperatorPresence)
+        system = message.target if isinstance(message, ManualControl) else message.target_system
+        vehicle = self._vehicles.get(system)
+        made = vehicle.take_demand(message) if vehicle is not None and sample.chosen else None
+        if vehicle is not None and made is not None:
+            self._write(sample, vehicle, *made)
+
+    def _vehicle(self, sample: Sample) -> RosVehicle | None:
+        """Return the vehicle of a message of its autopilot, which is known by its HEARTBEAT."""
+        found = self._vehicles.get(sample.system)
+        if found is None and sample.kind is Heartbeat:
+            message = sample.message
+            assert isinstance(message, Heartbeat)
+            if message.autopilot != Autopilot.INVALID:
+                prefix = f"sys{sample.system}/" if self._vehicles else ""
+                found = self._vehicles[sample.system] = RosVehicle(sample.component, prefix)
+        return found if found is not None and found.component == sample.component else None
+
+    def _write(self, sample: Sample, vehicle: RosVehicle, topic: str, kind: str, values: Values) -> None:
+        self._topics.write_standard(sample, f"/{vehicle.prefix}{topic}", kind, values)
+        if kind == ODOMETRY:
+            self._topics.write_standard(sample, "/tf", "tf2_msgs/msg/TFMessage", transforms(values))
+
+
+class _Topics:
+    """The channels of the file."""
+
+    def __init__(self, writer: Writer, log: LogInfo) -> None:
+        self.writer = writer
+        self._store = _TYPES
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[tuple[str, str], int] = {}
+        writer.start(profile="ros2", library="mavhelm")
+        writer.add_metadata("mavhelm", {"log": log.name, "begin": iso_time(log.begin), "only": log.only})
+
+    def write_message(self, sample: Sample, kind: RosType) -> None:
+        """Write a message of MAVLink."""
+        topic = f"/sys{sample.system}/comp{sample.component}/{sample.name}"
+        channel = self._channels.get((topic, kind.name))
+        if channel is None:
+            if kind.name not in self._store.types:
+                self._store.register(get_types_from_msg(kind.definition, kind.name))
+            channel = self._open(topic, kind.name, kind.definition)
+        value = self._store.types[kind.name](*kind.values(sample.message))
+        self._write(channel, sample, kind.name, value)
+
+    def write_standard(self, sample: Sample, topic: str, kind: str, values: Values) -> None:
+        """Write a standard message of ROS."""
+        channel = self._channels.get((topic, kind))
+        if channel is None:
+            channel = self._open(topic, kind, self._store.generate_msgdef(kind, ros_version=2)[0])
+        self._write(channel, sample, kind, self._build(kind, values))
+
+    def _write(self, channel: int, sample: Sample, kind: str, value: object) -> None:
+        at = sample.microseconds * 1000
+        data = bytes(self._store.serialize_cdr(value, kind))
+        self.writer.add_message(channel, at, data, at, sample.sequence)
+
+    def _open(self, topic: str, kind: str, definition: str) -> int:
+        schema = self._schemas.get(kind)
+        if schema is None:
+            schema = self._schemas[kind] = self.writer.register_schema(kind, "ros2msg", definition.encode())
+        channel = self.writer.register_channel(topic, "cdr", schema, {"offered_qos_profiles": ""})
+        self._channels[topic, kind] = channel
+        return channel
+
+    def _build(self, kind: str, values: Mapping[str, Any]) -> Any:
+        """Return the message of a type, and of the types in it."""
+        fields = self._store.get_msgdef(kind).fields
+        return self._store.types[kind](**{name: self._field(name, of, values[name]) for name, of in fields})
+
+    def _field(self, name: str, of: Any, value: Any) -> Any:
+        if name == "header":
+            return self._header(*value)
+        if isinstance(value, dict):
+            return self._build(of[1], value)
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            return [self._build(of[1][0][1], each) for each in value]
+        if isinstance(value, list):
+            return np.array(value, dtype=of[1][0][1][0])
+        return value
+
+    def _header(self, microseconds: int, frame: str) -> Any:
+        seconds, rest = divmod(microseconds, 1_000_000)
+        stamp = self._store.types["builtin_interfaces/msg/Time"](sec=min(seconds, SECONDS_MAX), nanosec=rest * 1000)
+        return self._store.types["std_msgs/msg/Header"](stamp=stamp, frame_id=frame)

@@ -1,0 +1,126 @@
+"""Tracks of vehicles: their positions in order, in segments, and what they said where.
+
+A position is GLOBAL_POSITION_INT, the estimate; until a vehicle sends one, GPS_RAW_INT with a fix.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import BinaryIO
+
+from dialects.enums import Severity
+from dialects.field_values import field_value
+from dialects.messages import GlobalPositionInt, GpsRawInt, StatusText
+from groundstation.export.sample import Sample
+
+PAUSE = 10_000_000
+"""us without a position that end a segment: a line across them would show a way that nobody knows."""
+FIX_2D = 2
+"""GPS_FIX_TYPE from which a position counts."""
+_MAX_LATITUDE, _MAX_LONGITUDE = 900_000_000, 1_800_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """Where a vehicle was; degrees, m above mean sea level."""
+
+    microseconds: int
+    latitude: float
+    longitude: float
+    altitude: float
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A warning of a vehicle, and where it was then."""
+
+    system: int
+    text: str
+    position: Position
+
+
+def read_place(latitude: int, longitude: int) -> tuple[float, float] | None:
+    """Return degrees of degrees x 1e7; None for what stands for an unknown position: 0, 0 and out of range."""
+    if (not latitude and not longitude) or abs(latitude) > _MAX_LATITUDE or abs(longitude) > _MAX_LONGITUDE:
+        return None
+    return latitude / 1e7, (longitude if longitude < _MAX_LONGITUDE else -_MAX_LONGITUDE) / 1e7
+
+
+@dataclass(slots=True)
+class Track:
+    """The points of one vehicle, in a file without a name: a long track needs no memory. `write` formats a point."""
+
+    write: Callable[[Position], str]
+    between: str
+    """Written between two segments."""
+    estimated: bool = False
+    first: Position | None = None
+    last: Position | None = None
+    broken: bool = False
+    """The next point begins a segment."""
+    spool: BinaryIO = field(default_factory=tempfile.TemporaryFile)
+
+    def add(self, position: Position) -> None:
+        """Add a point."""
+        if self.last is not None and (self.broken or position.microseconds - self.last.microseconds > PAUSE):
+            self.spool.write(self.between.encode())
+        self.spool.write(self.write(position).encode())
+        self.first = self.first or position
+        self.last, self.broken = position, False
+
+    def read(self) -> Iterator[bytes]:
+        """Yield all points as they were written."""
+        self.spool.seek(0)
+        while part := self.spool.read(1 << 16):
+            yield part
+
+
+class Tracks:
+    """Collects the tracks of all vehicles."""
+
+    def __init__(self, write: Callable[[Position], str], between: str) -> None:
+        self._write, self._between = write, between
+        self.of: dict[int, Track] = {}
+        """System id -> its track."""
+        self.remarks: list[Remark] = []
+        self.count = 0
+
+    def add(self, sample: Sample) -> None:
+        """Take a message that has a position, or a warning."""
+        if sample.kind is GlobalPositionInt or sample.kind is GpsRawInt:
+            self._add_position(sample)
+        elif sample.kind is StatusText:
+            self._add_remark(sample)
+
+    def close(self) -> None:
+        """Remove the points."""
+        for track in self.of.values():
+            track.spool.close()
+
+    def _add_position(self, sample: Sample) -> None:
+        message = sample.message
+        assert isinstance(message, GlobalPositionInt | GpsRawInt)
+        place = read_place(message.lat, message.lon)
+        if isinstance(message, GpsRawInt) and message.fix_type < FIX_2D:
+            place = None
+        track = self.of.get(sample.system)
+        if isinstance(message, GpsRawInt) and track is not None and track.estimated:
+            return
+        if place is None:
+            if track is not None:
+                track.broken = True
+            return
+        if track is None:
+            track = self.of[sample.system] = Track(self._write, self._between)
+        track.estimated = isinstance(message, GlobalPositionInt)
+        track.add(Position(sample.microseconds, *place, message.alt / 1000))
+        self.count += 1
+
+    def _add_remark(self, sample: Sample) -> None:
+        message = sample.message
+        assert isinstance(message, StatusText)
+        track = self.of.get(sample.system)
+        if message.severity <= Severity.WARNING and not message.chunk_seq and track is not None and track.last:
+            self.remarks.append(Remark(sample.system, field_value(message, "text"), track.last))

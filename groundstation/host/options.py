@@ -1,0 +1,57 @@
+"""The station and replay processes: command line, log file, and the socket to the screen."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import logging.handlers
+import signal
+import socket
+from pathlib import Path
+
+from groundstation.input.style import Style
+
+LOG_SIZE = 1 << 20
+LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
+
+
+def open_screen_pipe(descriptor: int) -> socket.socket:
+    """Return the socket to the screen's process, to which the keys of the terminal are left from now on."""
+    for number in (signal.SIGINT, signal.SIGTSTP):
+        signal.signal(number, signal.SIG_IGN)
+    pipe = socket.socket(fileno=descriptor)
+    pipe.setblocking(False)
+    return pipe
+
+
+def log_to(path: Path | None) -> None:
+    """Write the log of all libraries to the file, or nowhere."""
+    handler: logging.Handler = logging.NullHandler()
+    if path is not None:
+        handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=1, encoding="utf-8")
+    logging.basicConfig(level=logging.INFO, handlers=[handler], format=LOG_FORMAT)
+    logging.captureWarnings(True)
+
+
+def station_parser() -> argparse.ArgumentParser:
+    """Return the parser of the station process."""
+    parser = argparse.ArgumentParser(
+        prog="groundstation.host.station_process", description="Started by `groundstation`, not by hand."
+    )
+    parser.add_argument("--fd", type=int, help="the station's end of the pipe; without it the station has no screen")
+    parser.add_argument("--keep", action="store_true", help="go on when the screen is killed or hung up")
+    parser.add_argument("--system", type=int, default=255)
+    parser.add_argument("--style", choices=list(Style), default=Style.HOLD)
+    parser.add_argument("--speed", type=float, default=0.6)
+    parser.add_argument("--sitl", action="store_true")
+    parser.add_argument("--log-file", type=Path)
+    parser.add_argument("--sign-key", metavar="NAME", help="key that signs")
+    parser.add_argument("--require-signing", action="store_true", help="ignore everything that is not signed")
+    parser.add_argument("--dialect", metavar="FILE.xml")
+    parser.add_argument("--param-docs", type=Path, help="file with texts of parameters")
+    parser.add_argument("--record-to", type=Path, metavar="FOLDER", help="record the session there")
+    parser.add_argument("--record-file-size", type=int, default=100, metavar="MB")
+    parser.add_argument("--record-folder-size", type=int, default=2000, metavar="MB")
+    parser.add_argument("--terminal", help="path of the screen's terminal, which is reset if the screen is killed")
+    parser.add_argument("endpoints", nargs="*")
+    return parser

@@ -1,0 +1,180 @@
+"""ScreenSet: all screens of a station, their lease to drive, and what each of them is sent."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+import time
+from dataclasses import dataclass
+from enum import Enum, auto
+from typing import Protocol
+
+import msgspec
+
+from dialects.enums import Severity
+from groundstation.host.screen_port import ScreenPort
+from groundstation.intents.driving import Stop
+from groundstation.intents.session import Detach, Quit, RenewLease
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.watch import Watch
+from groundstation.ipc import MAX_INTENT_AGE, IntentBatch, StationReady
+from groundstation.snapshot import Snapshot
+from groundstation.station.screen_lease import Screen, ScreenLease
+from groundstation.station.station import Station
+from groundstation.station.view_feed import ViewFeed
+
+log = logging.getLogger(__name__)
+
+MAX_SCREENS = 8
+"""Screens at once; each costs 10 snapshots/s."""
+
+
+@dataclass(slots=True, eq=False)
+class _Attached:
+    """One screen that is connected."""
+
+    port: ScreenPort
+    screen: Screen
+    views: ViewFeed
+    owner: bool
+    """It has started this station."""
+    leaving: bool = False
+    """It waits for its vehicles to be disarmed."""
+
+
+class Lifetime(Enum):
+    """What ends a station."""
+
+    SCREEN = auto()
+    """The end of the screen that has started it, for whatever reason."""
+    QUIT = auto()
+    """Its driver quits. A screen that is killed or hung up leaves it running."""
+    SIGNAL = auto()
+    """A signal only."""
+
+
+class StationEnd(Protocol):
+    """What the screens may want of the process."""
+
+    def handle(self, intent: AnyIntent, now: float, read_at: float) -> None:
+        """Carry out an intent; its key was read at `read_at`."""
+
+    def flush(self) -> None:
+        """Send what intents have caused."""
+
+    def note_screen(self, *, quits: bool, now: float) -> None:
+        """Note that the screen that has started the station quits, or else that its process has ended."""
+
+    def end(self, intent: Quit) -> None:
+        """End the station, or change how it ends."""
+
+
+class ScreenSet:
+    """The screens of one station; the loop runs."""
+
+    def __init__(self, station: Station, host: StationEnd, lifetime: Lifetime) -> None:
+        self._station = station
+        self.lease = ScreenLease(station.operator, station.driving, station.log)
+        station.relay.screen_that_drives = lambda: self.lease.holder.name if self.lease.holder else None
+        self._host = host
+        self._lifetime = lifetime
+        self._attached: dict[ScreenPort, _Attached] = {}
+
+    # ---- screens come and go ----
+
+    def add(self, sock: socket.socket, name: str, *, owner: bool = False, watches: bool = False) -> str | None:
+        """Take a screen. Return why not. `owner`: it has started this station; `watches`: it begins without keys."""
+        if len(self._attached) >= MAX_SCREENS:
+            return f"{MAX_SCREENS} screens are attached already"
+        port = ScreenPort(sock, self)
+        screen = self.lease.join(name, asyncio.get_running_loop().time(), watches=watches)
+        views = self._station.views if owner else self._station.views.open_another()
+        self._attached[port] = _Attached(port, screen, views, owner)
+        if not owner:
+            port.send(StationReady(self._station.surroundings.endpoints, screen.first_request))
+        port.start()
+        return None
+
+    def close(self) -> None:
+        """End all connections."""
+        for port in self._attached:
+            port.close()
+        self._attached.clear()
+
+    def handle_screen_end(self, port: ScreenPort, now: float) -> None:
+        """Go neutral if this screen drove."""
+        attached = self._attached.get(port)
+        if attached is not None:
+            if attached.owner:
+                self._host.note_screen(quits=False, now=now)
+            if attached.owner and self._lifetime is Lifetime.SCREEN:
+                self._host.end(Quit())
+            self._remove(attached, now)
+
+    def _remove(self, attached: _Attached, now: float) -> None:
+        del self._attached[attached.port]
+        attached.port.close()
+        self.lease.leave(attached.screen, now)
+        if attached.owner:
+            attached.views.watch(())
+        else:
+            self._station.views.close_another(attached.views)
+
+    # ---- what they want ----
+
+    def handle_batch(self, port: ScreenPort, batch: IntentBatch, now: float) -> None:
+        """Carry out the intents of one packet, but for those that are too old, or not for this screen to make."""
+        attached = self._attached[port]
+        for intent in batch.intents:
+            if now - batch.time > MAX_INTENT_AGE and not intent.valid_when_late:
+                self._log_late(intent, now - batch.time, now)
+            elif isinstance(intent, Quit | Detach):
+                self._leave(attached, intent, now)
+            elif isinstance(intent, Watch) and not attached.owner:
+                attached.views.watch(intent.requests)
+            elif (allowed := self.lease.filter(attached.screen, intent, now)) is not None:
+                self._host.handle(allowed, now, batch.time)
+
+    def finish_read(self, port: ScreenPort, now: float) -> None:
+        """Send the messages of the intents, and the views that they have changed."""
+        self._host.flush()
+        if (attached := self._attached.get(port)) is not None:
+            attached.views.send_due(port.send, now, time.time())
+
+    def _log_late(self, intent: AnyIntent, age: float, now: float) -> None:
+        if not isinstance(intent, RenewLease):
+            text = f"{type(intent).__name__} arrived {age:.1f} s late and was dropped"
+            log.warning(text)
+            self._station.log.add(now, "station", text, Severity.WARNING)
+
+    def _leave(self, attached: _Attached, intent: Quit | Detach, now: float) -> None:
+        """Let a screen go that ends in order, and the station with it if that is its lifetime."""
+        drives = attached.screen is self.lease.holder
+        ends = attached.owner if self._lifetime is Lifetime.SCREEN else self._lifetime is Lifetime.QUIT and drives
+        if attached.owner:
+            self._host.note_screen(quits=True, now=now)
+        if ends and (isinstance(intent, Quit) or self._lifetime is Lifetime.SCREEN):
+            self._host.end(intent if isinstance(intent, Quit) else Quit())
+        elif drives and isinstance(intent, Quit) and intent.disarm:
+            self._station.departure.begin(now, disarm=True)
+            attached.leaving = True
+            self._host.handle(Stop("quitting"), now, now)
+        else:
+            self._remove(attached, now)
+
+    # ---- what they see ----
+
+    def send_snapshot(self, snapshot: Snapshot, now: float) -> None:
+        """Send the snapshot and the views that are due to all."""
+        self.lease.tick(now)
+        self.show(snapshot, now)
+        for attached in list(self._attached.values()):
+            attached.views.send_due(attached.port.send, now, time.time())
+            if attached.leaving and self._station.departure.finished:
+                self._remove(attached, now)
+
+    def show(self, snapshot: Snapshot, now: float) -> None:
+        """Send the snapshot alone to all."""
+        for attached in self._attached.values():
+            attached.port.send(msgspec.structs.replace(snapshot, lease=self.lease.view(attached.screen, now)))

@@ -1,0 +1,256 @@
+"""StationHost: runs one station with its links, its screens and its watchdog in this process."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+import socket
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from dialects.enums import Severity, StationEventKind
+from dialects.messages import printable
+from groundstation.connect.desk import ConnectDesk
+from groundstation.connect.signing import StationSigning
+from groundstation.disk.desk import DiskDesk
+from groundstation.host.listener import Caller, ProgramListener
+from groundstation.host.names import answer_names
+from groundstation.host.screens import Lifetime, ScreenSet
+from groundstation.host.verbs import VerbSet
+from groundstation.intents.base import Intent
+from groundstation.intents.driving import Stop
+from groundstation.intents.session import Quit
+from groundstation.intents.union import AnyIntent
+from groundstation.ipc import protocol_version
+from groundstation.recording.station_recording import StationRecording
+from groundstation.snapshot import Snapshot
+from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.crash_snapshot import crash_snapshot
+from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
+from groundstation.station.lasting_alerts import LastingAlerts
+from groundstation.station.station import Station
+from groundstation.station_socket import names, relay
+from groundstation.station_socket.hello import NAMES, SCREEN, VERB
+from groundstation.watchdog.feed import WatchdogFeed
+from link.protocol.sent_frames import SentFrames
+from link.runner import Runner
+from link.transport.local_addresses import LocalAddresses
+from link.transport.transport import Link
+
+log = logging.getLogger(__name__)
+
+TICK = 0.025
+"""s within which the end of a key hold and a due demand are noticed: half of the demands' period, which it keeps."""
+
+SNAPSHOT_PERIOD = 0.1
+"""s: as fast as a person can read; the screen draws no faster."""
+
+END_WITHIN = 1.0
+"""s for the final neutral frames (0.25 s are needed); then the process exits in any case."""
+
+QUIT = Quit()
+
+
+class StationHost:
+    """One station, its links, its screens, and the simulator if it started one."""
+
+    def __init__(
+        self,
+        station: Station,
+        links: Sequence[Link],
+        pipe: socket.socket | None,
+        watchdog: WatchdogFeed,
+        *,
+        ids: tuple[int, int],
+        sent: SentFrames,
+        lifetime: Lifetime = Lifetime.SCREEN,
+        screen: str = "first screen",
+        recording: StationRecording | None = None,
+        signing: StationSigning | None = None,
+    ) -> None:
+        """`pipe` leads to the screen that has started this process, `screen` is its name; None: there is none."""
+        self._station = station
+        self._pipe, self._screen = pipe, screen
+        self.screens = ScreenSet(station, self, lifetime)
+        self._listener = ProgramListener(self._take)
+        self._screen_version = protocol_version()  # of the code that runs, not of what is installed meanwhile
+        self._watchdog = watchdog
+        self._core = CrashNeutral(station)
+        self._recording = recording
+        self._signing = signing
+        self._runner = Runner(
+            self._core,
+            links,
+            period=TICK,
+            broken=self._handle_crash,
+            log_tap=recording.log_tap if recording else None,
+            sent=watchdog.record_sent,
+            signing=signing.keeper if signing else None,
+        )
+        self.verbs = VerbSet(station, ids, self._runner.flush)
+        self._disk = DiskDesk(station, self._runner.flush)
+        self.connect = ConnectDesk(self._runner, station, ids, sent)
+        self.handlers: list[Callable[[Intent, float], None]] = []
+        """Parts beside the station and its links that take intents, and the time."""
+        self._last_snapshot = Snapshot()
+        self._addresses = LocalAddresses()
+        self._lasting_alerts = LastingAlerts()
+        self._broken = self._ending = False
+
+    async def run(self) -> int:
+        """Run until the station ends. Returns the exit code: 1 after an unhandled exception."""
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(self._handle_loop_exception)
+        for number in (signal.SIGTERM, signal.SIGHUP, *((signal.SIGINT,) if self._pipe is None else ())):
+            loop.add_signal_handler(number, self._shut_down)
+        if self._pipe is not None:
+            self.screens.add(self._pipe, self._screen, owner=True)
+        if problem := self._listener.start():
+            self.add_to_log(loop.time(), f"no other program can use this station: {problem}")
+        show = loop.create_task(self._send_snapshots())
+        try:
+            await self._runner.run()
+        finally:
+            show.cancel()
+            self._listener.close()
+            self.screens.close()
+            self.verbs.close()
+            self.connect.close()
+            self._disk.close()
+            self._watchdog.close()
+            if self._signing:
+                self._signing.close()
+            if self._recording:
+                self._recording.close()  # last: it may wait for the disk
+        return 1 if self._broken else 0
+
+    # ---- screens ----
+
+    def handle(self, intent: AnyIntent, now: float, read_at: float) -> None:
+        """Carry out an intent of a screen."""
+        self._station.handle_intent(intent, now, read_at=read_at)
+        self.connect.handle(intent, now)
+        for handle in self.handlers:
+            handle(intent, now)
+
+    def flush(self) -> None:
+        """Send what intents have caused, and read and write their files."""
+        self._disk.run()
+        self._runner.flush()
+
+    def note_screen(self, *, quits: bool, now: float) -> None:
+        """Tell the watchdog, which resets the terminal of a screen that was killed."""
+        self._watchdog.set_flags(**{"screen_has_quit" if quits else "screen_is_gone": True})
+        self._report(now)
+
+    def end(self, intent: Quit) -> None:
+        """Exit; a second request may only decide that vehicles are left armed."""
+        if not self._ending:
+            self._shut_down(intent)
+        elif not self._broken:
+            self._station.handle_intent(intent, asyncio.get_running_loop().time())
+
+    def _take(self, caller: Caller) -> str | None:
+        """Take a program that has connected. Return why not."""
+        hello = caller.hello
+        if self._ending:
+            return "this station ends"
+        versions = {SCREEN: self._screen_version, VERB: relay.VERSION, NAMES: names.VERSION}
+        if hello.version != versions.get(hello.kind):
+            return f"this station (pid {os.getpid()}) has another version: end it and start it again"
+        if hello.kind == SCREEN:
+            return self.screens.add(caller.sock, hello.name, watches=hello.watches)
+        if hello.kind == NAMES:
+            answer_names(caller.sock, hello.name, self._station)
+            return None
+        self.verbs.add(caller.sock, f"{hello.name} (pid {caller.pid})", hello)
+        return None
+
+    async def _send_snapshots(self) -> None:
+        """Send snapshots at absolute deadlines, and do what is due for the links."""
+        loop = asyncio.get_running_loop()
+        due = loop.time()
+        while not self._broken:
+            try:
+                self._send_snapshot(loop.time())
+            except Exception as error:  # nothing awaits this task, so the exception would be lost
+                self._handle_crash(error)
+            due = max(due + SNAPSHOT_PERIOD, loop.time())
+            await asyncio.sleep(due - loop.time())
+
+    def _report(self, now: float) -> None:
+        """Tell the watchdog that the station runs."""
+        if not self._watchdog.report(self._station.report_to_watchdog(now), now):
+            self.add_to_log(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
+
+    def _send_snapshot(self, now: float) -> None:
+        self._poll_keys(now)
+        self._report(now)
+        self.connect.tick(now)
+        if self._recording:
+            self._recording.tick(now)
+        self._disk.run()
+        self._station.surroundings.addresses = self._addresses.find(now)
+        self._last_snapshot = self._station.snapshot(now, time.time())
+        for text in self._lasting_alerts.new_in(self._last_snapshot):
+            log.warning(text)
+        self.screens.send_snapshot(self._last_snapshot, now)
+
+    def _poll_keys(self, now: float) -> None:
+        """Take over keys that have changed: for all links, and for the watchdog, which goes on in our place."""
+        text = self._signing.poll(now) if self._signing else None
+        if self._signing is None or text is None:
+            return
+        for link in self._runner.links:
+            link.channel.guard = self._signing.keeper.guard(link.channel.index)
+        self._watchdog.set_flags(keys_version=self._signing.version)
+        self.add_to_log(now, text)
+
+    def add_to_log(self, now: float, text: str, severity: Severity = Severity.WARNING) -> None:
+        """Write a line to the log on the screen and to the log file."""
+        log.log(logging.WARNING if severity <= Severity.WARNING else logging.INFO, text)
+        self._station.log.add(now, "station", text, severity)
+
+    # ---- shutdown ----
+
+    def _shut_down(self, intent: Quit = QUIT) -> None:
+        """Send neutral several times, disarm if requested, then exit."""
+        if self._ending:
+            return
+        self._ending = True
+        loop = asyncio.get_running_loop()
+        self.verbs.close()
+        self._station.handle_intent(Stop("quitting"), loop.time())
+        self._station.handle_intent(intent, loop.time())
+        self._runner.flush()
+        self._end_when_finished(loop.time() + END_WITHIN + (DISARM_AFTER + DISARM_TIMEOUT if intent.disarm else 0.0))
+
+    def _end_when_finished(self, deadline: float) -> None:
+        loop = asyncio.get_running_loop()
+        if self._core.finished or loop.time() >= deadline:
+            if not self._broken:
+                self._send_snapshot(loop.time())  # tells the screen what is left armed
+            self._runner.stop()
+        else:
+            loop.call_later(TICK, self._end_when_finished, deadline)
+
+    def _handle_crash(self, error: BaseException) -> None:
+        """Send neutral several times after an unhandled exception, then exit: half a station must not look alive."""
+        if self._broken:
+            return
+        self._broken = self._ending = True
+        now = asyncio.get_running_loop().time()
+        what = printable(f"station crashed ({type(error).__name__}: {error}): sending neutral, then exiting")
+        log.critical(what, exc_info=error)
+        self._core.activate(now)
+        self._runner.flush()
+        self.screens.show(crash_snapshot(self._last_snapshot, what, time.time()), now)
+        self._end_when_finished(now + END_WITHIN)
+        self._station.notes.add(now, StationEventKind.DECISION, what, Severity.CRITICAL)
+
+    def _handle_loop_exception(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Handle an exception in a callback of the loop that is not the runner's."""
+        self._handle_crash(context.get("exception") or RuntimeError(str(context.get("message"))))

@@ -1,0 +1,1 @@
+"""Records the session of a ground station into telemetry logs."""

@@ -1,0 +1,181 @@
+"""What an index finds beside the places: events, speed, the driver's demand, modes, parameters, damage, losses."""
+
+from __future__ import annotations
+
+import math
+import operator
+import struct
+from array import array
+from bisect import bisect_left
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from dialects import messages as m
+from dialects.axes import axis_map, parse_manual_control
+from dialects.codec import CRC_SIZE, HEADER_V2, MAGIC_V2, decode
+from dialects.enums import Severity
+from groundstation.replay.buckets import Buckets
+from groundstation.replay.events import EVENT_IDS, EventFinder, Found, LogEvent
+from groundstation.replay.plans import PLAN_IDS, PlanHistory, describe
+from link.protocol.frame import payload_of
+from link.tlog.scan import STAMP, LogFrame, SourceKey
+
+KEPT = {m.StatusText.id}
+"""Messages of which the last one is not enough to rebuild the state: the newest MAX_KEPT before a moment are read."""
+
+MAX_KEPT = 20_000
+MAX_PARAMS = 10_000
+MAX_DAMAGE_EVENTS = 500
+_NAME = slice(8, 24)
+"""Name in the payload of a PARAM_VALUE."""
+_SPEED = struct.Struct("<f")
+
+
+class KnownBeat(NamedTuple):
+    """The newest HEARTBEAT of a sender, as an unsigned frame of MAVLink 2."""
+
+    head: bytes
+    """Start byte, length, incompatibility flags."""
+    payload: bytes
+    system: int
+    component: int
+
+    @property
+    def size(self) -> int:
+        """Bytes of its record."""
+        return STAMP + HEADER_V2 + len(self.payload) + CRC_SIZE
+
+    def is_in(self, block: bytes, start: int) -> bool:
+        """Return whether the record at `start` has this payload."""
+        return block.startswith(self.payload, start + STAMP + HEADER_V2)
+
+
+class Findings:
+    """Collected in the order of the file."""
+
+    def __init__(self) -> None:
+        self.finder = EventFinder()
+        self.speed = Buckets()
+        self.demand = Buckets()
+        """Largest axis of the driver's demand, 0..1."""
+        self.damage = Buckets(operator.add)
+        """Bytes that belong to no valid record."""
+        self.lost = Buckets(operator.add)
+        """Packet numbers that are missing."""
+        self.plans = PlanHistory()
+        self.kept = array("Q")
+        """Offsets of the messages of KEPT."""
+        self._params: dict[tuple[int, int, bytes], tuple[array[int], bytes]] = {}
+        """System, component and name -> offsets of the changes of a parameter, and its newest payload."""
+        self._beats: dict[tuple[int, int], bytes] = {}
+        """System and component -> its newest HEARTBEAT."""
+        self.beats: dict[SourceKey, KnownBeat] = {}
+        """The same, for a scan that compares bytes."""
+        self._damages = 0
+        self._damage: tuple[LogEvent, int] | None = None
+        """The newest one, and the offset behind it."""
+
+    @staticmethod
+    def wants(message_id: int) -> bool:
+        """Return whether messages of this id hold findings."""
+        return message_id in EVENT_IDS or message_id in KEPT or message_id in _OTHERS
+
+    def add(self, time: float, frame: LogFrame) -> None:
+        """Take a valid frame."""
+        number = frame.message_id
+        payload = payload_of(frame.raw)
+        if number in KEPT and len(self.kept) < MAX_KEPT:
+            self.kept.append(frame.at)
+        if number in EVENT_IDS:
+            self._add_event(time, frame, payload)
+        elif number in _OTHERS:
+            _OTHERS[number](self, time, frame, payload)
+
+    def _add_event(self, time: float, frame: LogFrame, payload: bytes) -> None:
+        """Look for events in a message. Most are repeated HEARTBEATs, which are not decoded again."""
+        number, system, component = frame.message_id, frame.system, frame.component
+        if number == m.Heartbeat.id:
+            if self._beats.get((system, component)) == payload and self.finder.repeat(system, component, time):
+                return
+            self._beats[system, component] = payload
+            key = bytes((system, component, 0, 0, 0))
+            self.beats.pop(key, None)
+            if frame.raw[0] == MAGIC_V2 and not frame.raw[2]:
+                self.beats[key] = KnownBeat(frame.raw[:3], payload, system, component)
+        elif number == m.StatusText.id and self.finder.events.leaves_out(int.from_bytes(payload[:1])):
+            return
+        self.finder.handle(Found(time, frame.at, system, component, decode(number, payload)))
+
+    def repeat_beat(self, beat: KnownBeat, time: float) -> bool:
+        """Take a HEARTBEAT that came again as it was. Returns False if that is an event, and the frame is needed."""
+        return self.finder.repeat(beat.system, beat.component, time)
+
+    def _add_speed(self, time: float, frame: LogFrame, payload: bytes) -> None:
+        (speed,) = _SPEED.unpack(payload[4:8].ljust(4, b"\0"))
+        if math.isfinite(speed):
+            self.speed.add(time, abs(speed))
+
+    def _add_plan(self, time: float, frame: LogFrame, payload: bytes) -> None:
+        for change in self.plans.add(frame, self.finder.vehicles):
+            if change.sent:
+                self.finder.events.add(LogEvent(time, frame.at, "PLAN", Severity.INFO, describe(change), change.system))
+
+    def _add_param(self, time: float, frame: LogFrame, payload: bytes) -> None:
+        payload = payload.ljust(25, b"\0")
+        key = (frame.system, frame.component, payload[_NAME])
+        offsets, before = self._params.get(key, (array("Q"), b""))
+        if payload != before and (offsets or len(self._params) < MAX_PARAMS):
+            offsets.append(frame.at)
+            self._params[key] = offsets, payload
+
+    def _add_demand(self, time: float, frame: LogFrame, payload: bytes) -> None:
+        message: Any = decode(frame.message_id, payload)
+        target = message.target if isinstance(message, m.ManualControl) else message.target_system
+        vehicle = self.finder.vehicles.get(target)
+        if vehicle is not None:
+            axes = parse_manual_control(message, axis_map(vehicle.autopilot))
+            self.demand.add(time, max(abs(axis) for axis in axes if axis is not None) if any(axes) else 0.0)
+
+    def params_before(self, offset: int) -> list[int]:
+        """Return the offsets of the newest value of each parameter before an offset."""
+        found = []
+        for offsets, _ in self._params.values():
+            if at := bisect_left(offsets, offset):
+                found.append(offsets[at - 1])
+        return found
+
+    def kept_before(self, offset: int, count: int) -> list[int]:
+        """Return the offsets of the newest messages of KEPT before an offset."""
+        at = bisect_left(self.kept, offset)
+        return list(self.kept[max(0, at - count) : at])
+
+    def add_damage(self, time: float, offset: int, size: int) -> None:
+        """Note bytes that belong to no valid record."""
+        self.damage.add(time, size)
+        before, events = self._damage, self.finder.events
+        if before is not None and before[1] == offset:  # it goes on in the next interval
+            size += offset - before[0].offset
+            events.replace(before[0], event := _damage_event(before[0].time, before[0].offset, size))
+        else:
+            self._damages += 1
+            event = _damage_event(time, offset, size)
+            if self._damages <= MAX_DAMAGE_EVENTS:
+                events.add(event)
+        self._damage = event, event.offset + size
+
+    def add_jump(self, time: float, offset: int) -> None:
+        """Note that the recorded clock jumped."""
+        self.finder.events.add(LogEvent(time, offset, "CLOCK", Severity.WARNING, "the recorded clock jumps here"))
+
+
+def _damage_event(time: float, offset: int, size: int) -> LogEvent:
+    return LogEvent(time, offset, "DAMAG", Severity.ERROR, f"{size} bytes left out: no valid record")
+
+
+_OTHERS: dict[int, Callable[[Findings, float, LogFrame, bytes], None]] = {
+    m.VfrHud.id: Findings._add_speed,
+    m.ParamValue.id: Findings._add_param,
+    m.ManualControl.id: Findings._add_demand,
+    m.RoverOperatorPresence.id: Findings._add_demand,
+    **dict.fromkeys(PLAN_IDS, Findings._add_plan),
+}

@@ -1,0 +1,1 @@
+"""The simulated rovers, and the process that runs one."""

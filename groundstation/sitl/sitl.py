@@ -1,0 +1,142 @@
+"""Runs the simulated rover (`vehicle --sim`) as a child process that ends with this one. Imports nothing of it."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+
+from groundstation.sitl.simulators import find_simulator
+from link.endpoint import Endpoint
+from link.runtime.child_process import end_process, start_module
+
+PR_SET_PDEATHSIG = 1
+"""prctl(2): the kernel sends a signal when the parent dies, even by kill -9."""
+
+END_TIMEOUT = 1.0
+"""s for the simulator to stop its motors and exit before it is killed."""
+
+WILDCARD_HOSTS = ("0.0.0.0", "::")
+"""Hosts that mean "all addresses of this machine"; nothing can be sent to them."""
+
+TAIL_SIZE = 4000
+"""Bytes of its output that are read: the last lines, with a traceback."""
+
+
+def free_port() -> int:
+    """Return a free UDP port of the loopback. If another program takes it first, opening the link fails."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+class Simulator:
+    """One `vehicle --sim`. Its output is kept; the last line is the reason when it exits."""
+
+    def __init__(self, host: str, port: int, options: Sequence[str] = ()) -> None:
+        """Start the simulator, sending to an address of this machine. Raises OSError."""
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name, so nothing is left behind even after a kill
+        self._process: subprocess.Popen[bytes] = start_module(
+            "vehicle",
+            ["--sim", f"udpout:{host}:{port}", *options],
+            output=self._output,
+            new_session=True,  # Ctrl-C in the terminal is for the screen only
+            prepare=_die_with_parent(),
+        )
+
+    @property
+    def running(self) -> bool:
+        """The process has not exited."""
+        return self._process.poll() is None
+
+    @property
+    def state(self) -> str:
+        """Status for the screen: "running", or how the process ended."""
+        code = self._process.poll()
+        if code is None:
+            return "running"
+        how = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended with code {code}"
+        lines = self.output_tail.strip().split("\n")
+        return f"{how}: {lines[-1]}" if lines[-1] else how
+
+    @property
+    def output_tail(self) -> str:
+        """The end of its output."""
+        size = os.fstat(self._output.fileno()).st_size
+        return os.pread(self._output.fileno(), TAIL_SIZE, max(0, size - TAIL_SIZE)).decode("utf-8", "replace")
+
+    def close(self) -> None:
+        """Stop the simulator."""
+        if self.running:
+            self._process.terminate()
+            end_process(self._process, END_TIMEOUT)
+        self._output.close()
+
+
+class SimulatorControl:
+    """Starts the simulators of one row at a time and reports once when one of them exits."""
+
+    def __init__(self) -> None:
+        self._simulators: list[Simulator] = []
+        self._reported: list[Simulator] = []
+
+    def start(self, endpoints: Sequence[Endpoint], kind: str = "rover") -> str | None:
+        """Start simulators that send to the first endpoint that listens. Returns an error text, or None.
+
+        While one of ours runs, nothing is started.
+        """
+        if self.running:
+            return None
+        endpoint = next((each for each in endpoints if each.scheme == "udpin"), None)
+        if endpoint is None:
+            return "the simulator needs a link that listens, e.g. udpin:127.0.0.1:14550"
+        host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
+        self.close()
+        try:
+            for options in find_simulator(kind).options:
+                self._simulators.append(Simulator(host, endpoint.port, options))
+        except OSError as error:
+            return f"simulator did not start: {error.strerror}"
+        return None
+
+    @property
+    def running(self) -> bool:
+        """Any simulator of ours runs."""
+        return any(each.running for each in self._simulators)
+
+    @property
+    def state(self) -> str | None:
+        """Status for the screen: of one that has exited, else "running"; None if no simulator was started."""
+        states = [each.state for each in self._simulators]
+        return next((state for state in states if state != "running"), states[0]) if states else None
+
+    def pop_exit(self) -> tuple[str, str] | None:
+        """Return how a simulator exited and the end of its output, once; None while they run."""
+        for each in self._simulators:
+            if not each.running and each not in self._reported:
+                self._reported.append(each)
+                return f"simulator {each.state}", each.output_tail
+        return None
+
+    def close(self) -> None:
+        """Stop the simulators."""
+        for each in self._simulators:
+            each.close()
+        self._simulators, self._reported = [], []
+
+
+def _die_with_parent() -> Callable[[], None] | None:
+    """Return a function for the child that makes the kernel terminate it when we die; None except on Linux."""
+    if not sys.platform.startswith("linux"):
+        return None
+    prctl = ctypes.CDLL(None).prctl  # looked up before the fork: as little as possible may run after it
+
+    def prepare() -> None:
+        prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+    return prepare

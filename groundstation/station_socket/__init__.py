@@ -1,0 +1,1 @@
+"""How programs of one user find a running station: the folder, its sockets, the first packets."""

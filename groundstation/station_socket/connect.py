@@ -1,0 +1,75 @@
+"""Connects to a running station of this user."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import socket
+import struct
+from pathlib import Path
+
+from groundstation.station_socket.folder import list_sockets, socket_address
+from groundstation.station_socket.hello import HELLO_WITHIN, Hello, encode
+
+SOCKET_BUFFER = 1 << 20
+"""Bytes requested each way, so that a snapshot (< 60 kB) or a second of keys fits; the kernel may grant less."""
+
+_CREDENTIALS = struct.Struct("3i")
+
+
+class NoStationError(Exception):
+    """No station takes this program; the message is one line for the user."""
+
+
+def peer_credentials(sock: socket.socket) -> tuple[int, int]:
+    """Return the process id and the user id of the other end, as the kernel knows them."""
+    pid, user, _ = _CREDENTIALS.unpack(sock.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size))
+    return pid, user
+
+
+def running_stations() -> list[int]:
+    """Return the process ids of the stations that run; sockets that a killed one has left are removed.
+
+    Raises FolderError.
+    """
+    found = []
+    for pid, path in list_sockets():
+        sock = _open(path)
+        if sock is not None:
+            sock.close()
+            found.append(pid)
+    return found
+
+
+def connect(pid: int, hello: Hello, within: float = HELLO_WITHIN) -> socket.socket:
+    """Connect to the station with this process id and introduce the program. Raises NoStationError, FolderError.
+
+    The socket gives up after `within` s, here and when it is read.
+    """
+    paths = dict(list_sockets())
+    sock = _open(paths[pid], within) if pid in paths else None
+    if sock is None:
+        raise NoStationError(f"no station with process id {pid} runs here")
+    if peer_credentials(sock)[1] != os.getuid():
+        sock.close()
+        raise NoStationError(f"the socket of station {pid} belongs to another user")
+    sock.send(encode(hello))
+    return sock
+
+
+def _open(path: Path, within: float = HELLO_WITHIN) -> socket.socket | None:
+    """Return a connection; None where nobody listens any more, and then the socket is removed."""
+    sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
+    sock.settimeout(within)
+    try:
+        with socket_address(path) as address:
+            sock.connect(address)
+    except OSError as error:
+        sock.close()
+        if error.errno == errno.ECONNREFUSED:
+            with contextlib.suppress(OSError):
+                path.unlink()
+        return None
+    return sock

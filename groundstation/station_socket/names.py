@@ -1,0 +1,55 @@
+"""What a shell asks a running station for to complete a word: one request, one answer, and the connection ends."""
+
+from __future__ import annotations
+
+import time
+
+import msgspec
+
+from groundstation.station_socket.connect import NoStationError, connect
+from groundstation.station_socket.folder import FolderError, list_sockets
+from groundstation.station_socket.hello import NAMES, Hello, encode
+
+VERSION = 1
+"""Of the answer below."""
+
+PARAMS, MODES, VEHICLES = "params", "modes", "vehicles"
+KINDS = (PARAMS, MODES, VEHICLES)
+"""What names there are; a Hello has one as its name."""
+
+ANSWER_WITHIN = 0.05
+"""s for all stations to answer: a key in a shell waits for it, and the start of Python takes as long again."""
+
+MAX_ANSWER = 1 << 17
+"""Bytes of the largest answer: 5000 parameters have 90 kB."""
+
+
+class Names(msgspec.Struct, frozen=True, tag=True):
+    """From the station, first and last."""
+
+    names: tuple[str, ...]
+
+
+encode_names = encode
+_decode = msgspec.msgpack.Decoder(Names).decode
+
+
+def find_names(kind: str, within: float = ANSWER_WITHIN) -> list[str]:
+    """Return the names that the running stations of this user know; none if no station answers in `within` s."""
+    deadline = time.monotonic() + within
+    try:
+        pids = [pid for pid, _ in list_sockets()]
+    except FolderError:
+        return []
+    return sorted({name for pid in pids for name in _ask(pid, kind, deadline - time.monotonic())})
+
+
+def _ask(pid: int, kind: str, within: float) -> tuple[str, ...]:
+    """Return the names that one station knows."""
+    if within <= 0:
+        return ()
+    try:
+        with connect(pid, Hello(NAMES, VERSION, kind), within) as sock:
+            return _decode(sock.recv(MAX_ANSWER)).names
+    except (NoStationError, FolderError, OSError, msgspec.DecodeError):
+        return ()

@@ -1,0 +1,87 @@
+"""What a verb and the station that it goes through say to each other: MAVLink messages, without frames.
+
+The station sends those of the verb over its own links, with its own ids and its own session, so that the vehicle sees
+one ground station.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from groundstation.station_socket.hello import StationFailed
+from link.core import LinkReport
+
+VERSION = 1
+"""Of the packets below."""
+
+MAX_RELAYED = 1 << 16
+"""Bytes of the largest packet."""
+
+BATCH = 100
+"""Messages in one packet at most: 28 kB."""
+
+ALIVE_PERIOD = 0.1
+"""s between packets of a verb at least, as of a screen."""
+
+ALIVE_WITHIN = 0.3
+"""s without a packet after which a verb that demands motion counts as dead."""
+
+
+KEEP = 30.0
+"""s after the end of a verb for which the next one has its session: our vehicle disarms when nobody has driven it for
+that time (FS_DISARM_T)."""
+
+
+class VerbReady(msgspec.Struct, frozen=True, tag=True):
+    """From the station, first."""
+
+    system: int
+    component: int
+    """The ids of the station, which are those of the verb from now on."""
+    session: int
+    endpoints: tuple[str, ...]
+    follows: bool = False
+    """The verb may prove the session, which a verb has used just before."""
+
+
+class HeardMessage(msgspec.Struct, frozen=True, array_like=True):
+    """A message that the station has received."""
+
+    message: int
+    """Its id."""
+    system: int
+    component: int
+    sequence: int
+    link: int
+    payload: bytes
+
+
+class Heard(msgspec.Struct, frozen=True, tag=True):
+    """From the station: what it has received, at most BATCH messages."""
+
+    messages: tuple[HeardMessage, ...]
+
+
+class LinksReport(msgspec.Struct, frozen=True, tag=True):
+    """From the station, about once a second: the state of its links."""
+
+    reports: tuple[LinkReport, ...]
+
+
+class DemandRefused(msgspec.Struct, frozen=True, tag=True):
+    """From the station: it does not send what moves the vehicle, or not any more; one line for the user."""
+
+    line: str
+
+
+class ToSend(msgspec.Struct, frozen=True):
+    """From the verb: messages to send, ids and payloads. Without any it says that the verb runs."""
+
+    messages: tuple[tuple[int, bytes], ...] = ()
+
+
+FromStation = VerbReady | Heard | LinksReport | DemandRefused | StationFailed
+
+encode = msgspec.msgpack.Encoder().encode
+decode_from_station = msgspec.msgpack.Decoder(FromStation).decode
+decode_from_verb = msgspec.msgpack.Decoder(ToSend).decode

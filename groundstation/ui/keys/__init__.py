@@ -1,0 +1,1 @@
+"""Keys and gamepads: the gate that lets them drive, and what is pressed."""

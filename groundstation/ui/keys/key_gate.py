@@ -1,0 +1,237 @@
+"""Key gate: which intents of keys may pass to the station now. Called by the input thread and the event loop."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+from typing import Protocol
+
+from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
+from groundstation.input.keymap import SPLIT, KeyEvent, Keymap
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
+from groundstation.intents.session import ReportKeyReleases, SetKeyGate
+from groundstation.intents.union import AnyIntent
+from groundstation.screens import SCREENS
+from groundstation.snapshot import Snapshot, StationOutage
+from groundstation.ui.keys.keynames import is_character
+from groundstation.ui.terminal.tty_ping import TerminalPing
+from groundstation.views.base import View
+
+
+class StationConnection(Protocol):
+    """The connection to the station: StationClient in the program.
+
+    A protocol because the tests of the UI put a recorder in its place, without a station process behind it.
+    """
+
+    def send(self, *intents: AnyIntent) -> None:
+        """Send intents; from any thread, never blocks."""
+
+    def receive(self) -> Snapshot | None:
+        """Return the newest snapshot that waits."""
+
+    def pop_views(self) -> list[View]:
+        """Return the views that came with it."""
+
+    def fileno(self) -> int:
+        """Return a descriptor that is readable when a snapshot waits."""
+
+    @property
+    def alive(self) -> bool:
+        """The station process runs."""
+
+    @property
+    def open(self) -> bool:
+        """Something may still arrive: the station or its watchdog runs."""
+
+    @property
+    def outage(self) -> StationOutage:
+        """What the watchdog reports of a station that has ended or does not respond."""
+
+
+class GateLevel(Enum):
+    """What passes the gate."""
+
+    OPEN = auto()
+    """Keys drive."""
+    COMMANDS = auto()
+    """Commands (disarm, mode) but no drive keys: the Drive screen is shown, but its driver may be absent."""
+    STOPS = auto()
+    """Only stops: the other keys are those of the screen or menu on top."""
+    TEXT = auto()
+    """Only stops that are no text: a text field has the keys, and SPACE is a letter there."""
+
+
+@dataclass(frozen=True, slots=True)
+class GateClosure:
+    """Why the gate is not open."""
+
+    reason: str
+    level: GateLevel = GateLevel.COMMANDS
+
+
+STARTING = GateClosure("starting")
+OTHER_SCREEN = GateClosure("another screen is open", GateLevel.STOPS)
+TEXT_FIELD = GateClosure("a text field has the keys", GateLevel.TEXT)
+REPLAY = GateClosure("this is a replay", GateLevel.STOPS)
+LENT = GateClosure("a log has the terminal", GateLevel.STOPS)
+
+OPENING_TIMEOUT = 1.0
+"""s within which the event loop opens the screen whose key the input thread has seen. Until then the gate stays closed:
+the next key may be meant for that screen."""
+
+OPENING = frozenset(
+    {"app.goto", "app.command", "app.next_screen", "app.previous_screen", *(row.action for row in SCREENS[1:])}
+)
+"""Actions that open a screen or menu on top of Drive."""
+
+PALETTE_KEY = "ctrl+p"
+"""Opens Textual's command palette, which is a text field."""
+
+
+class KeyGate:
+    """Turns the keys of one read into intents and sends those that pass at once.
+
+    The station has the same gate (`SetKeyGate` travels on the same pipe, in order) and keeps the sticks neutral while
+    it is closed; this class decides on all other intents.
+    """
+
+    def __init__(self, client: StationConnection, keymap: Keymap, clock: Callable[[], float]) -> None:
+        self.keymap = keymap
+        self._client = client
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._closure: GateClosure | None = STARTING
+        self._down: set[str] = set()
+        self._exact = False
+        self._armed = False
+        self._driving = True
+        self._opening_until = -math.inf
+        self._hold = HoldToConfirm(keymap)
+        self.ping = TerminalPing()
+        self.split_keys = 0
+        """Keys that arrived in pieces and did nothing, so far."""
+
+    @property
+    def closure(self) -> GateClosure | None:
+        """Why the gate is not open; None when it is."""
+        return self._closure
+
+    def update(self, *, armed: bool, driving: bool) -> None:
+        """Set what the newest snapshot reports; it decides what some keys mean (arm or disarm, stop or not)."""
+        self._armed, self._driving = armed, driving
+
+    def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
+        """Handle the keys of one read, in the input thread."""
+        with self._lock:
+            self.split_keys += batch.count(SPLIT)
+            read = self._hold.handle_read(
+                self._drop_stray_repeats(batch), armed=self._armed, allowed=self._closure is None, now=self._clock()
+            )
+            if self._opens_screen(batch):
+                self._opening_until = self._clock() + OPENING_TIMEOUT
+                self._set_closure(OTHER_SCREEN)
+            counting = [press for press in read.passing if self._counts(press)]
+            intents = self.keymap.build_intents(counting, armed=self._armed, driving=self._driving)
+            passing = [intent for intent in intents if self._passes(intent)]
+            if read.confirmed is not None:
+                passing.append(read.confirmed)
+            if passing:
+                self._client.send(*passing)
+
+    def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
+        """Handle the stop keys among the keys of a split escape sequence, and no others."""
+        actions = [(press, self.keymap.get_action(press.key)) for press in batch]
+        stops = [press for press, action in actions if action and isinstance(action.intent, (Stop, EmergencyStop))]
+        if stops:
+            self.handle_keys(stops)
+
+    def cancel_hold(self) -> None:
+        """End the hold of a key that confirms an action; it must be released before it counts again."""
+        with self._lock:
+            self._hold.cancel()
+
+    @property
+    def hold(self) -> HoldProgress | None:
+        """Progress of the key that is held to confirm an action."""
+        with self._lock:
+            return self._hold.progress(self._clock())
+
+    def handle_release_support(self) -> None:
+        """Note that the terminal reports repeats and releases."""
+        with self._lock:
+            if not self._exact:
+                self._exact = True
+                self._client.send(ReportKeyReleases())
+
+    def close(self, reason: str) -> None:
+        """Close at once, from any thread. The event loop opens again when its own conditions hold."""
+        self.set_closure(GateClosure(reason))
+
+    def set_closure(self, closure: GateClosure | None) -> None:
+        """Open (None) or close. Closing means neutral at once, and a key held meanwhile does not count afterwards."""
+        with self._lock:
+            commands = closure is None or closure.level is GateLevel.COMMANDS
+            opening = commands and self._clock() < self._opening_until
+            self._set_closure(OTHER_SCREEN if opening else closure)
+
+    def screen_opened(self) -> None:
+        """Note that a screen is on top of Drive: from now on the event loop knows whether keys drive."""
+        with self._lock:
+            self._opening_until = -math.inf
+
+    def _set_closure(self, closure: GateClosure | None) -> None:
+        if closure == self._closure:
+            return
+        self._closure = closure
+        if closure is None:
+            self._client.send(SetKeyGate(open=True))
+            return
+        self._down.clear()
+        self._hold.cancel()
+        # The gate first: it makes the station record which keys are held, and the stop clears them.
+        self._client.send(SetKeyGate(open=False, reason=closure.reason), Stop(closure.reason))
+
+    def handle_pong(self) -> None:
+        """Note the answer to a ping."""
+        self.ping.handle_answer(self._clock())
+
+    def _drop_stray_repeats(self, batch: Sequence[KeyEvent]) -> list[KeyEvent]:
+        """Drop repeats of keys that are not down: kitty sends some after the focus is lost."""
+        live: list[KeyEvent] = []
+        for press in batch:
+            if press.release:
+                self._down.discard(press.key)
+            elif not press.repeat:
+                self._down.add(press.key)
+            elif press.key not in self._down:
+                continue
+            live.append(press)
+        return live
+
+    def _opens_screen(self, batch: Sequence[KeyEvent]) -> bool:
+        """Return whether a key of this read opens a screen on top of Drive: then none of them is a command."""
+        if self._closure is not None and self._closure.level is not GateLevel.COMMANDS:
+            return False
+        pressed = [press.key for press in batch if not press.release]
+        actions = (self.keymap.get_action(key) for key in pressed)
+        return PALETTE_KEY in pressed or any(action is not None and action.id in OPENING for action in actions)
+
+    def _counts(self, press: KeyEvent) -> bool:
+        """Return whether a key means anything to the station: on other screens only drive and stop keys do."""
+        level = GateLevel.OPEN if self._closure is None else self._closure.level
+        if level in (GateLevel.OPEN, GateLevel.COMMANDS):
+            return True
+        action = self.keymap.get_action(press.key)
+        if action is None or not isinstance(action.intent, (DriveKeyDown, Stop, EmergencyStop)):
+            return False
+        return not (level is GateLevel.TEXT and isinstance(action.intent, Stop) and is_character(press.key))
+
+    def _passes(self, intent: AnyIntent) -> bool:
+        """Return whether to send it. Drive keys always pass: the station must know them to ignore them later, too."""
+        if self._closure is None or isinstance(intent, (Stop, EmergencyStop, DriveKeyDown, DriveKeyUp)):
+            return True
+        return self._closure.level is GateLevel.COMMANDS

@@ -1,0 +1,68 @@
+"""Frames of the gamepad as intents and keys: its sticks go to the station, its buttons are further keys.
+
+Called by the thread that reads the frames. Buttons pass the same gate as keys, and reach the screen on top as keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from textual import events
+from textual.message import Message
+
+from groundstation.gamepad.child import GamepadChild
+from groundstation.input.keymap import KeyEvent
+from groundstation.input.pad import PadFrame
+from groundstation.input.pad_mapping import KEY_PREFIX
+from groundstation.intents.driving import DrivePad, ReleasePad
+from groundstation.intents.union import AnyIntent
+from groundstation.ui.keys.key_gate import KeyGate
+from groundstation.ui.keys.pad_state import PadState
+from groundstation.ui.terminal.key_parser import KeyUp
+
+
+class PadInput:
+    """One gamepad process behind one key gate. `post` takes messages for the app, `send` intents, from any thread."""
+
+    def __init__(
+        self,
+        child: GamepadChild,
+        gate: KeyGate,
+        send: Callable[[AnyIntent], None],
+        post: Callable[[Message], object],
+    ) -> None:
+        self.child = child
+        self._gate, self._send, self._post = gate, send, post
+        self._held = self._seen = False
+        self._buttons: frozenset[str] = frozenset()
+
+    def start(self) -> None:
+        """Start to read. Raises OSError."""
+        self.child.start(self.take)
+
+    def state(self, now: float) -> PadState:
+        """Return what the Drive screen shows of it."""
+        frame = self.child.frame
+        return PadState(frame, self.child.mapping, self.child.problem(now), lost=self._seen and not frame.names)
+
+    def take(self, frame: PadFrame) -> None:
+        """Handle a frame: the sticks first, which may stop."""
+        if frame.held:
+            self._send(DrivePad(frame.throttle, frame.steering, frame.read_at, repeat=self._held))
+        elif self._held:
+            self._send(ReleasePad())
+        self._held, self._seen = frame.held, self._seen or bool(frame.names)
+        before, self._buttons = self._buttons, frozenset(frame.buttons)
+        batch = [KeyEvent(_key(name), release=True) for name in sorted(before - self._buttons)]
+        batch += [KeyEvent(_key(name), repeat=name in before) for name in frame.buttons]
+        if batch:
+            self._gate.handle_keys(batch)
+        for press in batch:
+            if press.release:
+                self._post(KeyUp(press.key))
+            elif not press.repeat:
+                self._post(events.Key(press.key, None))
+
+
+def _key(name: str) -> str:
+    return f"{KEY_PREFIX}{name}"

@@ -1,0 +1,1 @@
+"""How it looks: themes, colours, roles of colours, ASCII replacements."""

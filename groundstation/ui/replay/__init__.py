@@ -1,0 +1,1 @@
+"""The Replay screen without its widgets."""

@@ -1,0 +1,43 @@
+"""Modules of verbs that are imported once a verb runs: to import all of them takes longer than most verbs do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from typing import Any
+
+
+class LaterName:
+    """Something of a module, for the table: a function, or a sequence."""
+
+    def __init__(self, module: str, name: str) -> None:
+        self._module = module
+        self._name = name
+
+    def resolve(self) -> Any:
+        """Import the module, and return what the name stands for. Raises ImportError, AttributeError."""
+        return getattr(import_module(self._module), self._name)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it."""
+        return self.resolve()(*arguments)
+
+    def __iter__(self) -> Iterator[Any]:
+        """Return its items."""
+        return iter(self.resolve())
+
+
+class LaterModule:
+    """A module of groundstation.verbs in the place of which nothing is imported yet."""
+
+    def __init__(self, name: str) -> None:
+        self._name = f"groundstation.verbs.{name}"
+
+    def __getattr__(self, name: str) -> LaterName:
+        """Return one of its names, which is not looked up yet."""
+        return LaterName(self._name, name)
+
+
+def made(factory: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
+    """Return the function that `factory` makes of the arguments; it is made when it is called."""
+    return lambda *rest: factory(*arguments)(*rest)

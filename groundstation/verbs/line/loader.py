@@ -1,0 +1,61 @@
+"""LineLoader: loads the verbs when the first line is typed, in a thread, because the station must not stand still."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from groundstation.intents.base import Intent
+from groundstation.intents.line import RunLine
+from groundstation.station.station import Station
+from groundstation.station.view_feed import ViewSource
+from groundstation.views.line import RUNNING, LineRequest, LineView
+
+if TYPE_CHECKING:
+    from groundstation.verbs.line.desk import LineDesk
+
+PERIOD = 0.1
+"""s between two views."""
+
+
+class LineLoader:
+    """Takes the lines for `station`, whose ids are `ids`. `flush` sends what the station has queued."""
+
+    def __init__(self, station: Station, ids: tuple[int, int], flush: Callable[[], None]) -> None:
+        self._station, self._ids, self._flush = station, ids, flush
+        self._desk: LineDesk | None = None
+        self._loading: asyncio.Task[None] | None = None
+        self._waiting: list[RunLine] = []
+        station.views.add(LineRequest, ViewSource(self._build, period=PERIOD))
+
+    def handle(self, intent: Intent, now: float) -> None:
+        """Run a line, at once or when the verbs are loaded; ignore all other intents."""
+        if not isinstance(intent, RunLine):
+            return
+        self._waiting.append(intent)
+        self._run_waiting(now)
+
+    def _build(self, request: LineRequest, now: float, wall: float) -> LineView:
+        if self._desk is None:
+            self._load()
+            return LineView(request.number, RUNNING, "", request.text)
+        return self._desk.build(request)
+
+    def _run_waiting(self, now: float) -> None:
+        if self._desk is None:
+            self._load()
+            return
+        waiting, self._waiting = self._waiting, []
+        for intent in waiting:
+            self._desk.run(intent, now)
+
+    def _load(self) -> None:
+        if self._loading is None:
+            self._loading = asyncio.get_running_loop().create_task(self._import())
+
+    async def _import(self) -> None:
+        module = await asyncio.to_thread(import_module, "groundstation.verbs.line.desk")
+        self._desk = module.LineDesk(self._station, self._ids, self._flush)
+        self._run_waiting(asyncio.get_running_loop().time())

@@ -1,0 +1,107 @@
+"""What a line does in place of a verb's function: by an intent of the station, as the key of a screen does it."""
+
+from __future__ import annotations
+
+import argparse
+
+from groundstation.intents.driving import EmergencyStop, Stop
+from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
+from groundstation.station.handover import ANSWER_WITHIN
+from groundstation.vehicles.requests import RequestState
+from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.line.session import LineOutput, LineSession
+
+STOPPED_WITHIN = 5.0
+"""s for the heartbeat to report a stop, which the station repeats; after that the line says what it reports."""
+
+
+def _need_selected(session: LineSession) -> None:
+    if not session.is_selected:
+        raise VerbError(ExitCode.USAGE, f"{session.vehicle.name} is not selected: n selects the next vehicle")
+
+
+async def disarm(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Disarm."""
+    _need_selected(session)
+    session.do(Stop(), Disarm())
+    done = await session.wait_for(lambda: not session.vehicle.armed, STOPPED_WITHIN)
+    output.note(f"{session.vehicle.name} {'is disarmed' if done else 'still reports armed'}")
+    return ExitCode.DONE if done else ExitCode.NO_ANSWER
+
+
+async def stop(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Stop the sticks, and change to HOLD."""
+    _need_selected(session)
+    state = session.vehicle
+    before = state.mode
+    session.do(Stop(), SetMode(mode="HOLD"))
+    done = await session.wait_for(lambda: state.mode == "HOLD" or state.mode != before, STOPPED_WITHIN)
+    output.note(f"{state.name} is in {state.mode}" if done else f"{state.name}: stop sent; it reports {state.mode}")
+    return ExitCode.DONE if done else ExitCode.NO_ANSWER
+
+
+async def emergency_stop(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Stop the motors and lock them."""
+    _need_selected(session)
+    if options.clear:
+        raise VerbError(ExitCode.USAGE, "estop --clear is the key t, held for 1 s on Drive, so that no text does it")
+    session.do(EmergencyStop())
+    done = await session.wait_for(lambda: not session.vehicle.armed, STOPPED_WITHIN)
+    output.note(f"{session.vehicle.name}: emergency stop{'' if done else '; it still reports armed'}")
+    return ExitCode.DONE if done else ExitCode.NO_ANSWER
+
+
+async def show_control(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Say who is in control."""
+    state, driver = session.vehicle, session.vehicle.driver
+    who = "this ground station" if session.contact.in_control else f"GCS {driver}" if driver else "nobody"
+    output.note(f"{state.name} does not tell" if driver is None else f"{state.name}: {who} is in control")
+    return ExitCode.DONE
+
+
+async def request_control(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Take control, or ask the driver for it."""
+    _need_selected(session)
+    if options.takeover:
+        raise VerbError(ExitCode.USAGE, "--takeover is T of the Links screen (F7)")
+    if session.contact.in_control:
+        output.note(f"{session.vehicle.name} is controlled by this ground station already")
+        return ExitCode.DONE
+    session.do(RequestControl())
+    if session.vehicle.driver is not None and not await session.wait_for(
+        lambda: session.contact.in_control, ANSWER_WITHIN
+    ):
+        output.note(f"{session.vehicle.name}: control was not given")
+        return ExitCode.NOT_IN_CONTROL
+    output.note(f"{session.vehicle.name}: control requested")
+    return ExitCode.DONE
+
+
+async def release_control(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Release control."""
+    _need_selected(session)
+    session.do(ReleaseControl())
+    await session.wait_for(lambda: not session.contact.in_control, STOPPED_WITHIN)
+    output.note(f"{session.vehicle.name}: control released")
+    return ExitCode.DONE
+
+
+async def request_message(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Request one message; the Messages screen shows it."""
+    kind, messages = options.kind, session.services.messages
+    report = await session.request(
+        lambda number, now: messages.request_once(number, session.vehicle.component, kind.id, kind.msgname, now)
+    )
+    done = report.state is RequestState.ACCEPTED
+    output.note(f"{session.vehicle.name}: {report.text}{'; Messages (F3) shows it' if done else ''}")
+    return code_of(report)
+
+
+async def set_rate(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+    """Set how often a message comes; 0: never."""
+    kind, messages, hz = options.kind, session.services.messages, options.rate or -1.0
+    report = await session.request(
+        lambda number, now: messages.set_rate(number, session.vehicle.component, kind.id, kind.msgname, hz, now)
+    )
+    output.note(f"{session.vehicle.name}: {report.text}")
+    return code_of(report)

@@ -1,0 +1,84 @@
+"""Parses a line of the screens as the command line of a shell is parsed, without printing and without an exit."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from dataclasses import dataclass
+from typing import NoReturn
+
+from groundstation.verbs.exit_codes import ExitCode, VerbError
+from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES, LineRule
+from groundstation.verbs.line.session import here
+from groundstation.verbs.main import build_parser
+from groundstation.verbs.mavproxy_words import describe_action, describe_word
+from groundstation.verbs.table import VERBS, VerbAction
+from link.runtime.command_line import CommandLineParser
+
+FOR_SHELLS = ("endpoints", "config", "dialect")
+"""Options that a line cannot have: it uses the links, settings and dialect of the station."""
+
+
+class LineParser(CommandLineParser):
+    """Raises VerbError where a program would print and exit."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise VerbError."""
+        raise VerbError(ExitCode.USAGE, f"{self._verb}: {' '.join(message.split())}")
+
+    def print_help(self, file: object = None) -> NoReturn:
+        """Raise VerbError with the usage."""
+        usage = " ".join(self.format_usage().split()).removeprefix("usage: groundstation ")
+        raise VerbError(ExitCode.USAGE, usage)
+
+    @property
+    def _verb(self) -> str:
+        return self.prog.removeprefix("groundstation ")
+
+
+@dataclass(frozen=True, slots=True)
+class ParsedLine:
+    """What a line asks for."""
+
+    name: str
+    """Verb, or verb and action."""
+    action: VerbAction
+    rule: LineRule
+    options: argparse.Namespace
+
+
+def parse_line(text: str) -> ParsedLine:
+    """Return what a line asks for. Raises VerbError, also for what another screen does."""
+    words = _split(text)
+    verb = words[0]
+    if verb not in VERBS or describe_action(words):
+        hint = describe_action(words) or describe_word(verb, VERBS) or f"{verb!r} is no verb; TAB lists them"
+        raise VerbError(ExitCode.USAGE, here(hint))
+    _refuse_elsewhere(verb)
+    options = build_parser(verb, LineParser).parse_args(words[1:])
+    name = f"{verb} {options.action}".strip()
+    rule, action = LINE_RULES.get(name, IN_A_SHELL), VERBS[verb][options.action]
+    if rule.elsewhere:
+        raise VerbError(ExitCode.USAGE, f"{name}: {rule.elsewhere}")
+    if any(getattr(options, each) for each in FOR_SHELLS):
+        raise VerbError(ExitCode.USAGE, f"{name}: a line uses the links and the dialect of this ground station")
+    if action.check is not None:
+        action.check(options)
+    return ParsedLine(name, action, rule, options)
+
+
+def _split(text: str) -> list[str]:
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        raise VerbError(ExitCode.USAGE, f"{text!r}: {error}") from error
+    if not words:
+        raise VerbError(ExitCode.USAGE, "write a verb; TAB lists them")
+    return words
+
+
+def _refuse_elsewhere(verb: str) -> None:
+    """Name the screen at once, before the arguments, where no action of the verb runs here."""
+    rules = [LINE_RULES.get(f"{verb} {action}".strip(), IN_A_SHELL) for action in VERBS[verb]]
+    if all(rule.elsewhere for rule in rules):
+        raise VerbError(ExitCode.USAGE, f"{verb}: {rules[0].elsewhere}")

@@ -1,0 +1,3 @@
+"""The shells that `groundstation completion` has a script for."""
+
+SHELLS = ("bash", "zsh", "fish")

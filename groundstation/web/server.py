@@ -1,0 +1,179 @@
+"""The process of the web server: pages and sockets behind the guard. Started by launch.py, not by hand.
+
+The front end (xterm.js in textual.js, its style and fonts) is that of textual-serve; nothing else is loaded.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import contextlib
+import json
+import os
+import socket
+import sys
+from collections.abc import Awaitable, Callable, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from aiohttp import WSMsgType, web
+
+from groundstation.web.guard import HEADERS, TOKEN, Guard, WebRequest
+from groundstation.web.tab import Tab
+
+MAX_TABS = 7
+"""Tabs at once: a station takes 8 screens, and one is left for a terminal."""
+
+MAX_MESSAGE = 1 << 16
+"""Bytes of a message from a tab: a pasted text."""
+
+HEARTBEAT = 4.0
+"""s between pings of a socket. A lost tab ends within 6 s; its screen was neutral 0.5 s after the loss."""
+
+SHUTDOWN = 1.0
+"""s for tabs that are open when the server ends."""
+
+DEFAULT_SIZE, DEFAULT_FONT = 80, 16
+
+ENTER = '<!DOCTYPE html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=/"><title>mavhelm</title>'
+"""Answers the first address. The next one is without the token, and asked for by our own page, as the cookie wants."""
+
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class WebServer:
+    """One port, one station. `arguments` are those of `groundstation` for a tab."""
+
+    def __init__(self, guard: Guard, arguments: Sequence[str]) -> None:
+        self._guard = guard
+        self._arguments = arguments
+        self._tabs = 0
+        self._page, self._script = (
+            (Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("page.html", "page.js")
+        )
+
+    def build(self) -> web.Application:
+        """Return the application."""
+
+        @web.middleware
+        async def check(request: web.Request, handler: Handler) -> web.StreamResponse:
+            return self._refuse(request) or await handler(request)
+
+        app = web.Application(middlewares=[check])
+        app.add_routes(
+            [
+                web.get("/", self._show_page),
+                web.get("/page.js", self._show_script),
+                web.get(self._guard.socket_path, self._run_tab),
+                web.static("/static", str(files("textual_serve") / "static"), show_index=False),
+            ]
+        )
+        app.on_response_prepare.append(_add_headers)
+        return app
+
+    def _refuse(self, request: web.Request) -> web.Response | None:
+        asked = WebRequest(
+            path=request.path,
+            hosts=request.headers.getall("Host", []),
+            origins=request.headers.getall("Origin", []),
+            token=request.query.get(TOKEN),
+            cookie=request.cookies.get(self._guard.cookie_name),
+        )
+        refusal = self._guard.refuse(asked)
+        return None if refusal is None else web.Response(status=refusal.status, text=f"{refusal.line}\n")
+
+    async def _show_page(self, request: web.Request) -> web.StreamResponse:
+        if TOKEN in request.query:
+            response = web.Response(text=ENTER, content_type="text/html")
+            name = self._guard.cookie_name
+            response.set_cookie(name, self._guard.token, httponly=True, samesite="Strict", path="/")
+            return response
+        size = min(40, max(8, _number(request.query.get("fontsize"), DEFAULT_FONT)))
+        page = self._page.replace("@HOST@", request.host).replace("@SIZE@", str(size))
+        return web.Response(text=page, content_type="text/html")
+
+    async def _show_script(self, request: web.Request) -> web.StreamResponse:
+        return web.Response(text=self._script, content_type="text/javascript")
+
+    async def _run_tab(self, request: web.Request) -> web.StreamResponse:
+        """Run one screen as long as its socket is open, or until it ends."""
+        if self._tabs >= MAX_TABS:
+            return web.Response(status=503, text=f"{MAX_TABS} tabs are open already\n")
+        sock = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=MAX_MESSAGE)
+        self._tabs += 1
+        try:
+            await sock.prepare(request)
+            size = (_number(request.query.get("width"), DEFAULT_SIZE), _number(request.query.get("height"), 24))
+            tab = Tab.open(self._arguments, size)
+            try:
+                await _join(tab, sock)
+            finally:
+                await asyncio.shield(tab.close())
+        finally:
+            self._tabs -= 1
+        return sock
+
+
+async def _join(tab: Tab, sock: web.WebSocketResponse) -> None:
+    """Pass both ways until one of them ends."""
+
+    async def show() -> None:
+        with contextlib.suppress(ConnectionError):
+            await tab.show(sock.send_bytes)
+        await sock.close()
+
+    drawing = asyncio.create_task(show())
+    try:
+        async for message in sock:
+            if message.type == WSMsgType.TEXT:
+                _take(tab, message.data)
+    finally:
+        drawing.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await drawing
+
+
+def _take(tab: Tab, text: str) -> None:
+    """Carry out a message of textual.js, a list of a name and a value. Any other text does nothing."""
+    with contextlib.suppress(ValueError, TypeError, KeyError, OverflowError, RecursionError):
+        name, value = (*json.loads(text), None)[:2]
+        if name == "stdin":
+            tab.type(str(value))
+        elif name == "resize":
+            tab.resize((int(value["width"]), int(value["height"])))
+
+
+def _number(text: str | None, default: int) -> int:
+    return int(text) if text is not None and text.isascii() and text.isdecimal() and len(text) < 6 else default
+
+
+async def _add_headers(request: web.Request, response: web.StreamResponse) -> None:
+    response.headers.update(HEADERS)
+
+
+async def serve(sock: socket.socket, server: WebServer) -> None:
+    """Serve until standard input is closed: the program that has started this process has ended."""
+    runner = web.AppRunner(server.build(), access_log=None, shutdown_timeout=SHUTDOWN)
+    await runner.setup()
+    await web.SockSite(runner, sock).start()
+    ended = asyncio.Event()
+    asyncio.get_running_loop().add_reader(0, ended.set)
+    await ended.wait()
+    await runner.cleanup()
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Serve the tabs of one station; the token comes as the first line of standard input."""
+    parser = argparse.ArgumentParser(prog="groundstation.web.server")
+    parser.add_argument("--fd", type=int, required=True, help="the socket that listens")
+    parser.add_argument("rest", nargs="*", help="arguments of `groundstation` for a tab")
+    options: Any = parser.parse_args(arguments)
+    sock = socket.socket(fileno=options.fd)
+    token = os.read(sys.stdin.fileno(), 256).decode().strip()
+    asyncio.run(serve(sock, WebServer(Guard(sock.getsockname()[1], token), options.rest)))
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,106 @@
+"""One tab: a pseudo-terminal with `groundstation attach` in it, as a terminal window has.
+
+The screen cannot tell a tab from a terminal: the same keys, timers and pings. The end of the tab closes the terminal,
+which means neutral at once.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import fcntl
+import os
+import pty
+import struct
+import subprocess
+import sys
+import termios
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+
+READ_SIZE = 1 << 16
+
+END_WITHIN = 3.0
+"""s for the screen to leave before it is killed: it is neutral at once, and needs 0.3 s."""
+
+MIN_SIZE, MAX_SIZE = (20, 5), (500, 200)
+"""Columns and rows that a tab may ask for."""
+
+_OTHERS = ("TMUX", "TMUX_PANE", "STY", "COLUMNS", "LINES", "TERM_PROGRAM", "NO_COLOR")
+"""Variables of the terminal in which the server was started, which is not that of the tab."""
+
+
+class Tab:
+    """A screen in a pseudo-terminal."""
+
+    def __init__(self, terminal: int, process: subprocess.Popen[bytes]) -> None:
+        self._terminal = terminal
+        self._process = process
+
+    @classmethod
+    def open(cls, arguments: Sequence[str], size: tuple[int, int]) -> Tab:
+        """Start `python -m groundstation` with these arguments. Raises OSError."""
+        ours, theirs = pty.openpty()
+        try:
+            _set_size(ours, size)
+            os.set_blocking(ours, False)
+            process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "groundstation.web.controlling_terminal", *arguments],
+                stdin=theirs,
+                stdout=theirs,
+                stderr=theirs,
+                start_new_session=True,
+                env=_environment(os.environ),
+            )
+        except OSError:
+            os.close(ours)
+            raise
+        finally:
+            os.close(theirs)
+        return cls(ours, process)
+
+    async def show(self, send: Callable[[bytes], Awaitable[None]]) -> None:
+        """Send all that the screen draws, until it ends. A tab that does not read makes it wait, and it notices."""
+        while data := await self._read():
+            await send(data)
+
+    def type(self, text: str) -> None:
+        """Pass on what the browser sends: keys, and answers to pings. A screen that does not read gets nothing."""
+        with contextlib.suppress(OSError):
+            os.write(self._terminal, text.encode("utf-8", "ignore"))
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Change the size in columns and rows."""
+        with contextlib.suppress(OSError):
+            _set_size(self._terminal, size)
+
+    async def close(self) -> None:
+        """Close the terminal, and wait for the end of the screen."""
+        os.close(self._terminal)
+        try:
+            async with asyncio.timeout(END_WITHIN):
+                await asyncio.to_thread(self._process.wait)
+        except TimeoutError:
+            self._process.kill()
+
+    async def _read(self) -> bytes:
+        """Return the next output, b"" at the end."""
+        loop = asyncio.get_running_loop()
+        readable = asyncio.Event()
+        loop.add_reader(self._terminal, readable.set)
+        try:
+            await readable.wait()
+            return os.read(self._terminal, READ_SIZE)
+        except OSError:  # EIO: the screen has ended
+            return b""
+        finally:
+            loop.remove_reader(self._terminal)
+
+
+def _set_size(terminal: int, size: tuple[int, int]) -> None:
+    columns, rows = (max(low, min(high, each)) for each, low, high in zip(size, MIN_SIZE, MAX_SIZE, strict=True))
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+
+def _environment(ours: Mapping[str, str]) -> dict[str, str]:
+    kept = {name: value for name, value in ours.items() if name not in _OTHERS}
+    return kept | {"TERM": "xterm-256color", "COLORTERM": "truecolor"}

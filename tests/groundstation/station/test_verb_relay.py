@@ -1,0 +1,253 @@
+"""Verbs that go through a station: what of them leaves, as whose, and what ends their demands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Autopilot, Command, OperatorFlag, SystemState, VehicleType
+from dialects.messages import INVALID_AXIS, UINT16_MAX
+from groundstation.station.verb_relay import Verb, VerbRelay
+from groundstation.station_socket.relay import ALIVE_WITHIN, KEEP
+from link.core import Received
+from tests.groundstation.cockpits import armed_cockpit
+from tests.groundstation.fake_ardupilot import FakeArduPilot
+from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+
+BEAT = m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)
+STEP = 0.05
+
+
+class Ashore:
+    """A station without a screen, with an armed vehicle, and one verb that runs."""
+
+    def __init__(self, vehicle: FakeVehicle | None = None, *, takes_part: bool = True) -> None:
+        self.cockpit = armed_cockpit(vehicle)
+        self.cockpit.leasing = False
+        self.cockpit.run(2.0)
+        self.began = self.cockpit.now
+        self.heard: list[Received] = []
+        self.refusals: list[str] = []
+        self.verb = self.add("groundstation send", takes_part=takes_part)
+        self.alive = True
+
+    def add(self, name: str, *, takes_part: bool = True, follows: bool = False) -> Verb:
+        def deliver(received: Sequence[Received]) -> None:
+            self.heard.extend(received)
+
+        verb = Verb(name, takes_part, deliver, lambda _: None, self.refusals.append, follows=follows)
+        self.relay.join(verb, self.cockpit.now)
+        return verb
+
+    @property
+    def relay(self) -> VerbRelay:
+        return self.cockpit.station.relay
+
+    def send(self, *messages: m.Message, verb: Verb | None = None) -> None:
+        for message in messages:
+            self.relay.handle(verb or self.verb, message, self.cockpit.now)
+        self.cockpit.world.settle()
+
+    def run(self, seconds: float, *messages: m.Message) -> None:
+        """Advance the time; send these messages all the while."""
+        end = self.cockpit.now + seconds
+        while self.cockpit.now < end:
+            if self.alive:
+                self.relay.hear(self.verb, self.cockpit.now)
+                self.send(*messages)
+            self.cockpit.run(STEP)
+
+    def passed(self, *messages: m.Message, verb: Verb) -> list[int]:
+        """Send messages of a verb; return how many of each kind reach the vehicle."""
+        before = [len(self.of(type(each))) for each in messages]
+        self.relay.hear(verb, self.cockpit.now)
+        self.send(*messages, verb=verb)
+        self.cockpit.run(STEP)
+        return [len(self.of(type(each))) - was for each, was in zip(messages, before, strict=True)]
+
+    def of(self, kind: type[m.Message]) -> list[m.Message]:
+        return [message for at, message in self.cockpit.vehicle.all(kind) if at >= self.began]
+
+
+FULL = m.ManualControl(1, 1000, INVALID_AXIS, INVALID_AXIS, 0, 0)
+CENTRE = m.ManualControl(1, 0, INVALID_AXIS, INVALID_AXIS, 0, 0)
+
+
+@pytest.mark.parametrize(("takes_part", "count"), [(True, 1), (False, 0)])
+def test_a_verb_that_looks_keeps_no_armed_vehicle_from_its_failsafe(takes_part: bool, count: int) -> None:
+    ashore = Ashore(takes_part=takes_part)
+    ashore.run(1.0)
+    assert ashore.of(m.Heartbeat) == []
+    ashore.send(BEAT)
+    ashore.run(0.1)
+    assert len(ashore.of(m.Heartbeat)) == count
+
+
+def test_the_heartbeat_of_a_screen_is_enough() -> None:
+    ashore = Ashore()
+    ashore.cockpit.leasing = True
+    ashore.cockpit.run(1.0)
+    before = len(ashore.of(m.Heartbeat))
+    ashore.send(BEAT)
+    assert len(ashore.of(m.Heartbeat)) == before
+
+
+def test_proofs_are_those_of_the_stations_session() -> None:
+    ashore = Ashore()
+    proofs = [m.RoverOperatorPresence(1, 1, 5, 6, 99, 1, 0, OperatorFlag.AXES) for _ in range(2)]
+    ashore.send(*proofs)
+    first, second = ashore.cockpit.vehicle.all(m.RoverOperatorPresence)[-2:]
+    assert (first[1].session_id, second[1].session_id) == (7, 7)
+    assert second[1].time_boot_ms > first[1].time_boot_ms > 1000
+
+
+def test_a_demand_ends_with_neutral_when_the_verb_ends() -> None:
+    ashore = Ashore()
+    ashore.run(0.5, FULL)
+    assert ashore.cockpit.demands()[-1][1] == 1000
+    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    ashore.cockpit.world.settle()
+    at = ashore.cockpit.now
+    ashore.cockpit.run(1.0)
+    assert [x for _, x, _ in ashore.cockpit.demands(at)] == [0] * 5
+    assert ashore.relay.finished
+
+
+def test_a_demand_of_a_verb_that_stands_still_ends_and_goes_on_no_more() -> None:
+    ashore = Ashore()
+    ashore.run(0.5, FULL)
+    ashore.alive, at = False, ashore.cockpit.now
+    ashore.run(1.0)
+    driven = [t for t, x, _ in ashore.cockpit.demands() if x]
+    assert ashore.cockpit.demands()[-1][1] == 0
+    assert min(t for t, x, _ in ashore.cockpit.demands(at) if not x) - at < ALIVE_WITHIN + 2 * STEP
+    ashore.alive = True
+    ashore.run(0.5, FULL)
+    assert [t for t, x, _ in ashore.cockpit.demands() if x] == driven
+    assert "stood still for" in ashore.refusals[0]
+
+
+def test_a_thawed_verb_is_found_out_by_its_first_packet() -> None:
+    """Nothing else may have run in between: the station stood still, too."""
+    ashore = Ashore()
+    ashore.run(0.5, FULL)
+    now = ashore.cockpit.now + 1.0
+    ashore.relay.hear(ashore.verb, now)
+    ashore.relay.handle(ashore.verb, FULL, now)
+    assert "stood still for 1." in ashore.refusals[0]
+    sent = [each.message for each in ashore.relay.messages_to_send() if isinstance(each.message, m.ManualControl)]
+    assert {message.x for message in sent} == {0}
+
+
+def test_of_two_verbs_the_first_drives() -> None:
+    ashore = Ashore()
+    other = ashore.add("groundstation drive (pid 2)")
+    ashore.run(0.2, FULL)
+    ashore.send(FULL, verb=other)
+    assert ashore.refusals == ["the groundstation send drives"]
+    ashore.run(0.2, FULL)
+    assert ashore.cockpit.demands()[-1][1] == 1000
+
+
+def test_a_screen_that_comes_ends_the_demand() -> None:
+    ashore = Ashore()
+    ashore.run(0.2, FULL)
+    ashore.relay.screen_that_drives = lambda: "screen on pts/1"
+    ashore.run(0.5)
+    assert ashore.cockpit.demands()[-1][1] == 0
+    ashore.send(FULL)
+    assert ashore.refusals == ["the screen on pts/1 drives"]
+
+
+def test_channels_are_centred_and_given_back() -> None:
+    ashore = Ashore(FakeArduPilot())
+    ashore.run(0.2, m.RcChannelsOverride(1, 1, 1500, UINT16_MAX, 1900, *[UINT16_MAX] * 5))
+    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    ashore.cockpit.run(1.0)
+    sent = ashore.cockpit.vehicle.all(m.RcChannelsOverride)
+    assert [message.chan3_raw for _, message in sent[-2:]] == [1500, 0]
+
+
+def test_a_demand_to_nobody_is_not_sent() -> None:
+    ashore = Ashore()
+    ashore.send(m.ManualControl(9, 1000, 0, 0, 0, 0))
+    assert ashore.relay.messages_to_send() == []
+
+
+def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:
+    ashore = Ashore()
+    ashore.cockpit.leasing = True
+    ashore.cockpit.run(1.0)
+    before = len(ashore.of(m.ManualControl))
+    ashore.send(CENTRE)
+    assert len(ashore.of(m.ManualControl)) == before
+
+
+def test_arming_by_a_verb_is_control_of_a_vehicle_that_does_not_tell() -> None:
+    cockpit = Cockpit(FakeArduPilot())
+    cockpit.run(1.5)
+    verb = Verb("groundstation arm", True, lambda _: None, lambda _: None, lambda _: None)
+    cockpit.station.relay.join(verb, cockpit.now)
+    command = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
+    cockpit.station.relay.handle(verb, command, cockpit.now)
+    cockpit.run(1.5)
+    assert cockpit.view.armed
+    assert cockpit.view.in_control
+
+
+def test_a_verb_that_comes_knows_at_once_what_was_heard() -> None:
+    ashore = Ashore()
+    ashore.heard.clear()
+    ashore.add("groundstation status")
+    kinds = [type(each.message) for each in ashore.heard]
+    assert kinds[0] is m.Heartbeat, "the verb would take nothing that comes before it"
+    assert len(kinds) > 1
+    assert m.CommandAck not in kinds
+
+
+@pytest.mark.parametrize("takes_part", [True, False])
+def test_the_session_is_proven_before_what_may_need_control(takes_part: bool) -> None:
+    ashore = Ashore(takes_part=takes_part)
+    ashore.send(m.ParamSet(1, 1, b"WP_RADIUS", 2.0, 9))
+    ashore.cockpit.run(0.1)
+    kinds = [type(message) for at, message in ashore.cockpit.vehicle.received if at >= ashore.began]
+    expected = [m.RoverOperatorPresence, m.ParamSet] if takes_part else [m.ParamSet]
+    assert [kind for kind in kinds if kind in (m.RoverOperatorPresence, m.ParamSet)] == expected
+
+
+PROOF = m.RoverOperatorPresence(1, 1, 5, 6, 99, 1, 0, OperatorFlag.AXES)
+
+
+def test_a_verb_that_follows_keeps_the_session_of_the_verb_before() -> None:
+    ashore = Ashore()
+    assert not ashore.relay.may_follow(ashore.cockpit.now)  # the last driver was a screen
+    ashore.run(0.5)
+    watch = ashore.add("groundstation watch", takes_part=False, follows=ashore.relay.may_follow(ashore.cockpit.now))
+    assert ashore.passed(BEAT, PROOF, verb=watch) == [0, 0]  # the verb before still runs
+    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    assert ashore.passed(BEAT, PROOF, verb=watch) == [1, 1]
+
+
+def test_what_follows_begins_soon_and_a_verb_that_looks_is_none() -> None:
+    ashore = Ashore()
+    ashore.run(0.5)
+    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    assert ashore.relay.may_follow(ashore.cockpit.now + KEEP - STEP)
+    assert not ashore.relay.may_follow(ashore.cockpit.now + KEEP + STEP)
+    assert ashore.passed(BEAT, PROOF, verb=ashore.add("groundstation status", takes_part=False)) == [0, 0]
+
+
+def test_a_screen_that_drove_since_then_leaves_nothing_to_follow() -> None:
+    """Else the vehicle of a screen that was killed would drive on for as long as a verb looks."""
+    ashore = Ashore()
+    ashore.run(0.5)
+    watch = ashore.add("groundstation watch", takes_part=False, follows=True)
+    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    ashore.cockpit.leasing = True
+    ashore.cockpit.run(0.5)
+    ashore.cockpit.leasing = False
+    ashore.cockpit.run(2.0)
+    assert not ashore.relay.may_follow(ashore.cockpit.now)
+    assert ashore.passed(BEAT, PROOF, verb=watch) == [0, 0]

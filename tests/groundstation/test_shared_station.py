@@ -1,0 +1,220 @@
+"""One station, several screens, for real: sockets, other users, versions, kill -9 while wheels turn, and attach."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from dialects import messages as m
+from groundstation.client import StationClient, StationError
+from groundstation.host.listener import ProgramListener
+from groundstation.intents.driving import STOP_KEY, Stop
+from groundstation.intents.session import Quit
+from groundstation.intents.vehicle import Arm, GiveControl, RequestControl
+from groundstation.ipc import protocol_version
+from groundstation.station_socket.connect import NoStationError, connect, running_stations
+from groundstation.station_socket.folder import (
+    LONGEST_ADDRESS,
+    FolderError,
+    folder_path,
+    list_sockets,
+    make_folder,
+    socket_path,
+)
+from groundstation.station_socket.hello import SCREEN, Hello
+from tests.groundstation.killed_screen import ROOT, assert_said_neutral, killed_screen, moving, neutral
+from tests.groundstation.screen import FORWARD, Screen, running, until
+from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.ports import free_port
+
+pytestmark = pytest.mark.e2e
+
+NOBODY = 65534
+"""User id of `nobody`."""
+
+
+def test_the_socket_is_for_this_user_only_and_goes_with_its_station() -> None:
+    with Screen() as screen:
+        path = socket_path(folder_path(), screen.client.pid)
+        until(path.exists)
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
+        assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+        assert running_stations() == [screen.client.pid]
+        with pytest.raises(StationError, match="has another version: end it and start it again"):
+            _attach_with(screen.client.pid, Hello(SCREEN, 1, "an old screen"))
+        assert screen.client.alive
+    until(lambda: not path.exists())
+    with pytest.raises(NoStationError, match="no station with process id"):
+        connect(screen.client.pid, Hello(SCREEN, 1))
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
+def test_another_user_is_refused_even_where_the_folder_lets_him_in() -> None:
+    with Screen() as screen:
+        path = socket_path(folder_path(), screen.client.pid)
+        until(path.exists)
+        for each, mode in ((path, 0o777), (path.parent, 0o755), (path.parent.parent, 0o755)):
+            each.chmod(mode)
+        try:
+            command = [sys.executable, "-c", FOREIGN, str(path), str(NOBODY)]
+            said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+        finally:
+            for each, mode in ((path.parent.parent, 0o700), (path.parent, 0o700)):
+                each.chmod(mode)
+        assert f"this station belongs to another user (uid {os.getuid()})" in said
+        assert screen.client.alive
+
+
+FOREIGN = """
+import os, socket, sys
+os.setuid(int(sys.argv[2]))
+sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+sock.settimeout(20)
+sock.connect(sys.argv[1])
+print(sock.recv(4096))
+"""
+
+
+def test_the_second_screen_watches_stops_and_drives_once_the_first_gives_the_keys() -> None:
+    with Screen() as first, UdpVehicle(first.endpoint) as vehicle:
+        first.drive(vehicle)
+        until(lambda: first.client.pid in running_stations())
+        with Screen.attach(first.client.pid) as second:
+            assert second.client.first_request == 1_000_001
+            second.see(lambda seen: seen.lease.driver == "first screen")
+            second.client.send(FORWARD)
+            second.client.send(Arm(held=1.0))
+            second.see(lambda seen: any("Arm of the second screen refused" in line.text for line in seen.texts))
+            first.see(lambda seen: seen.operator.throttle > 0)
+
+            stopped = time.monotonic()
+            second.client.send(Stop(STOP_KEY))
+            until(lambda: bool(neutral(vehicle, stopped)))
+            first.see(lambda seen: seen.operator.throttle == 0 and not seen.lease.driver)
+            assert not moving(vehicle, neutral(vehicle, stopped)[0])
+
+            second.client.send(RequestControl())
+            first.see(lambda seen: seen.lease.asks == "second screen")
+            first.client.send(GiveControl())
+            second.see(lambda seen: not seen.lease.driver)
+            first.see(lambda seen: seen.lease.driver == "second screen")
+            second.drive(vehicle)
+            first.client.send(FORWARD)
+        until(lambda: not moving(vehicle, time.monotonic() - 0.2))
+        first.see(lambda seen: seen.lease.driver == "no screen")
+
+
+def test_a_kept_station_goes_neutral_when_its_screen_is_killed_and_takes_the_next_one() -> None:
+    with killed_screen(0.3, "--keep") as (vehicle, station, killed):
+        assert_said_neutral(vehicle, killed)
+        assert running(station)
+        with Screen.attach(station) as screen:
+            screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.armed and not seen.lease.driver)
+            screen.drive(vehicle)
+            screen.client.send(Quit(disarm=True))
+            until(lambda: not running(station))
+            assert not vehicle.core.armed
+
+
+def test_a_station_without_a_screen_is_silent_and_outlives_its_screens() -> None:
+    endpoint = f"udpin:127.0.0.1:{free_port()}"
+    command = [sys.executable, "-m", "groundstation", "serve", "--headless", endpoint]
+    station = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=ROOT)
+    try:
+        assert station.stderr is not None
+        assert station.stderr.readline() == (
+            f"station {station.pid} on {endpoint}; `groundstation attach` opens a screen\n"
+        )
+        until(lambda: running_stations() == [station.pid])
+        with UdpVehicle(endpoint) as vehicle:
+            with Screen.attach(station.pid) as screen:
+                screen.drive(vehicle)
+                left = time.monotonic()
+            until(lambda: bool(neutral(vehicle, left)))
+            assert_said_neutral(vehicle, left)
+            quiet = time.monotonic() + 0.2
+            until(lambda: time.monotonic() > quiet + 2.0)
+            assert [at for at, _ in vehicle.core.all(m.Heartbeat) if at > quiet] == [], "the failsafe must act"
+            assert running_stations() == [station.pid]
+        station.send_signal(signal.SIGINT)
+        assert station.wait(20) == 0
+    finally:
+        station.kill()
+        station.wait()
+        assert station.stderr is not None
+        station.stderr.close()
+
+
+def test_the_version_is_that_of_the_packets_and_not_of_what_else_is_loaded() -> None:
+    code = "import groundstation.ipc; print(groundstation.ipc.protocol_version())"
+    alone = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    assert msgspec.inspect.type_info(int)  # loads structs of msgspec
+    assert protocol_version() == int(alone)
+
+
+def test_a_socket_that_a_killed_station_has_left_is_removed() -> None:
+    path = socket_path(make_folder(), 4_000_000)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as sock:
+        sock.bind(str(path))
+        sock.listen()
+    assert (4_000_000, path) in list_sockets()
+    assert 4_000_000 not in running_stations()
+    assert not path.exists()
+
+
+def test_a_runtime_folder_may_be_deeper_than_a_socket_address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    deep = tmp_path / ("d" * LONGEST_ADDRESS)
+    deep.mkdir()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(deep))
+
+    async def listen() -> None:
+        listener = ProgramListener(lambda caller: "no")
+        assert listener.start() is None
+        assert running_stations() == [os.getpid()]
+        with connect(os.getpid(), Hello(SCREEN, 0)):
+            listener.close()
+        assert running_stations() == []
+
+    asyncio.run(listen())
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda path: path.chmod(0o755), "is open to other users: chmod 700"),
+        (lambda path: path.rename(path.with_name("elsewhere")) and path.symlink_to("elsewhere"), "is not a folder"),
+        (lambda path: os.chown(path, NOBODY, NOBODY), "belongs to another user"),
+    ],
+)
+def test_a_folder_that_others_can_change_is_not_used(
+    spoil: object, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    path = make_folder()
+    if "chown" in repr(spoil) and os.getuid():
+        pytest.skip("only root can give a folder away")
+    assert callable(spoil)
+    spoil(path)
+    with pytest.raises(FolderError, match=said):
+        make_folder()
+    with pytest.raises(FolderError, match=said):
+        running_stations()
+
+
+def _attach_with(station: int, hello: Hello) -> StationClient:
+    from groundstation import client as module
+
+    pipe = connect(station, hello)
+    with pipe:
+        module._read_ready(pipe, 20.0)
+    raise AssertionError("it was taken")

@@ -1,0 +1,78 @@
+"""Keys of a text field that come in one read, as slow lines and pasting bring them: each does what it did alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from groundstation.screens import SCREENS
+from groundstation.ui.screens.command import CommandLine
+from groundstation.ui.screens.messages import MessagesScreen
+from groundstation.ui.screens.screen import ConsoleScreen
+from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
+from tests.groundstation.ui.pilots import Console, console, type_in
+from tests.groundstation.ui.ptys import until
+
+ESC, LEFT, BACKSPACE = "\x1b[27u", "\x1b[D", "\x7f"
+"""Escape as the kitty keyboard protocol sends it: alone, whatever follows."""
+EDITS = f"ab{BACKSPACE}c{LEFT}d"
+"""Leaves "adc", if each key acts where it stands."""
+FILTERED = ("3", "4", "6")
+"""Digits of screens with a filter: Messages, Parameters, Log."""
+
+
+def top(screen: Console) -> ConsoleScreen:
+    assert isinstance(screen.app.screen, ConsoleScreen)
+    return screen.app.screen
+
+
+async def open_screen(screen: Console, digit: str) -> ConsoleScreen:
+    await screen.press("ctrl+g", digit)
+    name = next(row.target.partition(":")[2] for row in SCREENS if row.digit == digit)
+    await until(lambda: type(screen.app.screen).__name__ == name)
+    await screen.pilot.pause()
+    return top(screen)
+
+
+@pytest.mark.parametrize("opened", [False, True], ids=["with the key that opens it", "in an open field"])
+async def test_editing_keys_act_in_their_order(opened: bool) -> None:
+    async with console() as screen:
+        for digit in FILTERED:
+            page = await open_screen(screen, digit)
+            if opened:
+                await screen.press("slash")
+            type_in(screen, EDITS if opened else f"/{EDITS}")
+            await screen.pilot.pause()
+            assert page.field.value == "adc", page
+            await screen.press("escape")
+
+
+async def test_keys_behind_the_end_of_a_text_are_keys_of_the_screen() -> None:
+    async with console() as screen:
+        page = await open_screen(screen, "6")
+        type_in(screen, "/arm\r/ed\r")
+        await screen.pilot.pause()
+        assert (page.field.is_open, page.field.value) == (False, "armed")
+        type_in(screen, f"/x{ESC}\x073")
+        await until(lambda: isinstance(screen.app.screen, MessagesScreen))
+
+
+async def test_a_field_that_is_closed_and_opened_again_takes_the_keys_behind(tmp_path: Path) -> None:
+    (tmp_path / "a.tlog").write_bytes(log(HEARTBEATS, 3.0))
+    async with console(folder=tmp_path) as screen:
+        page = await open_screen(screen, "9")
+        await screen.press("tab", "tab", "E")
+        assert page.field.value == "a.mcap"
+        type_in(screen, f"xy{ESC}E{BACKSPACE}\r")
+        await screen.pilot.pause()
+        assert not page.field.is_open
+        assert "'a.mca': name it" in page.hint
+
+
+async def test_lines_that_follow_each_other_on_the_command_line() -> None:
+    async with console() as screen:
+        await screen.press("colon")
+        await until(lambda: isinstance(screen.app.screen, CommandLine))
+        type_in(screen, f"mapp{BACKSPACE}\r")
+        await until(lambda: "map" in type(screen.app.screen).__name__.lower())

@@ -1,0 +1,112 @@
+"""`groundstation drive` with vehicles as ArduPilot and PX4 behave; with ours: test_with_our_vehicle.py."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from groundstation.verbs.exit_codes import ExitCode
+from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignParam, ForeignVehicle
+from tests.groundstation.verbs.driving_process import check_signal, check_standstill
+from tests.groundstation.verbs.verb_runs import PATIENCE, VerbRun, run_verb, wait_until
+
+Capture = pytest.CaptureFixture[str]
+PX4_MANUAL, PX4_MISSION = 1 << 16, 4 << 16 | 4 << 24
+
+
+def drive(vehicle: ForeignVehicle, *words: str) -> VerbRun:
+    """Run the verb as a process: its watchdog is a fork."""
+    command = [sys.executable, "-m", "groundstation", "drive", *words, "-e", vehicle.endpoint, "-v", "1"]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+    assert "Traceback" not in ended.stderr
+    return VerbRun(ended.returncode, ended.stdout, ended.stderr)
+
+
+DRIVE = ("drive", "--throttle", "40", "--for", "9")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP, signal.SIGKILL])
+def test_a_process_that_a_signal_ends_leaves_no_demand(number: signal.Signals) -> None:
+    check_signal(number, *DRIVE)
+
+
+def test_a_process_that_stands_still_leaves_no_demand_and_does_not_drive_on() -> None:
+    check_standstill(*DRIVE)
+
+
+@pytest.mark.parametrize(("airframe", "steering"), [(None, [(300, 350)]), (5, [(-300, 350)])])
+def test_the_axes_of_px4(airframe: int | None, steering: list[tuple[int, int]]) -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        vehicle.armed, vehicle.mode = True, PX4_MANUAL
+        if airframe is None:
+            vehicle.silent.add(20)
+        else:
+            vehicle.params["CA_AIRFRAME"] = ForeignParam(float(airframe), 6)
+        driven = drive(vehicle, "--throttle", "-30", "--steering", "30", "--for", "0.3")
+        assert driven.code == 0, driven.err
+        sent = [(each.y, each.z) for each in vehicle.of("MANUAL_CONTROL")]
+        assert sent[:2] == [(0, 500)] * 2
+        assert sent[-5:] == [(0, 500)] * 5
+        assert sorted(set(sent) - {(0, 500)}) == steering
+
+
+def test_a_script_with_an_ardupilot_that_is_armed_and_disarmed(tmp_path: Path) -> None:
+    script = tmp_path / "run.keys"
+    script.write_text("0.2 press comma\n0.4 press right\n0.6 release right\n0.8 release comma\n")
+    with ForeignVehicle(ARDUPILOT) as vehicle:
+        driven = drive(vehicle, "--script", str(script), "--arm", "--speed", "0.4")
+        assert (driven.code, vehicle.armed) == (0, False), driven.err
+        assert "and is disarmed" in driven.err
+        sent = [(each.z, each.y) for each in vehicle.of("MANUAL_CONTROL")]
+        moves = [each for each in sent if each != (0, 0)]
+        assert sorted(set(moves), key=moves.index) == [(-400, 0), (-400, -400)]  # in reverse a wheel turns the tail
+        assert sent[-5:] == [(0, 0)] * 5
+
+
+def test_it_needs_an_armed_vehicle_that_takes_demands() -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        vehicle.mode = PX4_MISSION
+        words = ("--throttle", "30", "--for", "2")
+        disarmed = drive(vehicle, *words)
+        assert (disarmed.code, vehicle.of("MANUAL_CONTROL")) == (ExitCode.REFUSED, [])
+        assert "is disarmed: `drive --arm` arms it" in disarmed.err
+        vehicle.armed = True
+        itself = drive(vehicle, *words)
+        assert itself.code == ExitCode.REFUSED
+        assert "drives itself (AUTO); `groundstation stop` stops it" in itself.err
+        assert vehicle.of("MANUAL_CONTROL") == []
+
+
+def test_it_ends_when_the_vehicle_disarms_itself() -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.armed = True
+        command = [sys.executable, "-m", "groundstation", "drive", "--throttle", "30", "--for", "9"]
+        words = [*command, "-e", vehicle.endpoint, "-v", "1"]
+        with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
+            wait_until(lambda: any(each.z for each in vehicle.of("MANUAL_CONTROL")), "it does not drive")
+            vehicle.change_mode(0, armed=False)
+            assert process.wait(PATIENCE) == ExitCode.REFUSED
+            assert process.stderr is not None
+            assert "is disarmed after" in process.stderr.read()
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        ([], "--throttle PERCENT --for S"),
+        (["--throttle", "30"], "--throttle PERCENT --for S"),
+        (["--throttle", "0", "--for", "1"], "--throttle PERCENT --for S"),
+        (["--throttle", "101", "--for", "1"], "'101' is not from -100 to 100 %"),
+        (["--throttle", "30", "--for", "12"], "--for: 9 s at most; --script drives longer"),
+        (["--script", "run.keys", "--for", "1"], "--script goes without"),
+        (["--script", "missing.keys"], "missing.keys"),
+    ],
+)
+def test_mistakes(capsys: Capture, words: list[str], error: str) -> None:
+    wrong = run_verb(capsys, "drive", *words)
+    assert wrong.code == ExitCode.USAGE
+    assert error in wrong.err

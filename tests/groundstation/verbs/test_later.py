@@ -1,0 +1,43 @@
+"""A verb imports its own module only, and every name of the table exists."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from groundstation.verbs.later import LaterModule, LaterName
+from groundstation.verbs.table import VERBS
+
+NAMES = [
+    value
+    for actions in VERBS.values()
+    for action in actions.values()
+    for value in (action.run, action.check, action.guarded, action.arguments)
+    if isinstance(value, LaterName)
+]
+HEAVY = ("textual", "groundstation.station.station", "groundstation.config.settings", "groundstation.verbs.plan",
+         "groundstation.ipc", "groundstation.watchdog", "groundstation.export", "groundstation.views.union",
+         "groundstation.vehicles.file", "groundstation.vehicles.param", "groundstation.formats.param_file",
+         "link.services.ftp", "link.services.param.client", "link.services.mission", "link.services.log",
+         "link.signing.keys")  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES, ids=lambda name: f"{name._module.rpartition('.')[2]}.{name._name}")
+def test_every_name_exists(name: LaterName) -> None:
+    assert name.resolve() is not None
+
+
+def test_a_name_that_is_missing_is_found_out() -> None:
+    with pytest.raises(AttributeError):
+        LaterModule("status").nothing.resolve()
+
+
+def test_a_verb_loads_neither_a_screen_nor_other_verbs() -> None:
+    code = (
+        "import sys, groundstation.__main__, groundstation.verbs.main, groundstation.verbs.status; print(*sys.modules)"
+    )
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "groundstation.verbs.status" in loaded
+    assert [name for name in loaded if name.startswith(HEAVY)] == []
