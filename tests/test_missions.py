@@ -6,16 +6,20 @@ import math
 
 import pytest
 
+from dialects import messages as m
+from dialects.enums import Command
 from dialects.modes import Mode
+from groundstation.geo import Place
 from groundstation.intents.driving import Stop
 from groundstation.intents.plan import ChooseMode, GoTo, JumpToItem, SetHome
-from groundstation.intents.session import Watch
 from groundstation.intents.union import AnyIntent
+from groundstation.intents.watch import Watch
+from groundstation.station.verb_relay import Verb
 from groundstation.ui.map.fields import change_command
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.base import View
-from groundstation.views.plan import PlanKind, PlanPlace, PlanSummary, PlanView
+from groundstation.views.plan import PlanKind, PlanSummary, PlanView
 from tests.test_stops import Drive
 
 
@@ -165,9 +169,9 @@ def test_going_to_a_place_and_moving_home() -> None:
     assert math.dist(frame.to_point(after.home), (10.0, 10.0)) < 0.1
 
 
-@pytest.mark.parametrize("place", [PlanPlace(95.0, 0.0), PlanPlace(0.0, -190.0), PlanPlace(math.nan, 1.0),
-                                   PlanPlace(0.0, 0.0)])  # fmt: skip
-def test_a_place_that_is_not_on_earth_is_refused_here(place: PlanPlace) -> None:
+@pytest.mark.parametrize("place", [Place(95.0, 0.0), Place(0.0, -190.0), Place(math.nan, 1.0),
+                                   Place(0.0, 0.0)])  # fmt: skip
+def test_a_place_that_is_not_on_earth_is_refused_here(place: Place) -> None:
     drive = MapDrive()
     drive.go(GoTo(drive.numbers.take(), 1, place))
     assert "refused" in drive.last
@@ -241,3 +245,28 @@ def test_the_track_is_thin_and_where_the_vehicle_was() -> None:
     assert track is not None
     assert 5 < len(track.points) < 500
     assert math.dist(track.points[0], track.points[-1]) > 1.0
+
+
+def test_a_verb_that_only_looks_does_not_end_auto_of_a_vehicle_without_a_ground_station() -> None:
+    drive = MapDrive()
+    drive.draw((40.0, 0.0))
+    drive.go(*drive.model.upload())
+    drive.params.set("FS_GCS_ENABLE", 2)
+    drive.arm()
+    assert drive.view is not None
+    drive.tell(drive.model.intents.start(drive.view))
+    drive.until(lambda: drive.power > 0.2)
+    drive.screen_lives = False
+    drive.run(drive.params["FS_GCS_TIMEOUT"] + 3.0)
+    assert (drive.is_in(Mode.AUTO), drive.power > 0.2) == (True, True), "it goes on without a ground station"
+
+    relay, ended = drive.station.relay, drive.world.now + 4.0
+    verb = Verb("groundstation status", False, lambda _: None, lambda _: None, lambda _: None)
+    relay.join(verb, drive.world.now)
+    while drive.world.now < ended:
+        for kind in (m.SysStatus, m.VfrHud, m.AutopilotVersion, m.ControlStatus):
+            for command in (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL):
+                params = (float(kind.id), 1e6) if command == Command.SET_MESSAGE_INTERVAL else (float(kind.id), 0.0)
+                relay.handle(verb, m.CommandLong(1, 1, command, 0, *params, 0, 0, 0, 0, 0), drive.world.now)
+            drive.run(0.1)
+    assert (drive.is_in(Mode.AUTO), drive.power > 0.2) == (True, True)

@@ -81,6 +81,13 @@ class Monkey(Drive):
     def arm(self, arms: bool) -> None:
         self._ask(Arm(held=1.0) if arms else Disarm())
 
+    def forget(self) -> None:
+        """Forget what was sent and how the wheels moved so far, so that a drive may last for days."""
+        self.world.near.sent.clear()
+        self.world.far.sent.clear()
+        self.moved.clear()
+        self._seen = 0
+
     # ---- what holds ----
 
     def _each(self, now: float) -> None:

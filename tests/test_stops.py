@@ -44,13 +44,13 @@ class Drive:
     def __init__(self, *, loss: float = 0.0, delay: float = 0.0, seed: int = 0, style: str = "hold") -> None:
         start = 100.0
         self.station = Station(["memory"], now=start)
-        self.motors = SimulatedMotors()
+        self.motors, self.battery = SimulatedMotors(), Battery(1.0)
         params = self.params = Params({})
         self.rover = Rover(params, now=start)
         body = SimulatedBody(
             lambda: self.motors.outputs,
             chassis=SkidChassis(ChassisDimensions(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"])),
-            battery=Battery(1.0),
+            battery=self.battery,
             home=SimulatedHome(),
             seed=None,
         )
@@ -108,14 +108,16 @@ class Drive:
         self.until(lambda: self.power > 0.5)
         assert self.rover.outputs.enabled
 
-    def assert_stops(self, since: float, *, falls: float = FALLS_WITHIN, neutral: float = NEUTRAL_WITHIN) -> None:
-        """Check that from `since` the outputs fall and become neutral in time, and stay neutral."""
+    def assert_stops(
+        self, since: float, *, falls: float = FALLS_WITHIN, neutral: float = NEUTRAL_WITHIN, stays: float = 5.0
+    ) -> None:
+        """Check that from `since` the outputs fall and become neutral in time, and stay neutral for `stays` s."""
         power = self.power
         assert power > 0.5, "the wheels must turn, or there is nothing to stop"
         self.until(lambda: self.power < power, within=falls - (self.world.now - since) + self.world.step)
         self.until(lambda: self.power == 0.0, within=neutral - (self.world.now - since) + self.world.step)
         self.moved.clear()
-        self.run(5.0)
+        self.run(stays)
         assert max(power for _, power in self.moved) == 0.0
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.core import Core, Outgoing, SendListener
+from link.core import Core, EarlyActor, Outgoing, SendListener
 from link.protocol.channel import Channel
 from link.runner import REPORT_PERIOD
 from link.transport.memory import LossyPipe
@@ -26,13 +26,20 @@ class Host:
     """As after SIGSTOP: it neither receives nor acts."""
     listener: SendListener | None = field(init=False)
     """The core, if it wants to know what was sent. Checked once, because isinstance() of a protocol is slow."""
+    early: EarlyActor | None = field(init=False)
+    """The core, if it may have something to do between two ticks."""
 
     def __post_init__(self) -> None:
         self.listener = self.core if isinstance(self.core, SendListener) else None
+        self.early = self.core if isinstance(self.core, EarlyActor) else None
 
     def advance(self, now: float) -> None:
         """Do what the runner does when time passes."""
-        if self.frozen or now < self.tick_due:
+        if self.frozen:
+            return
+        if now < self.tick_due:
+            if self.early is not None and (due := self.early.due_at) is not None and now >= due:
+                self.early.act(now)
             return
         self.tick_due = max(self.tick_due + self.period, now)
         if now >= self.report_due:
@@ -54,7 +61,7 @@ class Host:
         outbox: list[Outgoing] = [] if self.frozen else self.core.messages_to_send()
         for outgoing in outbox:
             self.sent.append((now, outgoing.message))
-            for data, address, sequence in self.channel.send(outgoing):
+            for data, address, sequence in self.channel.send(outgoing, now=now):
                 if address == to:
                     frames.append(data)
                 if self.listener is not None:

@@ -18,7 +18,6 @@ from typing import TypeVar
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from link.services.ftp.protocol import MAX_DATA, FtpOpcode, FtpPacket, parse_packet
 from tests.benchmarks.figures import BenchmarkError
@@ -58,7 +57,7 @@ class Line:
     def hear(self) -> tuple[list[m.Message], Hashable]:
         """Return the messages of the next datagram, and its source."""
         data, address = self._socket.recvfrom(2048)
-        return [codec.decode(number, payload_of(raw)) for number, *_, raw in self._framer.feed(data, 0.0)], address
+        return [codec.decode_frame(number, raw) for number, *_, raw in self._framer.feed(data, 0.0)], address
 
     def await_(self, kind: type[M]) -> M:
         """Return the next message of a kind. Raises BenchmarkError."""

@@ -38,6 +38,10 @@ servo5_raw servo6_raw servo7_raw servo8_raw lat lon alt relative_alt vx vy vz hd
 """
 """Fields of the flood, four for each chart."""
 
+GROUND_MEMORY = 85.8
+"""MiB, which is 90 MB, of the ground station's three processes. PSS, because the watchdog is a fork of the station: RSS
+counts what both share twice, and the libraries three times."""
+
 SIZE = (140, 45)
 BARE_PYTHON = [sys.executable, "-c", "input('bare python ready')"]
 GROUND, VEHICLE, PYTHON, TEXTUAL = "groundstation", "vehicle --sim", "bare python", "bare Textual app"
@@ -85,7 +89,9 @@ def _starts(options: Options, goals: list[Goal]) -> Table:
     for name, rounds in seen.items():
         each = spread(rounds)
         table.rows.append({"program": name, "starts": each.samples, "p50": each.p50, "max": each.max})
-    goals.append(Goal("groundstation, start to first paint", _p50(seen, f"{GROUND}, first paint"), 0.8, "s"))
+    paint = _p50(seen, f"{GROUND}, first paint")
+    goals.append(Goal("groundstation, start to first paint", paint, 0.8, "s"))
+    goals.append(Goal("groundstation, start to first paint / bare Textual app", paint / _p50(seen, TEXTUAL), 2.6, "x"))
     goals.append(Goal("vehicle, start to ready", _p50(seen, f"{VEHICLE}, ready"), 0.5, "s"))
     return table
 
@@ -174,7 +180,8 @@ def _goals(costs: dict[str, Cost]) -> Iterator[Goal]:
         ("vehicle, CPU driving", f"{VEHICLE}, driving", 1.5),
     ):
         yield Goal(what, median(costs[name].cpu), limit, "%")
-    yield Goal("groundstation, RSS of all its processes", median(costs[f"{GROUND}, driving"].rss), 80, "MiB")
+    used = median(costs[f"{GROUND}, driving"].pss)
+    yield Goal("groundstation driving, PSS of all its processes", used, GROUND_MEMORY, "MiB")
     yield Goal("vehicle, RSS", median(costs[f"{VEHICLE}, driving"].rss), 35, "MiB")
 
 

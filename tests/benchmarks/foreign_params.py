@@ -52,7 +52,7 @@ def _fetch(*, files: bool) -> float:
             return 0
 
         taken: list[float] = []
-        asyncio.run(run_session([vehicle.endpoint], (254, 190), 1, script, _ignore))
+        asyncio.run(run_session([vehicle.endpoint], (254, 190), 1, script, _ignore, session=1))
     return taken[0]
 
 

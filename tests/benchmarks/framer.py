@@ -11,9 +11,9 @@ from dialects import codec, rover
 from dialects import messages as m
 from dialects.axes import Axes, build_manual_control
 from link.protocol.channel import Channel
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table
+from tests.benchmarks.plain_pymavlink import plain_module
 from tests.benchmarks.rates import Work, rates
 from tests.benchmarks.traffic import chopped, framed, joined, mix, telemetry_log
 
@@ -107,7 +107,7 @@ def _receivers(pieces: Sequence[bytes], *, stream: bool) -> dict[str, Work]:
 
 def _parser() -> Any:
     """pymavlink's parser as mavutil configures it: bad bytes are dropped and counted, not raised."""
-    parser = rover.MAVLink(None)
+    parser = plain_module().MAVLink(None)
     parser.robust_parsing = True
     return parser
 
@@ -125,11 +125,11 @@ def _framer(pieces: Sequence[bytes], stream: bool) -> None:
 
 
 def _decoding(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
-    feed, decode = Framer(stream=stream).feed, codec.decode
+    feed, decode_frame = Framer(stream=stream).feed, codec.decode_frame
     for piece in pieces:
         for message_id, _, _, _, raw in feed(piece, 0.0):
             if message_id in ids:
-                decode(message_id, payload_of(raw))
+                decode_frame(message_id, raw)
 
 
 def _channel(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
@@ -153,17 +153,23 @@ def _sending(report: Report, options: Options) -> None:
 
 
 def _encoders() -> dict[str, dict[str, Work]]:
-    mavlink: Any = rover.MAVLink(None, srcSystem=255, srcComponent=190)
+    plain = plain_module()
+    mavlink, theirs = plain.MAVLink(None, srcSystem=255, srcComponent=190), plain.MAVLink_manual_control_message
     axes = Axes(0.6, -0.2)
-    message: Any = build_manual_control(axes, 1)
+    numbers = (1, 600, 32767, 32767, -200, 0)
+    made, their_made = build_manual_control(axes, 1), theirs(*numbers)
     return {
-        "numbers to bytes": {
-            "pymavlink": _times(lambda: m.ManualControl(1, 600, 32767, 32767, -200, 0).pack(mavlink)),
+        "axes to bytes": {
+            "pymavlink": _times(lambda: theirs(*numbers).pack(mavlink)),
             "ours": _times(lambda: framed(build_manual_control(axes, 1), 7, 255, 190)),
         },
+        "numbers to bytes": {
+            "pymavlink": _times(lambda: theirs(*numbers).pack(mavlink)),
+            "ours": _times(lambda: framed(m.ManualControl(*numbers), 7, 255, 190)),
+        },
         "made message to bytes": {
-            "pymavlink": _times(lambda: message.pack(mavlink)),
-            "ours": _times(lambda: framed(message, 7, 255, 190)),
+            "pymavlink": _times(lambda: their_made.pack(mavlink)),
+            "ours": _times(lambda: framed(made, 7, 255, 190)),
         },
     }
 

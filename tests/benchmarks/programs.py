@@ -27,6 +27,8 @@ PING, PONG = b"\x1b[5n", b"\x1b[0n"
 KEPT = 200_000
 """Bytes of output that are kept."""
 
+_STATE = tempfile.TemporaryDirectory(prefix="mavhelm-bench-state-")
+
 END_WITHIN = 5.0
 """s in which a program must end after SIGTERM."""
 
@@ -167,8 +169,8 @@ def _own_terminal() -> None:
 
 
 def _environment() -> Mapping[str, str]:
-    """Return our environment, with a plain terminal of the size of the pty, and with byte code caches as on a user's
-    machine."""
+    """Return our environment, with a plain terminal of the size of the pty, with byte code caches as on a user's
+    machine, and with a state folder of their own, where sessions are recorded."""
     left_out = ("COLUMNS", "LINES", "PYTHONDONTWRITEBYTECODE")
     kept = {name: value for name, value in os.environ.items() if name not in left_out}
-    return kept | {"TERM": "xterm-256color", "PYTHONUNBUFFERED": "1"}
+    return kept | {"TERM": "xterm-256color", "PYTHONUNBUFFERED": "1", "XDG_STATE_HOME": _STATE.name}

@@ -11,12 +11,12 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from dialects import rover as dialect
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Autopilot, Command, SystemState, VehicleType
 from dialects.messages import CommandLong, Heartbeat, Message, RoverOperatorPresence
 from link.protocol.channel import Channel
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Spread, Table, spread
+from tests.benchmarks.plain_pymavlink import plain_module
 from tests.benchmarks.traffic import framed
 from vehicle.control_loop import ControlLoop
 from vehicle.motors.simulated import SimulatedMotors
@@ -82,7 +82,7 @@ def _rounds(count: int, pace: Pace) -> dict[str, Spread]:
 def _one_round(count: int, pace: Pace) -> dict[str, list[float]]:
     vehicle = VehicleInMemory()
     vehicle.arm()
-    parser: Any = dialect.MAVLink(None)
+    parser = plain_module().MAVLink(None)
     times: dict[str, list[float]] = {MANUAL: [], PRESENCE: [], REFERENCE: []}
     for number in pace(count):
         presence, demand = vehicle.demand(number)

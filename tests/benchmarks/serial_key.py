@@ -101,8 +101,8 @@ def run(options: Options) -> Report:
 
 
 @contextmanager
-def wired(baud: int) -> Iterator[Wired]:
-    """Both programs at the ends of a cable, armed."""
+def wired(baud: int, *options: str) -> Iterator[Wired]:
+    """Both programs at the ends of a cable, armed; `options` are the vehicle's."""
     with ExitStack() as stack:
         folder = stack.enter_context(scratch())
         watch = Watch()
@@ -115,7 +115,7 @@ def wired(baud: int) -> Iterator[Wired]:
         cable.wait_for("cable ready", 20)
         ground = on_terminal(watch, python("groundstation", f"serial:{ends[1]}:{baud}"), 80, 24)
         stack.callback(ground.end)
-        log = ["--motor-log", str(feed.path)]
+        log = ["--motor-log", str(feed.path), *options]
         vehicle = on_pipe(watch, python("vehicle", "--sim", f"serial:{ends[0]}:{baud}", *log))
         stack.callback(vehicle.end)
         ground.wait_for("DISARMED", 30)

@@ -9,6 +9,7 @@ from typing import Protocol
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, ModeFlag, Result, SystemState, VehicleType
 from link.core import LinkReport, Outgoing, Received
+from link.endpoint import Side
 from link.runner import Runner, open_links
 from link.services.ftp.client import FtpClient
 from link.services.mission.client import MissionClient
@@ -70,6 +71,9 @@ class Station:
             self._heartbeat_due = now + HEARTBEAT_PERIOD
             self._outgoing.append(
                 Outgoing(m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
+            )
+            self._outgoing.append(
+                Outgoing(m.CommandLong(*VEHICLE, Command.REQUEST_MESSAGE, 0, m.RoverDriveInfo.id, *(0.0,) * 6))
             )
         for client in self._clients:
             client.tick(now)
@@ -134,7 +138,9 @@ class Station:
 async def connected(endpoint: str, script: Callable[[Station], Awaitable[None]]) -> None:
     """Run a script with a station on a link, once it has received from the vehicle."""
     station = Station()
-    runner = Runner(station, open_links([endpoint], system=SYSTEM, component=COMPONENT), period=PERIOD)
+    runner = Runner(
+        station, open_links([endpoint], system=SYSTEM, component=COMPONENT, side=Side.GROUND_STATION), period=PERIOD
+    )
     running = asyncio.ensure_future(runner.run())
     try:
         await station.until(lambda: m.Heartbeat.id in station.newest, "a HEARTBEAT of the vehicle", 20)

@@ -109,13 +109,16 @@ class Vehicle:
 class GroundStation:
     """`python -m groundstation` in a pty of its own session, as a terminal window gives it."""
 
-    def __init__(self, folder: Path, *arguments: str, columns: int = 80, lines: int = 24) -> None:
+    def __init__(
+        self, folder: Path, *arguments: str, columns: int = 80, lines: int = 24, module: str = "groundstation"
+    ) -> None:
+        """`module`: another one that runs it, with something plugged in."""
         self.screen = b""
         self.log = folder / "groundstation.log"
         self._terminal, program = pty.openpty()
         fcntl.ioctl(program, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "groundstation", *arguments, "--log-file", str(self.log)],
+            [sys.executable, "-m", module, *arguments, "--log-file", str(self.log)],
             stdin=program,
             stdout=program,
             stderr=program,

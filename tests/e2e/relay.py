@@ -13,7 +13,6 @@ from dialects import codec
 from dialects.axes import parse_manual_control
 from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, LocalPositionNed, ManualControl, Message, StatusText, decode_text
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from link.transport.memory import LossyPipe
 from tests.ports import free_port
@@ -153,7 +152,7 @@ class Relay:
     def _note(book: list[Seen], data: bytes) -> None:
         now = time.monotonic()
         frames = Framer(stream=False).feed(data, now)
-        book += [Seen(now, system, codec.decode(number, payload_of(raw))) for number, system, *_, raw in frames]
+        book += [Seen(now, system, codec.decode_frame(number, raw)) for number, system, *_, raw in frames]
 
 
 def _asks_for_motion(message: Message) -> bool:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,17 +10,10 @@ import pytest
 
 from tests.e2e.programs import Vehicle
 from tests.e2e.test_in_tmux import PATIENCE, Tmux
+from tests.e2e.tmux_marks import IN_TMUX
 from tests.ports import free_port
 
-pytestmark = [
-    pytest.mark.e2e,
-    pytest.mark.tmux,
-    pytest.mark.timeout(180),
-    pytest.mark.skipif(
-        shutil.which("tmux") is None and "MAVHELM_CI" not in os.environ,
-        reason="tmux is not installed: `sudo apt install tmux` to run this test",
-    ),
-]
+pytestmark = IN_TMUX
 
 
 @pytest.fixture

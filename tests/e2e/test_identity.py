@@ -19,7 +19,6 @@ from dialects import codec
 from dialects import messages as m
 from dialects.axes import Axes
 from dialects.modes import Mode
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from tests.e2e.programs import PATIENCE, PATIENT_LOOP, Vehicle
 from tests.ports import free_port
@@ -98,7 +97,7 @@ class SocketWires:
             return
         address = next(name for name, each in self._sockets.items() if each is ready)
         for number, _, _, _, raw in self._framer.feed(data, self.now):
-            message = codec.decode(number, payload_of(raw))
+            message = codec.decode_frame(number, raw)
             self.sent.append((address, message))
             if isinstance(message, m.RoverDriveStatus):
                 self.boot_ms = (self.now, message.time_boot_ms)

@@ -16,6 +16,7 @@ from statistics import median
 import pytest
 
 from tests.benchmarks.serial_key import SLOW, SOFTWARE, Seen, wire_time, wired
+from tests.e2e.programs import PATIENT_LOOP
 
 pytestmark = pytest.mark.e2e
 
@@ -30,7 +31,7 @@ FULL = 45.0
 def test_a_key_needs_no_more_than_its_wire_time_and_30_ms_while_parameters_are_sent() -> None:
     medians: list[float] = []
     chance = random.Random(1)
-    with wired(SLOW) as pair:
+    with wired(SLOW, "--param", PATIENT_LOOP) as pair:
         while not medians or (min(medians) > wire_time(SLOW) + SOFTWARE and len(medians) < ROUNDS):
             before, beside = Seen(), Seen()
             pair.measure(before, 1, chance)  # then the second station starts its requests

@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
 from collections.abc import Callable
 
-import pytest
-
 from tests.e2e.test_in_tmux import PATIENCE, Tmux, tmux
+from tests.e2e.tmux_marks import IN_TMUX
 
 __all__ = ["tmux"]
 
-pytestmark = [
-    pytest.mark.e2e,
-    pytest.mark.tmux,
-    pytest.mark.timeout(240),
-    pytest.mark.skipif(
-        shutil.which("tmux") is None and "MAVHELM_CI" not in os.environ,
-        reason="tmux is not installed: `sudo apt install tmux` to run this test",
-    ),
-]
+pytestmark = IN_TMUX
+
+
+def type_a_mode(terminal: Tmux) -> None:
+    """Change the mode by the command line, with the word that the vehicle completes."""
+    terminal.press(":")
+    terminal.until(lambda screen: "TAB completes" in screen, PATIENCE)
+    terminal.press(*"mode", "Space", *"HO")
+    terminal.until(lambda screen: re.search(r"^ HOLD *\n mode HO *$", screen, re.MULTILINE) is not None, PATIENCE)
+    terminal.press("Tab")
+    terminal.until(lambda screen: "mode HOLD" in screen, PATIENCE)
+    terminal.press("Enter")
+    terminal.until(lambda screen: "mode HOLD: accepted" in screen, PATIENCE)
 
 
 def test_a_mission_is_drawn_driven_and_changed(tmux: Callable[..., Tmux]) -> None:
     terminal = tmux(140, 45, "--sitl")
     terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+    type_a_mode(terminal)
     terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
     terminal.press("F2")
     terminal.until(lambda screen: "no mission: a adds an item" in screen, PATIENCE)

@@ -13,10 +13,10 @@ from groundstation import client as client_module
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.driving import SetStyle
-from groundstation.processes import start_module
 from groundstation.ui.app import ConsoleApp
-from tests.groundstation.crashing_station import ORDER
+from link.runtime.child_process import start_module
 from tests.groundstation.held_key import hold_until
+from tests.groundstation.host.crashing_station import ORDER
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.groundstation.ui.frames import text
 from tests.groundstation.ui.ptys import PATIENCE, until
@@ -57,7 +57,7 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
 
 async def test_a_bug_in_the_station_is_told_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
     def start(module: str, *arguments: Any, **options: Any) -> Any:
-        return start_module("tests.groundstation.crashing_station", *arguments, **options)
+        return start_module("tests.groundstation.host.crashing_station", *arguments, **options)
 
     monkeypatch.setattr(client_module, "start_module", start)
     station = StationClient.start([f"udpin:127.0.0.1:{free_port()}"])

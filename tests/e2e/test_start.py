@@ -11,7 +11,7 @@ import pytest
 from tests.e2e.programs import PATIENCE, GroundStation
 from tests.ports import free_port
 
-pytestmark = [pytest.mark.e2e, pytest.mark.timeout(120)]
+pytestmark = pytest.mark.e2e
 
 
 def children(pid: int) -> str:

@@ -18,7 +18,7 @@ from link.transport.local_addresses import LocalAddresses
 from tests.e2e.programs import PATIENCE, GroundStation
 from tests.ports import free_port
 
-pytestmark = [pytest.mark.e2e, pytest.mark.timeout(180)]
+pytestmark = pytest.mark.e2e
 
 ROOT = Path(__file__).resolve().parents[2]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT)}

@@ -1,4 +1,4 @@
-"""A user's script for MAVSDK: `python -m tests.interop.mavsdk_client PORT SCENARIO FOLDER SYSTEM`.
+"""A user's script for MAVSDK: `python -m tests.interop.mavsdk_client PORT|URL SCENARIO FOLDER SYSTEM`.
 
 It prints JSON, one line per step. It is a process of its own, because MAVSDK is a C++ library with threads, whose crash
 must not end pytest. MAVSDK's own output goes to stderr.
@@ -73,6 +73,15 @@ def driving(system: Any, folder: str) -> None:
     by_hand(manual, 0.5)
     step("hold", action.hold)
     step("disarm", action.disarm)
+
+
+def outsider(system: Any, folder: str) -> None:
+    """Watch a vehicle that obeys signed commands only, and try to arm it until it says why not."""
+    action, telemetry = plugin("action", system), plugin("telemetry", system)
+    reason = following(telemetry.subscribe_status_text, lambda text: "not signed" in text.text)
+    step("place", lambda: first(telemetry.subscribe_position, lambda place: True).latitude_deg)
+    step("denied", lambda: refused(action.arm, "DENIED"))
+    step("reason", lambda: reason().text)
 
 
 def leaving(system: Any, folder: str) -> None:
@@ -260,6 +269,7 @@ SCENARIOS = {
         identity,
         parameters,
         driving,
+        outsider,
         leaving,
         places,
         guided,
@@ -278,7 +288,8 @@ def main(port: str, scenario: str, folder: str, system_id: str) -> None:
     configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
     configuration.system_id = int(system_id)
     sdk = Mavsdk(configuration)
-    step("connect", lambda: str(sdk.add_any_connection(f"udpin://127.0.0.1:{port}")))
+    url = port if "://" in port else f"udpin://127.0.0.1:{port}"
+    step("connect", lambda: str(sdk.add_any_connection(url)))
     system = step("discover", lambda: sdk.first_autopilot(PATIENCE))
     SCENARIOS[scenario](system, folder)
     os._exit(0)  # its threads may take long to end

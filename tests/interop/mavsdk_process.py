@@ -42,7 +42,7 @@ class Step(NamedTuple):
 class Client:
     """The process. A thread reads its output, so that the process never blocks."""
 
-    def __init__(self, port: int, scenario: str, folder: Path, system: int = 245) -> None:
+    def __init__(self, port: int | str, scenario: str, folder: Path, system: int = 245) -> None:
         self._log = folder / f"mavsdk-{system}.log"
         with self._log.open("w") as log:
             self._process = subprocess.Popen(

@@ -17,7 +17,6 @@ from typing import TypeVar
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, Result
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from link.services.ftp.protocol import crc32
 from tests.interop.qgc_files import LIMIT, Download, DownloadError
@@ -94,7 +93,7 @@ class QGroundControl:
             except TimeoutError:
                 continue
             for message_id, *_, raw in self._framer.feed(data, time.monotonic()):
-                message = codec.decode(message_id, payload_of(raw))
+                message = codec.decode_frame(message_id, raw)
                 self.watch(message)
                 if isinstance(message, kind) and wanted(message):
                     return message

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.groundstation.replay.logs import indexed
 from tests.interop import mavproxy as mavproxy_program
 from tests.interop.conftest import HOME, Rover
 from tests.interop.conversation import Conversation
@@ -29,6 +30,8 @@ def mavproxy(rover: Rover, tmp_path: Path) -> Iterator[Conversation]:
         yield program
 
 
+LARGEST_RECORD = 8 + 280 + 13
+"""Bytes of a record in a log: time, frame, signature."""
 QUICK, ATTEMPTS = 3.0, 5
 """s for all parameters; how often it may take longer, because the machine is shared."""
 
@@ -110,6 +113,10 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     rover.stands()
     mavproxy.say("disarm")
     mavproxy.hear("DISARMED")
+    index = indexed((tmp_path / "mav.tlog").read_bytes())  # its log of this session, as a replay reads it
+    assert index.frames > 100  # those that are flushed by now
+    assert index.damaged == 0
+    assert index.tail < LARGEST_RECORD  # one may be cut off
 
 
 @pytest.mark.parametrize("reposition", [True, False])

@@ -1,6 +1,6 @@
 """Mutation testing of the safety code: change one place of it at a time and report the changes that no test notices.
 
-    python -m tests.mutation                              all of vehicle/drive and vehicle/safety
+    python -m tests.mutation                              all of vehicle/drive, vehicle/safety and link/protocol
     python -m tests.mutation vehicle/drive/gate.py        one module
     python -m tests.mutation --list vehicle/drive         list the mutants, run no test
     python -m tests.mutation --jobs 2                     two processes
@@ -17,8 +17,8 @@ How a run works:
 2. Each mutant gets a forked child (runner.py). For a change inside a function, the child replaces the `__code__` of the
    loaded function (loading.py) and runs the tests that execute the changed line, likely and fast ones first, until one
    fails or the time for this mutant is over.
-3. For a change at module level (tables, defaults, constants), the child imports vehicle/ and tests/ anew and runs the
-   test files one after the other, the module's own first.
+3. For a change at module level (tables, defaults, constants), the child imports vehicle/, link/ and tests/ anew and
+   runs the test files one after the other, the module's own first.
 
 Hypothesis draws the same examples in each run and does not shrink failures.
 

@@ -17,11 +17,12 @@ from tests.mutation.mutants import Mutant, build_mutants
 from tests.mutation.runner import Outcome, Runner
 from tests.mutation.survivors import load_explanations, unexplained_and_stale
 
-MODULES = ("vehicle/drive", "vehicle/safety")
-"""Modules to mutate: those that decide whether the wheels turn."""
+MODULES = ("vehicle/drive", "vehicle/safety", "link/protocol")
+"""Modules to mutate: those that decide whether the wheels turn, and which frames count."""
 TESTS = (
     "tests/vehicle/drive", "tests/vehicle/safety", "tests/vehicle/commands/test_arming.py",
     "tests/vehicle/commands/test_actuator_test.py", "tests/vehicle/commands/test_buttons.py",
+    "tests/vehicle/test_signed_drivers.py", "tests/link/protocol",
 )  # fmt: skip
 """Tests to run against the mutants."""
 DESELECTED = ("tests/vehicle/safety/test_estop_button.py",)

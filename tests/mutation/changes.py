@@ -20,6 +20,7 @@ ORDER = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Mod: ast.Mult, ast.Pow: ast.Mult,
     ast.BitOr: ast.BitAnd, ast.BitAnd: ast.BitOr, ast.FloorDiv: ast.Mult,
+    ast.LShift: ast.RShift, ast.RShift: ast.LShift, ast.BitXor: ast.BitOr,
 }  # fmt: skip
 CALLS = {"max": "min", "min": "max", "any": "all", "all": "any"}
 

@@ -13,7 +13,7 @@ from types import CodeType, FunctionType, ModuleType
 
 from tests.mutation.mutants import Mutant
 
-FRESH = ("vehicle", "tests.")
+FRESH = ("vehicle", "link", "tests.")
 """Prefixes of the modules that are imported anew with a changed module, because they may import it."""
 
 Functions = Mapping[tuple[str, str], list[FunctionType]]
@@ -22,6 +22,7 @@ Functions = Mapping[tuple[str, str], list[FunctionType]]
 
 def find_functions() -> Functions:
     """Return all loaded functions, including those held by properties and tables."""
+    gc.unfreeze()  # tests/conftest.py freezes what is collected, and frozen objects are not listed
     found: defaultdict[tuple[str, str], list[FunctionType]] = defaultdict(list)
     for each in gc.get_objects():
         if isinstance(each, FunctionType):

@@ -28,6 +28,7 @@ def mutants_of(source: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> li
         ("a and b", {"a or b", "a", "b"}),
         ("not a", {"a"}),
         ("a + b", {"a - b"}),
+        ("a ^ b", {"a | b"}),
         ("a - 1", {"a + 1", "a - 2", "a - 0"}),
         ("a if b else 2.0", {"a if not b else 2.0", "a if b else 3.0", "a if b else 1.0"}),
         ("True", {"False"}),

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import style
+from groundstation.ui.look.colours import style
 from groundstation.ui.widgets.instrument import Instrument, strip
 
 

@@ -29,10 +29,10 @@ assert any("tune CDE" in text for text in bench.texts), bench.texts
 
 def test_a_message(tree: Tree) -> None:
     tree.insert_after("dialects/messages.py", "SetupSigning = rover.MAVLink_setup_signing_message", NAME)
-    preflight = "vehicle/commands/preflight.py"
-    tree.insert_before(preflight, "            InboundMessage(SetupSigning,", ROW)
-    tree.insert_after(preflight, "from dialects.messages import", "from dialects.messages import PlayTune")
-    tree.insert_before(preflight, "    def _handle_setup_signing(self", HANDLER)
+    signing = "vehicle/commands/signing.py"
+    tree.insert_before(signing, "            InboundMessage(SetupSigning,", ROW)
+    tree.insert_after(signing, "from dialects.messages import", "from dialects.messages import PlayTune")
+    tree.insert_before(signing, "    def _handle(self", HANDLER)
     tree.check_recipe("a message that the vehicle handles")
     tree.run_script(SEND_IT)
     assert "| PLAY_TUNE |" in tree.run("vehicle", "dialect")

@@ -13,6 +13,8 @@ from tests.ports import free_port
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("dialects", "link", "vehicle", "groundstation", "tests")
+LEFT_OUT = shutil.ignore_patterns("mutation", "benchmarks", "*-pytest-*", "*.pyc.*")
+"""Also the byte code of tests, and that which another program is writing just now."""
 RUN_TIMEOUT = 60.0
 """s for one program in the copy."""
 
@@ -32,7 +34,7 @@ class Tree:
         self.port = free_port()
         """A port for the programs of the copy."""
         for package in PACKAGES:  # with byte code, so that programs start as fast as in the original
-            shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("mutation", "benchmarks"))
+            shutil.copytree(ROOT / package, folder / package, ignore=LEFT_OUT)
 
     def write(self, path: str, text: str) -> None:
         """Add a file that does not exist yet."""

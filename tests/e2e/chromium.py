@@ -1,0 +1,148 @@
+"""A headless Chromium with one page, operated over the Chrome DevTools protocol."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import aiohttp
+
+PATIENCE = 60.0
+PROGRAM = shutil.which("chromium")
+OPTIONS = (
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+    "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage",
+    "--remote-debugging-port=0",
+)  # fmt: skip
+CODES = {"i": "KeyI", "u": "KeyU", "r": "KeyR", "g": "KeyG", "1": "Digit1"}
+GAP = 0.033
+
+
+class Browser:
+    """One page. Use `async with`. A small one draws faster without a graphics card, so that keys repeat evenly."""
+
+    def __init__(self, folder: Path, size: tuple[int, int] = (640, 420)) -> None:
+        assert PROGRAM is not None
+        self._folder = folder / "profile"
+        window = f"--window-size={size[0]},{size[1]}"
+        self.process = subprocess.Popen(
+            [PROGRAM, *OPTIONS, window, f"--user-data-dir={self._folder}", "about:blank"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        self._session = aiohttp.ClientSession()
+        self._number = 0
+        self._answers: dict[int, asyncio.Future[dict[str, Any]]] = {}
+        self.requests: list[str] = []
+        """Addresses that the page has asked for."""
+        self.problems: list[str] = []
+        """Requests that failed or were forbidden, and exceptions."""
+
+    async def __aenter__(self) -> Browser:
+        marker = self._folder / "DevToolsActivePort"
+        await eventually(marker.exists, self.process)
+        port = marker.read_text().split()[0]
+        async with self._session.get(f"http://127.0.0.1:{port}/json/list") as answer:
+            [page] = [each for each in await answer.json() if each["type"] == "page"]
+        self._socket = await self._session.ws_connect(page["webSocketDebuggerUrl"], max_msg_size=0)
+        self._reading = asyncio.create_task(self._read())
+        for domain in ("Page", "Network", "Runtime", "Log"):
+            await self.call(f"{domain}.enable")
+        await self.call("Emulation.setFocusEmulationEnabled", enabled=True)
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self._reading.cancel()
+        await self._session.close()
+        self.kill()
+
+    def kill(self) -> None:
+        """Kill it with -9, as far as it is one process; its children follow."""
+        self.process.kill()
+        self.process.wait()
+
+    async def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Call a method of the protocol; return its result."""
+        return await asyncio.wait_for(await self._send(method, parameters), PATIENCE)
+
+    async def _send(self, method: str, parameters: dict[str, Any]) -> asyncio.Future[dict[str, Any]]:
+        self._number += 1
+        answer = self._answers[self._number] = asyncio.get_running_loop().create_future()
+        await self._socket.send_json({"id": self._number, "method": method, "params": parameters})
+        return answer
+
+    async def evaluate(self, expression: str) -> Any:
+        """Return the value of a JavaScript expression."""
+        result = await self.call("Runtime.evaluate", expression=expression, returnByValue=True)
+        return result["result"].get("value")
+
+    async def open(self, url: str) -> None:
+        """Open an address and wait until its terminal has drawn."""
+        await self.call("Page.navigate", url=url)
+        async with asyncio.timeout(PATIENCE):
+            while not await self.evaluate("document.body && document.body.classList.contains('-first-byte')"):
+                await pause(0.05)
+
+    async def press(self, key: str, *, repeat: bool = False) -> None:
+        """Press a key of a character, or let it repeat. A page that draws slowly answers late: nobody waits for it."""
+        await self._send("Input.dispatchKeyEvent", {**_key("keyDown", key), "text": key, "autoRepeat": repeat})
+
+    async def release(self, key: str) -> None:
+        """Release it."""
+        await self._send("Input.dispatchKeyEvent", _key("keyUp", key))
+
+    async def hold(self, key: str, until: Callable[[], bool], within: float) -> bool:
+        """Hold a key with auto-repeat until the condition; return whether it came true. The key stays down."""
+        await self.press(key)
+        end = asyncio.get_running_loop().time() + within
+        while not until() and asyncio.get_running_loop().time() < end:
+            await pause(GAP)
+            await self.press(key, repeat=True)
+        return until()
+
+    async def picture(self) -> bytes:
+        """Return a PNG of the page."""
+        return base64.b64decode((await self.call("Page.captureScreenshot"))["data"])
+
+    async def _read(self) -> None:
+        async for message in self._socket:
+            packet = message.json()
+            if "id" in packet:
+                self._answers.pop(packet["id"]).set_result(packet.get("result", {}))
+                continue
+            told = packet["params"]
+            match packet["method"]:
+                case "Network.requestWillBeSent":
+                    self.requests.append(told["request"]["url"])
+                case "Network.webSocketCreated":
+                    self.requests.append(told["url"])
+                case "Network.loadingFailed":
+                    self.problems.append(str(told))
+                case "Runtime.exceptionThrown":
+                    self.problems.append(str(told["exceptionDetails"]))
+                case "Log.entryAdded" if told["entry"]["level"] == "error":
+                    self.problems.append(told["entry"]["text"])
+
+
+def _key(kind: str, key: str) -> dict[str, Any]:
+    return {"type": kind, "key": key, "code": CODES[key], "windowsVirtualKeyCode": ord(key.upper())}
+
+
+async def pause(seconds: float) -> None:
+    """Let time pass without blocking the loop."""
+    done = asyncio.Event()
+    asyncio.get_running_loop().call_later(seconds, done.set)
+    await done.wait()
+
+
+async def eventually(condition: Callable[[], object], process: subprocess.Popen[bytes] | None = None) -> None:
+    """Wait until the condition is true."""
+    async with asyncio.timeout(PATIENCE):
+        while not condition():
+            assert process is None or process.poll() is None, "it has ended"
+            await pause(0.02)

@@ -1,0 +1,125 @@
+"""A fleet with real certificates: the router and a vehicle as processes, ground stations as programs of a test."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Hashable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+from dialects import codec
+from dialects import messages as m
+from link.bridge.fleet.members import add_member, new_fleet
+from link.endpoint import Side
+from link.fleet.transport import FleetTransport
+from link.protocol.frame import payload_of
+from link.protocol.framer import Framer
+from link.transport.transports import open_transports
+from tests.e2e.programs import PATIENCE, PATIENT_LOOP, Vehicle
+from tests.ports import free_port
+
+STEP = 0.02
+
+
+def make_fleet(folder: Path, **roles: str) -> Path:
+    """Make a fleet with its members, name=role; return its folder."""
+    path = new_fleet(folder / "farm", "farm", ["127.0.0.1"], free_port())
+    for name, role in roles.items():
+        add_member(path, name, role)
+    return path.parent
+
+
+class RouterProcess:
+    """`bridge router`, which can be frozen, killed and started again."""
+
+    def __init__(self, fleet: Path, stack: ExitStack) -> None:
+        self._fleet = fleet
+        self.log = fleet / "router.log"
+        self.start()
+        stack.callback(self.kill)
+
+    def start(self) -> None:
+        """Start it, and wait until it listens."""
+        with self.log.open("wb") as log:
+            command = [sys.executable, "-m", "link.bridge", "router", str(self._fleet / "fleet.toml")]
+            self.process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+        deadline = time.monotonic() + PATIENCE
+        while "ready" not in self.log.read_text():
+            assert time.monotonic() < deadline, self.log.read_text()
+            assert self.process.poll() is None, self.log.read_text()
+            time.sleep(STEP)
+
+    def freeze(self) -> None:
+        self.process.send_signal(signal.SIGSTOP)
+
+    def thaw(self) -> None:
+        self.process.send_signal(signal.SIGCONT)
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait(PATIENCE)
+
+
+class FleetWires:
+    """A vehicle process in a fleet, and a transport for each operator, as tests/vehicle/wires.py has addresses."""
+
+    def __init__(self, folder: Path, fleet: Path, stack: ExitStack, vehicle: str = "rover1") -> None:
+        self._fleet, self._name = fleet, vehicle
+        endpoint = f"zenoh:{fleet}/{vehicle}.json5/farm/{vehicle}"
+        self.vehicle = Vehicle(folder, endpoint, "--param", PATIENT_LOOP)
+        stack.callback(self.vehicle.end)
+        self.sent: list[tuple[Hashable, m.Message]] = []
+        """Operator -> what the vehicle has sent there."""
+        self.boot_ms: tuple[float, int] | None = None
+        """Newest time of the vehicle, and when it came."""
+        self._loop = asyncio.new_event_loop()
+        stack.callback(self._loop.close)
+        self._stack = stack
+        self._transports: dict[Hashable, FleetTransport] = {}
+        self._framer = Framer(stream=False)
+
+    @property
+    def now(self) -> float:
+        return time.monotonic()
+
+    def put(self, data: bytes, address: Hashable, link: int = 0, delay: float = 0.0) -> None:
+        """Send a frame as an operator."""
+        self.transport(address).send(data, self._name)
+
+    def wait(self, seconds: float, each: Callable[[float], None] | None = None) -> None:
+        """Let programs speak for a while: `each` is called every 20 ms."""
+        end = self.now + seconds
+        while (now := self.now) < end:
+            if each:
+                each(now)
+            self._loop.run_until_complete(asyncio.sleep(STEP))
+
+    def until(self, condition: Callable[[], bool], each: Callable[[float], None], within: float = PATIENCE) -> None:
+        """Let programs speak until `condition`."""
+        deadline = self.now + within
+        while not condition():
+            assert self.now < deadline, self.vehicle.errors.read_text()
+            self.wait(STEP, each)
+
+    def transport(self, operator: Hashable) -> FleetTransport:
+        """Return the transport of an operator, opened on first use."""
+        if operator not in self._transports:
+            text = f"zenoh:{self._fleet}/{operator}.json5/farm"
+            [opened] = open_transports([text], Side.GROUND_STATION)
+            assert isinstance(opened, FleetTransport)
+            opened.start(self._loop, lambda pieces: self._take(operator, pieces), lambda _: None)
+            self._stack.callback(opened.close)
+            self._transports[operator] = opened
+        return self._transports[operator]
+
+    def _take(self, operator: Hashable, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
+        for data, _ in pieces:
+            for number, _, _, _, raw in self._framer.feed(data, self.now):
+                message = codec.decode(number, payload_of(raw))
+                self.sent.append((operator, message))
+                if isinstance(message, m.RoverDriveStatus):
+                    self.boot_ms = (self.now, message.time_boot_ms)

@@ -1,0 +1,81 @@
+"""All screens in a real terminal, one after the other, while a drive key is held: the wheels turn on Drive only."""
+
+from __future__ import annotations
+
+import select
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from groundstation.screens import SCREENS
+from tests.benchmarks.screens import TITLES
+from tests.e2e.programs import LET_GO, Vehicle
+from tests.e2e.test_in_tmux import PATIENCE, Tmux, tmux
+from tests.e2e.tmux_marks import IN_TMUX
+from tests.ports import free_port
+
+__all__ = ["tmux"]
+
+pytestmark = IN_TMUX
+
+OTHERS = [row for row in SCREENS if row.in_tabs and row.id != "drive"]
+NARROW_TITLES = TITLES | {"charts": "nothing is drawn yet"}
+"""Id of a screen -> what its first picture has at 80x24."""
+HELD = "i"
+
+
+@pytest.fixture
+def rover(tmp_path: Path) -> Iterator[Callable[[int], Vehicle]]:
+    """Return a function that starts the simulated rover, with a log of its motors."""
+    started: list[Vehicle] = []
+
+    def start(port: int) -> Vehicle:
+        started.append(Vehicle(tmp_path, port))
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.end()
+
+
+def drive(terminal: Tmux, vehicle: Vehicle) -> None:
+    """Release the key, choose MANUAL, hold the key until the wheels turn."""
+    select.select([], [], [], LET_GO)
+    terminal.press("1")
+    terminal.until(lambda _: vehicle.at_full(), PATIENCE, holding=HELD)
+
+
+def test_a_key_held_over_all_screens_drives_on_drive_only(
+    tmux: Callable[..., Tmux], rover: Callable[[int], Vehicle]
+) -> None:
+    port = free_port()
+    terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")
+    vehicle = rover(port)
+    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+    terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
+    drive(terminal, vehicle)
+
+    stood = 0.0
+    for row in OTHERS:
+        terminal.press("C-g", row.digit)  # in one read, as a fast typist's
+        words = (NARROW_TITLES[row.id], "neutral", "! ", " ARMED")
+        terminal.until(lambda screen, words=words: all(each in screen for each in words), PATIENCE, holding=HELD)  # type: ignore[misc]
+        terminal.until(lambda _: vehicle.stands(), PATIENCE, holding=HELD)
+        stood = stood or time.monotonic()
+    terminal.press("C-g", "1")
+    terminal.until(lambda screen: "one is held from before" in screen, PATIENCE, holding=HELD)
+    assert not vehicle.moved_since(stood)
+    drive(terminal, vehicle)
+
+    terminal.press("C-g", OTHERS[-1].digit)
+    terminal.until(lambda screen: NARROW_TITLES[OTHERS[-1].id] in screen, PATIENCE)
+    terminal.press("!")
+    terminal.until(lambda screen: "EMERGENCY STOP" in screen and vehicle.stands(), PATIENCE)
+    terminal.press("C-g", "1")
+    stood = time.monotonic()
+    terminal.until(lambda screen: "Hold t to release it" in screen, PATIENCE, holding=HELD)
+    assert not vehicle.moved_since(stood)
+    terminal.press("C-q")
+    assert "Traceback" not in terminal.until(lambda screen: "EXIT CODE" in screen, PATIENCE)

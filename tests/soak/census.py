@@ -1,0 +1,127 @@
+"""What each process of a soak uses: memory, descriptors, threads, over time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import linear_regression, median
+
+from tests.benchmarks.procfs import cpu_seconds, memory
+
+WARM_UP = 180.0
+"""s of the life of a process that no slope counts: what it fills once, it fills at its start."""
+LEAST = 300.0
+"""s behind the warm-up that a slope needs."""
+MAX_GROWTH = 1.0
+"""MB in an hour."""
+HOUR = 3600.0
+
+
+@dataclass
+class Life:
+    """One process from its start to its end."""
+
+    role: str
+    pid: int
+    began: float
+    times: list[float] = field(default_factory=list)
+    """s since `began`."""
+    rss: list[float] = field(default_factory=list)
+    """MiB."""
+    pss: list[float] = field(default_factory=list)
+    descriptors: list[int] = field(default_factory=list)
+    threads: list[int] = field(default_factory=list)
+    cpu: float = 0.0
+    """s so far."""
+
+    def look(self, now: float) -> None:
+        """Add a sample; none if the process has just ended."""
+        with suppress(OSError, IndexError):
+            used = memory([self.pid])
+            descriptors = len(os.listdir(f"/proc/{self.pid}/fd"))
+            threads = len(os.listdir(f"/proc/{self.pid}/task"))
+            self.cpu = cpu_seconds([self.pid])
+            self.times.append(now - self.began)
+            self.rss.append(used.rss)
+            self.pss.append(used.pss)
+            self.descriptors.append(descriptors)
+            self.threads.append(threads)
+
+    @property
+    def settled(self) -> slice:
+        """Return which samples are behind the warm-up."""
+        return slice(next((at for at, seconds in enumerate(self.times) if seconds >= WARM_UP), len(self.times)), None)
+
+    def growth(self, of: Sequence[float]) -> float | None:
+        """Return the slope behind the warm-up, MB/h; None if it was too short."""
+        times = self.times[self.settled]
+        if not times or times[-1] - times[0] < LEAST:
+            return None
+        return linear_regression(times, of[self.settled]).slope * HOUR
+
+    def report(self) -> dict[str, object]:
+        """Return its figures for the report."""
+        kept = self.settled if self.growth(self.rss) is not None else slice(None)
+        return {
+            "role": self.role,
+            "seconds": round(self.times[-1], 1),
+            "cpu %": round(100 * self.cpu / max(1.0, self.times[-1]), 2),
+            "rss MB": [round(self.rss[kept][at], 2) for at in (0, -1)],
+            "pss MB": [round(self.pss[kept][at], 2) for at in (0, -1)],
+            "rss MB/h": _rounded(self.growth(self.rss)),
+            "pss MB/h": _rounded(self.growth(self.pss)),
+            "descriptors": [self.descriptors[kept][0], self.descriptors[-1], max(self.descriptors[kept])],
+            "threads": [self.threads[kept][0], self.threads[-1], max(self.threads[kept])],
+        }
+
+    def faults(self) -> list[str]:
+        """Return what grows, of a life that is long enough to tell."""
+        growth = self.growth(self.rss)
+        if growth is None:
+            return []
+        found = [f"{self.role} grows by {growth:.2f} MB/h"] if growth > MAX_GROWTH else []
+        for name, values in (("descriptors", self.descriptors), ("threads", self.threads)):
+            kept = values[self.settled]
+            half = len(kept) // 2  # one that is open for a moment is no leak
+            if median(kept[half:]) > median(kept[:half]):
+                found.append(f"{self.role}: {name} grew from {kept[0]} to {kept[-1]}")
+        return found
+
+
+class Census:
+    """All lives so far."""
+
+    def __init__(self) -> None:
+        self.lives: dict[int, Life] = {}
+
+    def look(self, processes: dict[str, int], now: float) -> None:
+        """Add a sample of each process that runs."""
+        for role, pid in processes.items():
+            life = self.lives.get(pid)
+            if life is None and Path(f"/proc/{pid}").exists():
+                life = self.lives[pid] = Life(role, pid, now)
+            if life is not None:
+                life.look(now)
+
+    def report(self) -> list[dict[str, object]]:
+        """Return the longest life of each role."""
+        longest: dict[str, Life] = {}
+        for life in self.lives.values():
+            if life.times and life.times[-1] >= (longest[life.role].times[-1] if life.role in longest else 0.0):
+                longest[life.role] = life
+        return [life.report() for life in longest.values()]
+
+    def faults(self) -> list[str]:
+        """Return what grows."""
+        return [fault for life in self.lives.values() if life.times for fault in life.faults()]
+
+    def cpu(self) -> float:
+        """Return the CPU time of all of them, s."""
+        return sum(life.cpu for life in self.lives.values())
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, 3)

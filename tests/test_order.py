@@ -1,0 +1,29 @@
+"""The order of the suite: no test is lost, those that wait are spread, and those that compute keep their order."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+from tests import order
+
+
+def test_all_are_there_once_and_those_that_compute_keep_their_order(request: pytest.FixtureRequest) -> None:
+    items = sorted(request.session.items, key=lambda item: item.nodeid)
+    mixed = order.mix(items)
+    assert sorted(item.nodeid for item in mixed) == [item.nodeid for item in items]
+    computing = [item for item in mixed if not order.waits(item)]
+    assert computing == [item for item in items if not order.waits(item)]
+
+
+@pytest.mark.parametrize(("few", "many"), [(0, 5), (3, 0), (1, 10), (10, 100), (100, 10), (700, 9700)])
+def test_what_waits_is_spread_and_has_begun_before_the_end(few: int, many: int) -> None:
+    mixed = list(order.spread([-1] * few, list(range(many))))
+    assert [each for each in mixed if each >= 0] == list(range(many))
+    assert mixed.count(-1) == few
+    places = [place for place, each in enumerate(mixed) if each < 0]
+    if few and many > few:
+        gaps = [after - before for before, after in pairwise(places)]
+        assert not gaps or max(gaps) - min(gaps) <= 1
+        assert len(mixed) - places[-1] > many * (1 - order.LAST)
