@@ -8,7 +8,6 @@ from pathlib import Path
 
 from dialects import codec
 from dialects.messages import StatusText, decode_text
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from link.tlog.tlog import read_records
 
@@ -20,7 +19,7 @@ def main() -> None:
     for record in read_records(Path(sys.argv[1]).read_bytes()):
         began = began or record.microseconds
         for message_id, _, _, _, raw in Framer(stream=False).feed(record.raw, 0.0):
-            message = codec.decode(message_id, payload_of(raw))
+            message = codec.decode_frame(message_id, raw)
             counts[message.get_type()] += 1
             if isinstance(message, StatusText):
                 print(f"{(record.microseconds - began) / 1e6:8.3f} s  {decode_text(message)}")
