@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all bench mutate
+.PHONY: help setup check format test-fast test test-all coverage bench soak vm mutate release
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -31,10 +31,22 @@ test:  ## Run the tests that README.md runs: everything but the slow ones, in le
 test-all:  ## Run every test, as CI does.
 	$(PYTEST) $(PARALLEL)
 
+coverage:  ## Fail if a branch of the safety code is not covered by the tests of its folder.
+	.ci/coverage
+
 bench:  ## Measure; ARGS=--quick, or the names of benchmarks.
 	.venv/bin/python -m tests.benchmarks $(ARGS)
 
+soak:  ## Drive for an hour over a bad network with programs killed in between; ARGS="--minutes 10 --seed 2".
+	.venv/bin/python -m tests.soak $(ARGS)
+
+vm:  ## Test pins, I2C, the service and a serial line against Debian's kernel in a virtual machine; needs root once.
+	.venv/bin/python -m tests.vm $(ARGS)
+
 mutate:  ## Change the safety code line by line and report what no test notices.
 	.venv/bin/python -m tests.mutation $(ARGS)
+
+release:  ## Build the packages, and list the dependencies with their hashes, in dist/.
+	.ci/release
 
 FAST = tests/vehicle/drive tests/vehicle/safety tests/link/protocol tests/groundstation/input tests/dialects/test_axes.py
