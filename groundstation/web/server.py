@@ -36,8 +36,12 @@ SHUTDOWN = 1.0
 
 DEFAULT_SIZE, DEFAULT_FONT = 80, 16
 
-ENTER = '<!DOCTYPE html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=/"><title>mavhelm</title>'
-"""Answers the first address. The next one is without the token, and asked for by our own page, as the cookie wants."""
+ENTER = (
+    '<!DOCTYPE html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=/"><title>mavhelm</title>'
+    '<link rel="icon" href="data:,">'
+)
+"""Answers the first address. The next one is without the token, and asked for by our own page, as the cookie wants.
+Without the link a browser asks for /favicon.ico if it shows this page long enough."""
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 

@@ -58,8 +58,9 @@ class Browser:
 
     async def __aexit__(self, *_: object) -> None:
         self._reading.cancel()
-        await self._session.close()
         self.kill()
+        await self._socket.close()
+        await self._session.close()
 
     def kill(self) -> None:
         """Kill it with -9, as far as it is one process; its children follow."""
@@ -126,7 +127,7 @@ class Browser:
                 case "Runtime.exceptionThrown":
                     self.problems.append(str(told["exceptionDetails"]))
                 case "Log.entryAdded" if told["entry"]["level"] == "error":
-                    self.problems.append(told["entry"]["text"])
+                    self.problems.append(f"{told['entry'].get('url')}: {told['entry']['text']}")
 
 
 def _key(kind: str, key: str) -> dict[str, Any]:

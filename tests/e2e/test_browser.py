@@ -150,7 +150,9 @@ async def test_who_is_let_in_and_what_a_lost_socket_means(rig: Rig) -> None:
     async with aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True)) as browser:
         async with browser.get(rig.url) as answer:
             assert answer.status == 200
-            assert "token" not in await answer.text()
+            text = await answer.text()
+            assert "token" not in text
+            assert 'rel="icon"' in text, "browsers ask for /favicon.ico, which is not there"
             cookie = answer.headers["Set-Cookie"]
             assert "HttpOnly" in cookie
             assert "SameSite=Strict" in cookie
@@ -169,6 +171,7 @@ async def test_who_is_let_in_and_what_a_lost_socket_means(rig: Rig) -> None:
         assert connection is not None
         assert connection.transport is not None
         await rig.stops(connection.transport.abort)
+        await tab.socket.close()
 
         tab = SocketTab(await browser.ws_connect(f"{rig.base}/ws?width=100&height=30", headers=own))
         await eventually(lambda: b" ARMED " in tab.drawn)
@@ -177,6 +180,7 @@ async def test_who_is_let_in_and_what_a_lost_socket_means(rig: Rig) -> None:
         await tab.type("1")  # the rover has changed to HOLD if the tab took long
         await drive(rig, tab)
         await rig.stops(lambda: os.kill(rig.server, signal.SIGKILL))
+        await tab.socket.close()
 
 
 @needs_chromium
