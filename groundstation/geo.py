@@ -17,6 +17,9 @@ METRES_PER_DEGREE = 111_319.5
 MAX_LATITUDE, MAX_LONGITUDE = 90.0, 180.0
 """Degrees."""
 
+FIX_2D = 2
+"""GPS_FIX_TYPE from which a position counts."""
+
 LEAST_SHRINK = 1e-6
 """Of the length of a degree of longitude: at the poles it has none, and nothing is divided by 0."""
 
@@ -84,3 +87,11 @@ def keep_on_earth(place: Place) -> Place:
 def wrap_longitude(degrees: float) -> float:
     """Return the same longitude, or difference of longitudes, as -180..180."""
     return (degrees + MAX_LONGITUDE) % 360.0 - MAX_LONGITUDE
+
+
+def read_place(latitude: int, longitude: int) -> tuple[float, float] | None:
+    """Return degrees of degrees x 1e7; None for what stands for an unknown position: 0, 0 and out of range."""
+    north, east = latitude / 1e7, longitude / 1e7
+    if (not latitude and not longitude) or not is_on_earth(north, east):
+        return None
+    return north, (east if east < MAX_LONGITUDE else -MAX_LONGITUDE)

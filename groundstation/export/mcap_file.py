@@ -19,8 +19,8 @@ from groundstation.disk.new_file import NewFile
 from groundstation.export.exporter import LogInfo
 from groundstation.export.log_time import iso_time
 from groundstation.export.ros_types import RosType
-from groundstation.export.ros_vehicle import ODOMETRY, RosVehicle, Values, transforms
 from groundstation.export.sample import Sample
+from groundstation.ros.vehicle import ODOMETRY, ROWS, RosVehicle, Values, transforms
 
 SECONDS_MAX = 0x7FFFFFFF
 """builtin_interfaces/Time ends in 2038."""
@@ -72,7 +72,9 @@ class McapExport:
             self._add_demand(sample)
             return
         vehicle = self._vehicle(sample)
-        made = vehicle.take(sample) if vehicle is not None else None
+        made = (
+            vehicle.take(sample.message, sample.microseconds) if vehicle is not None and sample.kind in ROWS else None
+        )
         if vehicle is not None and made is not None and sample.chosen:
             self._write(sample, vehicle, *made)
 

@@ -14,12 +14,10 @@ from dialects.enums import Severity
 from dialects.field_values import field_value
 from dialects.messages import GlobalPositionInt, GpsRawInt, StatusText
 from groundstation.export.sample import Sample
+from groundstation.geo import FIX_2D, read_place
 
 PAUSE = 10_000_000
 """us without a position that end a segment: a line across them would show a way that nobody knows."""
-FIX_2D = 2
-"""GPS_FIX_TYPE from which a position counts."""
-_MAX_LATITUDE, _MAX_LONGITUDE = 900_000_000, 1_800_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +37,6 @@ class Remark:
     system: int
     text: str
     position: Position
-
-
-def read_place(latitude: int, longitude: int) -> tuple[float, float] | None:
-    """Return degrees of degrees x 1e7; None for what stands for an unknown position: 0, 0 and out of range."""
-    if (not latitude and not longitude) or abs(latitude) > _MAX_LATITUDE or abs(longitude) > _MAX_LONGITUDE:
-        return None
-    return latitude / 1e7, (longitude if longitude < _MAX_LONGITUDE else -_MAX_LONGITUDE) / 1e7
 
 
 @dataclass(slots=True)

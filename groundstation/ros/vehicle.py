@@ -12,16 +12,8 @@ from typing import Any
 from dialects import messages as m
 from dialects.axes import axis_map, parse_manual_control
 from dialects.enums import Autopilot, OperatorFlag
-from groundstation.export.frames import (
-    Quaternion,
-    Vector,
-    attitude_to_enu,
-    frd_to_flu,
-    into_body,
-    ned_to_enu,
-)
-from groundstation.export.sample import Sample
-from groundstation.export.track import FIX_2D, read_place
+from groundstation.geo import FIX_2D, read_place
+from groundstation.ros.frames import Quaternion, Vector, attitude_to_enu, frd_to_flu, into_body, ned_to_enu
 
 Values = dict[str, Any]
 FRESH = 500_000
@@ -58,10 +50,14 @@ class RosVehicle:
         self._acceleration: tuple[int, Vector, int] | None = None
         """Time, m/s2, and how good its source is."""
 
-    def take(self, sample: Sample) -> tuple[str, str, Values] | None:
-        """Take a message of the vehicle; return topic, type and values of the message of ROS that it makes."""
-        row = ROWS.get(sample.kind) if sample.kind is not None else None
-        return None if row is None else row(self, sample.message, sample.microseconds)
+    def take(self, message: m.Message, microseconds: int) -> tuple[str, str, Values] | None:
+        """Take a message of the vehicle at a Unix time; return topic, type and values of the message of ROS it makes.
+
+        The topic has no leading slash: "odom", "imu", "fix", "battery_state". The type is named as in ROS 2. Values are
+        numbers, text, lists and dictionaries; `header` is a tuple of the time in us and the frame.
+        """
+        row = ROWS.get(type(message))
+        return None if row is None else row(self, message, microseconds)
 
     def take_demand(self, message: m.ManualControl | m.RoverOperatorPresence) -> tuple[str, str, Values] | None:
         """Return the operator's demand: throttle and steering as parts of full deflection, left positive."""
