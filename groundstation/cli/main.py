@@ -12,6 +12,10 @@ from link.runtime import asyncio_without_ssl, stdio
 FLAGS = ("--json", "-q", "--quiet")
 """Options of all verbs that may also stand before the verb."""
 
+PLAIN = "--plain"
+"""In place of a screen: lines, as PLAIN_VERB prints them."""
+PLAIN_VERB = ("status", "--watch", "--changes")
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the ground station. Returns 0 after a session, 2 for wrong arguments, 1 when the station crashed.
@@ -19,7 +23,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     A verb returns a code of groundstation/verbs/exit_codes.py.
     """
     stdio.ensure_open()
-    arguments = _verb_first(sys.argv[1:] if arguments is None else arguments)
+    arguments = _verb_first(_plain_verb(sys.argv[1:] if arguments is None else arguments))
     verb = arguments[0] if arguments else ""
     if hint := describe_action(arguments):
         print(f"groundstation: {hint}", file=sys.stderr)
@@ -35,6 +39,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from groundstation.cli.console import run as run_console
 
     return run_console(arguments)
+
+
+def _plain_verb(arguments: Sequence[str]) -> Sequence[str]:
+    """Return the verb that stands for --plain, with endpoints as its option -e; other arguments as they are."""
+    if PLAIN not in arguments or arguments[0] in {**VERB_HELP, **LOCAL_HELP}:
+        return arguments
+    rest = [each for each in arguments if each != PLAIN]
+    bare = [each for each in rest if each.startswith("-") or ":" not in each]
+    return [*PLAIN_VERB, *bare, *(word for each in rest if each not in bare for word in ("-e", each))]
 
 
 def _verb_first(arguments: Sequence[str]) -> Sequence[str]:

@@ -44,8 +44,9 @@ class VehicleContact:
         """For jobs and for the operator's queries."""
         self.verified = False
         """It has signed with a key of ours."""
+        self.texts = MessageLog()
+        """What it has said."""
         self._jobs: list[Job] = []
-        self._texts = MessageLog()
 
     @property
     def in_control(self) -> bool:
@@ -108,7 +109,7 @@ class VehicleContact:
         self._jobs = [job for job in self._jobs if job.number in running]
 
     def _handle_text(self, message: m.StatusText, system: int, now: float) -> None:
-        text = self._texts.handle_statustext(message, system, now)
+        text = self.texts.handle_statustext(message, system, now)
         if text is not None:
             self.state.handle_text(text)
             self.services.handle_text(text, message.severity, now)

@@ -17,6 +17,7 @@ from groundstation.verbs.contact import VehicleContact
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
+from groundstation.verbs.status_changes import ChangePrinter
 from groundstation.verbs.tables import format_table
 from link.core import LinkReport
 
@@ -26,21 +27,51 @@ ARRIVES_WITHIN = 0.3
 """s for a message after its request was accepted."""
 PERIOD = 1.0
 """s between two lines of `status --watch`."""
+CHANGES_PERIOD = 0.1
+"""s between two looks for changes: that of the screen's snapshots."""
 
 
 async def status(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-    """Print the state of the vehicle, once or each second."""
+    """Print the state of the vehicle, once, each second or when it changes."""
     asker = _Asker(session)
     await asker.ask(every=True)
     if not options.watch:
         _print(session.contact, session.now, output)
         return ExitCode.DONE
     end = math.inf if options.seconds is None else session.now + options.seconds
+    if options.changes:
+        return await _print_changes(session, asker, end, output)
     while session.now < end:
         _print_short(session.contact, session.now, output)
         await asyncio.sleep(min(PERIOD, max(0.0, end - session.now)))
         await asker.ask(every=False)
     return ExitCode.DONE
+
+
+def check_status(options: argparse.Namespace) -> None:
+    """Raise VerbError for options that mean nothing without --watch."""
+    if not options.watch and (options.changes or options.seconds is not None):
+        raise VerbError(ExitCode.USAGE, "--changes and --for belong to status --watch")
+
+
+async def _print_changes(session: VerbSession, asker: _Asker, end: float, output: Output) -> int:
+    contact = session.contact
+    printer = ChangePrinter(contact, output, lambda now: _steady_state(contact, now), lambda now: _fields(contact, now))
+    asked = session.now
+    while session.now < end:
+        printer.print_changes(session.now)
+        await asyncio.sleep(min(CHANGES_PERIOD, max(0.0, end - session.now)))
+        if session.now - asked >= PERIOD:
+            asked = session.now
+            await asker.ask(every=False)
+    return ExitCode.DONE
+
+
+def _steady_state(contact: VehicleContact, now: float) -> dict[str, str]:
+    """Return the lines of `status` that change seldom, and the link."""
+    view = contact.state.build_view(now)
+    lines = {label: text(contact, view) for label, text in _LINES if label in _STEADY}
+    return {**lines, "link": "up" if view.alive else "lost"}
 
 
 async def vehicles(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -171,6 +202,9 @@ _LINES: Sequence[tuple[str, Callable[[VehicleContact, VehicleView], str]]] = (
     ("heading", lambda _, view: "--" if view.heading is None else f"{math.degrees(view.heading):.0f} deg"),
 )
 """Lines of `status`: label and text."""
+
+_STEADY = ("mode", "state", "control", "pre-arm", "failsafe")
+"""Lines that `status --watch --changes` compares."""
 
 
 def _cells(contact: VehicleContact, now: float) -> tuple[str, ...]:

@@ -181,8 +181,9 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "status": {ONLY: VerbAction(
         "print the state of the vehicle", status.status,
         (("--watch", {"action": "store_true", "help": "print a line each second"}),
+         ("--changes", {"action": "store_true", "help": "with --watch: print a line for each change, and each text"}),
          ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"})),
-        watches=True)},
+        watches=True, check=status.check_status)},
     "vehicles": {ONLY: VerbAction("print the vehicles that are heard", status.vehicles, (_listen(1.3),), watches=True)},
     "links": {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False,
                                watches=True)},

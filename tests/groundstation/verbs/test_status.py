@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import json
+from typing import Any
+
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
+from dialects import messages as m
+from groundstation.verbs.contact import VehicleContact
 from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.output import Output
+from groundstation.verbs.status_changes import ChangePrinter
 from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.groundstation.vehicles.test_vehicle_state import heartbeat, received
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
 
@@ -36,6 +44,47 @@ def test_status_requests_what_the_vehicle_does_not_send_by_itself(capsys: Captur
         watched = run_verb(capsys, "status", "--watch", "--for", "0.2", "--json", "-e", vehicle.endpoint).records
         assert [each["armed"] for each in watched] == [True]
         assert watched[0]["time"].endswith("Z")
+
+
+def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) -> None:
+    contact = VehicleContact((254, 190), 1, (1, 1))
+    printers = [
+        ChangePrinter(
+            contact,
+            Output("status", as_json=as_json, quiet=True),
+            lambda now: {"state": "ARMED" if contact.state.armed else "disarmed"},
+            lambda now: {"armed": contact.state.armed},
+        )
+        for as_json in (False, True)
+    ]
+
+    def printed(now: float) -> tuple[list[str], list[Any]]:
+        for printer in printers:
+            printer.print_changes(now)
+        out = capsys.readouterr().out.splitlines()
+        return [each[10:] for each in out if each[0] != "{"], [json.loads(each) for each in out if each[0] == "{"]
+
+    contact.receive(received(heartbeat(1)), 1.0)
+    assert printed(1.0)[0] == ["Rover 1: state disarmed"]
+    contact.receive(received(heartbeat(1)), 2.0)
+    assert printed(2.0) == ([], [])
+    contact.receive(received(m.StatusText(severity=4, text=b"Throttle \x1b[31marmed")), 3.0)
+    contact.receive(received(heartbeat(0, base=0x81)), 3.0)
+    lines, records = printed(3.0)
+    assert lines == ["Rover 1: warning: Throttle \ufffd[31marmed", "Rover 1: state ARMED"]
+    assert [(each.get("severity"), each.get("armed")) for each in records] == [("WARNING", None), (None, True)]
+    assert records[0]["time"].endswith("Z")
+
+
+def test_plain_prints_changes_in_place_of_a_screen(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.mode = 4
+        [line] = run_verb(capsys, "--plain", "--for", "0.3", vehicle.endpoint).out.splitlines()
+        shown = line.partition(": ")[2]
+        assert shown.startswith("mode HOLD, state disarmed, standby, control --, pre-arm "), line
+        assert shown.endswith("failsafe none, link up"), line
+        wrong = run_verb(capsys, "status", "--changes", "-e", vehicle.endpoint)
+        assert (wrong.code, wrong.err) == (2, "groundstation: --changes and --for belong to status --watch\n")
 
 
 def test_vehicles_lists_every_vehicle_on_all_links(capsys: Capture) -> None:
