@@ -40,6 +40,10 @@ class DemandGuard:
         self._stall = self._stall or self._monitor.pop_stall(now)
         return self._stall
 
+    def go_on(self) -> None:
+        """Forget it: what was demanded before is withdrawn, and a new demand may follow."""
+        self._stall = None
+
     async def run(self, driven: Callable[[], Sequence[DrivenVehicle]]) -> None:
         """Report what is driven until cancelled."""
         loop = asyncio.get_running_loop()

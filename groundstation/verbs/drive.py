@@ -12,8 +12,6 @@ import asyncio
 import os
 
 from dialects.axes import NEUTRAL, Axes
-from dialects.enums import Autopilot
-from dialects.modes import DRIVABLE_MODES, STANDING_MODES, Mode
 from groundstation.config.effective import build_keymap, load_config, merge
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
@@ -21,27 +19,30 @@ from groundstation.intents.base import Intent
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.vehicle import Disarm, SetMode
 from groundstation.station.emergency import EmergencyLock
-from groundstation.station.operator import NEUTRAL_LEAD
-from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
-from groundstation.vehicles.requests import RequestReport, RequestState
+from groundstation.vehicles.requests import RequestState
 from groundstation.verbs.arguments import LONGEST_HOLD, finite
 from groundstation.verbs.arm import arm
-from groundstation.verbs.control import ask_for_control
-from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.driving import (
+    DISARM_WITHIN,
+    disarm_vehicle,
+    drive_fault,
+    leave,
+    need_accepted,
+    need_control,
+    prepare,
+    stood_still,
+)
+from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.key_script import KeyScript, SteadyDemand, parse_script
 from groundstation.verbs.local_file import read_text
 from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
-from groundstation.verbs.session import TOLD_WITHIN, VerbSession
-from groundstation.verbs.stop_jobs import EmergencyJob, disarm_job
+from groundstation.verbs.session import VerbSession
+from groundstation.verbs.stop_jobs import EmergencyJob
 from groundstation.verbs.stops import run_job
 
 LOOK_PERIOD = 0.01
 """s between two looks whether a line of the script is due, and whether the vehicle still takes demands."""
-DISARM_WITHIN = 10.0
-"""s for which the disarming at the end is repeated."""
-FRAME_PARAMETER = "CA_AIRFRAME"
-"""What decides on the axes of PX4."""
 
 
 def percent(text: str) -> float:
@@ -87,7 +88,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     """Drive; done when the time is over or the script has ended, and neutral was sent."""
     await session.need_only_vehicle(options.vehicle)
     state, armed_here = session.vehicle, False
-    _need_control(session)
+    need_control(session)
     if not state.armed:
         if not options.arm:
             raise VerbError(ExitCode.REFUSED, f"{state.name} is disarmed: `drive --arm` arms it, and disarms it again")
@@ -98,7 +99,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     try:
         driven = await _drive(session, options.course)
     finally:
-        report = await _leave(session, disarm=armed_here)
+        report = await leave(session, disarm=armed_here)
     if report is not None and report.state is not RequestState.ACCEPTED:
         return finish(session, report, output)
     output.note(f"{state.name} was driven for {driven:.1f} s, then neutral{', and is disarmed' if armed_here else ''}")
@@ -108,11 +109,11 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
 
 async def _drive(session: VerbSession, course: KeyScript | SteadyDemand) -> float:
     """Drive, and return for how many s. Raises VerbError when the vehicle takes no demands any more."""
-    await _prepare(session)
+    await prepare(session)
     operator = session.contact.operator
 
     def demand(now: float) -> Axes:
-        return NEUTRAL if _stall(session, now) is not None else course.axes(now)
+        return NEUTRAL if stood_still(session, now) is not None else course.axes(now)
 
     operator.record_input(session.now)
     course.begin(began := session.now)
@@ -127,50 +128,10 @@ async def _drive(session: VerbSession, course: KeyScript | SteadyDemand) -> floa
     return session.now - began
 
 
-async def _prepare(session: VerbSession) -> None:
-    """Take control, change HOLD to MANUAL, and show neutral. Raises VerbError."""
-    contact, state = session.contact, session.vehicle
-    if state.drives_itself:
-        raise VerbError(ExitCode.REFUSED, f"{state.name} drives itself ({state.mode}); `groundstation stop` stops it")
-    if state.has_rover_dialect and not state.driver:
-        _need(await ask_for_control(session), session)
-    if state.mode in STANDING_MODES:
-        modes = session.services.modes
-        _need(await session.request(lambda number, now: modes.set(number, Mode.MANUAL.name, now)), session)
-    await _learn_frame(session)
-    contact.operator.demanding = True
-    if state.has_rover_dialect:
-        await session.wait_for(lambda: contact.in_control, TOLD_WITHIN)
-    await asyncio.sleep(NEUTRAL_LEAD)
-    _need_control(session)
-
-
-async def _learn_frame(session: VerbSession) -> None:
-    """Find out which axes turn the nose: in reverse they differ by how the vehicle steers."""
-    state, params = session.vehicle, session.services.params
-    if state.drive_info is not None and state.mode != Mode.ACRO.name:
-        session.contact.operator.frame = int(state.drive_info.drive_type)
-    if state.autopilot == Autopilot.PX4:
-        await session.request(lambda number, now: params.read(number, FRAME_PARAMETER, now))
-        known = params.client.params.get(FRAME_PARAMETER)
-        session.contact.operator.frame = None if known is None else int(known.value)
-
-
-def _stall(session: VerbSession, now: float) -> float | None:
-    return session.core.guard.stood_still(now) if session.core.guard else None
-
-
-def _need_control(session: VerbSession) -> None:
-    contact = session.contact
-    if contact.other_driver is not None and not contact.state.control.silent:
-        text = f"GCS {contact.other_driver} is in control of {contact.state.name}"
-        raise VerbError(ExitCode.NOT_IN_CONTROL, f"{text}; `groundstation control request` asks for it")
-
-
 def _check(session: VerbSession, axes: Axes, began: float) -> None:
     """Raise VerbError if this program stood still, or if a demand is not neutral and the vehicle does not take it."""
     state, now = session.vehicle, session.now
-    stood = _stall(session, now)
+    stood = stood_still(session, now)
     if stood is not None:
         raise VerbError(ExitCode.BROKEN, f"this program stood still for {stood:.1f} s: the demand has ended")
     if axes.neutral:
@@ -178,20 +139,10 @@ def _check(session: VerbSession, axes: Axes, began: float) -> None:
     after = f"after {now - began:.1f} s"
     if not state.monitor.is_alive(now):
         raise VerbError(ExitCode.NO_ANSWER, f"{state.name}: link lost {after}; neutral")
-    _need_control(session)
-    fault = _fault(session)
+    need_control(session)
+    fault = drive_fault(session)
     if fault is not None:
         raise VerbError(ExitCode.REFUSED, f"{state.name} {fault} {after}; neutral")
-
-
-def _fault(session: VerbSession) -> str | None:
-    """Return why the vehicle takes no demands now, or None."""
-    state = session.vehicle
-    if state.emergency_stop:
-        return "is in the emergency stop"
-    if not state.armed:
-        return "is disarmed"
-    return None if state.mode in DRIVABLE_MODES else f"takes no demands in {state.mode}"
 
 
 async def _carry_out(session: VerbSession, intent: Intent) -> None:
@@ -201,7 +152,7 @@ async def _carry_out(session: VerbSession, intent: Intent) -> None:
         modes, mode = session.services.modes, intent.mode
         report = await session.request(lambda number, now: modes.set(number, mode, now))
     elif isinstance(intent, Disarm):
-        report = await _disarm(session)
+        report = await disarm_vehicle(session)
     else:
         assert isinstance(intent, EmergencyStop)
         report = await run_job(
@@ -209,23 +160,4 @@ async def _carry_out(session: VerbSession, intent: Intent) -> None:
             "emergency stop",
             lambda number, now: EmergencyJob(number, EmergencyLock(contact.state, now), until),
         )
-    _need(report, session)
-
-
-def _need(report: RequestReport, session: VerbSession) -> None:
-    if report.state is not RequestState.ACCEPTED:
-        raise VerbError(code_of(report, session.contact.other_driver), f"{session.vehicle.name}: {report.text}")
-
-
-async def _disarm(session: VerbSession) -> RequestReport:
-    state, until = session.vehicle, session.now + DISARM_WITHIN
-    return await run_job(session, "disarm", lambda number, now: disarm_job(number, state, until))
-
-
-async def _leave(session: VerbSession, *, disarm: bool) -> RequestReport | None:
-    """Send the final neutrals, then disarm; return how that ended."""
-    operator = session.contact.operator
-    operator.demand = lambda _: NEUTRAL
-    operator.demanding = False
-    await session.wait_for(lambda: operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
-    return await _disarm(session) if disarm and session.vehicle.armed else None
+    need_accepted(report, session)
