@@ -9,6 +9,8 @@ from typing import Any
 
 import msgspec
 
+from groundstation.config.groups import NAME as GROUP_NAME
+from groundstation.config.groups import GroupError, parse_group
 from groundstation.config.settings import ROWS, TEXTS
 from groundstation.input.keymap import KeymapError
 from groundstation.input.keymap_file import load_keymap, parse_bindings, rebind
@@ -114,6 +116,17 @@ def _endpoint_problems(name: str, value: Any, reserved: Collection[str]) -> Iter
         yield str(error)
 
 
+def _group_problems(name: str, value: Any, reserved: Collection[str]) -> Iterator[str]:
+    if not GROUP_NAME.fullmatch(name):
+        yield "a name has letters, digits, - _ . only, and begins with a letter"
+    try:
+        parse_group(msgspec.convert(value, str | tuple[str, ...]))
+    except msgspec.ValidationError:
+        yield f"{_show(value)} is not {TEXTS}"
+    except GroupError as error:
+        yield str(error)
+
+
 def _key_problems(action: str, value: Any, reserved: Collection[str]) -> Iterator[str]:
     try:
         parse_bindings({action: value})
@@ -134,6 +147,7 @@ def _pad_problems(name: str, value: Any, reserved: Collection[str]) -> Iterator[
 
 TABLES: dict[str, Callable[[str, Any, Collection[str]], Iterator[str]]] = {
     "endpoints": _endpoint_problems,
+    "groups": _group_problems,
     "keys": _key_problems,
     "pad": _pad_problems,
 }

@@ -87,6 +87,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """MB of all recordings in the folder; the oldest are removed."""
     endpoints: dict[str, str | tuple[str, ...]] = {}
     """Names for endpoints: `groundstation field` opens what `field` names, one endpoint or a list."""
+    groups: dict[str, str | tuple[str, ...]] = {}
+    """Groups of vehicles for `--group` of verbs: system ids, ranges, patterns of names, as text or a list of texts."""
     keys: dict[str, Any] = {}
     """Keys of single actions, in place of those of the key map. --keys on the command line leaves them out."""
 

@@ -35,6 +35,7 @@ TABLE_EXAMPLES = {
         'field = "udpout:192.168.1.20:14550"',
         'radio = ["serial:/dev/ttyUSB0:57600", "udpin:0.0.0.0:14550"]',
     ),
+    "groups": ('north = "1-20,31"', 'boats = ["*boat*", "7"]'),
     "pad": ('deadman = "leftshoulder"', 'throttle = "triggers"', "expo = 0.5", 'y = "vehicle.control"'),
     "keys": ('drive.forward = ["e", "up"]', 'app.log = "f2"'),
 }

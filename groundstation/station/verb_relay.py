@@ -27,7 +27,7 @@ from groundstation.vehicles.demand_neutrals import DEMANDS
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.vehicles.vehicle_heartbeat import is_vehicle
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
 from link.core import LinkReport, Outgoing, Received
 
 FRESH = 3.0
@@ -36,7 +36,7 @@ FRESH = 3.0
 CONSTANT = frozenset((m.AutopilotVersion.id, m.RoverDriveInfo.id, m.HomePosition.id))
 """Ids of messages that a vehicle sends once, and that hold as long as it is heard."""
 
-MAX_KINDS = 2048
+MAX_KINDS = 64 * MAX_VEHICLES
 """Kinds of messages, of all senders together, whose newest is kept."""
 
 ARMS_WITHIN = 5.0

@@ -19,6 +19,20 @@ from link.core import Received
 
 PREFIX = "MAV_CMD_"
 LARGEST = 65535
+STEERS = frozenset(
+    (
+        rover.MAV_CMD_CONDITION_YAW,
+        rover.MAV_CMD_DO_SET_SERVO,
+        rover.MAV_CMD_DO_REPEAT_SERVO,
+        rover.MAV_CMD_DO_SET_ACTUATOR,
+        rover.MAV_CMD_DO_REPOSITION,
+        rover.MAV_CMD_DO_MOTOR_TEST,
+        rover.MAV_CMD_NAV_SET_YAW_SPEED,
+        rover.MAV_CMD_ACTUATOR_TEST,
+        43002,  # MAV_CMD_GUIDED_CHANGE_HEADING of ArduPilot's dialect
+    )
+)
+"""Commands that steer a vehicle or turn its motors, and so are sent to one vehicle at a time."""
 ARRIVES_WITHIN = 2.0
 """s for a message after its requests were accepted."""
 TRIES = 3
@@ -30,6 +44,8 @@ STOP = -1
 def check_command(options: argparse.Namespace) -> None:
     """Find the command by its name or number. Raises VerbError."""
     options.number = find_command(options.name)
+    if options.number in STEERS and (options.all or options.group):
+        raise VerbError(ExitCode.USAGE, f"{options.name.upper()} steers, which is for one vehicle at a time: --vehicle")
     if len(options.params) > 7:
         raise VerbError(ExitCode.USAGE, f"{len(options.params)} parameters, but a command has 7")
 

@@ -22,6 +22,8 @@ LOCAL_COMMON = ("--dialect", "--json", "--quiet", "--help")
 """Options of all verbs, also of those without a vehicle."""
 COMMON = ("--endpoint", "--config", "--vehicle", "--wait", "--station", "--timeout", "--system", *LOCAL_COMMON)
 """Options of all verbs with a vehicle."""
+MANY = ("--all", "--group")
+"""Options of those that may be for many vehicles."""
 
 _BASH = """\
 # completion of groundstation for bash: eval "$(groundstation completion bash)"
@@ -156,7 +158,7 @@ def _fish_names(kind: str) -> str:
 def _options(action: VerbAction) -> list[str]:
     """Return the options of an action."""
     own = [name for name, _ in action.arguments if name.startswith("--")]
-    return [*own, *(LOCAL_COMMON if action.offline else COMMON)]
+    return [*own, *(LOCAL_COMMON if action.offline else COMMON), *(MANY if action.many else ())]
 
 
 def _positionals(action: VerbAction) -> list[dict[str, Any]]:
@@ -206,7 +208,9 @@ NAMES: Mapping[str, Sequence[str]] = {
 LOCAL: Mapping[str, Sequence[str]] = {"config": ("check", "show", "init", "path"), "completion": SHELLS}
 """Actions of verbs without a vehicle."""
 _FILE_OPTIONS = {"--config": {"metavar": "FILE"}, "--dialect": {"metavar": "FILE"}}
-_OTHER_OPTIONS = {option: {"metavar": "S"} for option in ("-e", "--endpoint", "--wait", "--timeout", "--system")}
+_OTHER_OPTIONS = {
+    option: {"metavar": "S"} for option in ("-e", "--endpoint", "--group", "--wait", "--timeout", "--system")
+}
 _OWN_OPTIONS = {
     name: settings
     for actions in VERBS.values()

@@ -14,6 +14,7 @@ EXAMPLES: tuple[tuple[str, str], ...] = (
     ("groundstation stop", "to HOLD"),
     ("groundstation estop", "motors off and locked"),
     ("groundstation estop --clear", "releases the lock"),
+    ("groundstation disarm --all", "all vehicles at once, with a table of the results; --group NAME likewise"),
     ("groundstation control request", "take control, or ask the driver for it"),
     ("groundstation control give 255", "release control once 255 asks for it; show, release"),
     ("groundstation control show", "who is in control"),

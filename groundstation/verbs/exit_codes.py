@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
@@ -31,6 +31,25 @@ class ExitCode(IntEnum):
     """Something differs, is not so, is not ready, or there is no such thing."""
     PARTLY = 8
     """Partly done; the rest was printed."""
+
+
+_WORST_FIRST = (
+    ExitCode.BROKEN,
+    ExitCode.USAGE,
+    ExitCode.NO_VEHICLE,
+    ExitCode.NO_ANSWER,
+    ExitCode.REFUSED,
+    ExitCode.NOT_IN_CONTROL,
+    ExitCode.PARTLY,
+    ExitCode.DIFFERS,
+    ExitCode.DONE,
+)
+"""Of several vehicles: first those of which least is known."""
+
+
+def worst_code(codes: Iterable[int]) -> ExitCode:
+    """Return the worst of the codes of several vehicles; there must be one."""
+    return min(map(ExitCode, codes), key=_WORST_FIRST.index)
 
 
 class VerbError(Exception):

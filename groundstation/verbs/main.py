@@ -24,22 +24,30 @@ from groundstation.verbs.endpoints import choose_endpoints, config_error, link_e
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.identity import choose_identity
 from groundstation.verbs.kept_session import KeptSession
+from groundstation.verbs.later import LaterModule
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession, run_session
 from groundstation.verbs.station_link import AUTO, StationLink, find_station, station_choice
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
+from groundstation.verbs.vehicle_choice import choose_group
 from link.endpoint import EndpointError
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 from link.runtime.event_loop import run_loop
 
 if TYPE_CHECKING:
+    from groundstation.config.groups import VehicleGroup
     from groundstation.verbs.demand_guard import DemandGuard
     from groundstation.verbs.station_session import StationSession
     from link.signing_keeper import SigningKeeper
 
+many = LaterModule("many")
+
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
+
+HELP_ALL = "all vehicles that are heard, at once; prints a table, and the exit code is the worst"
+HELP_GROUP = "likewise: a name of [groups] in the config file, system ids as 1-20,31, or a pattern of names"
 
 EPILOG = f"""\
 exit codes: 0 done and confirmed; 1 this program failed; 2 wrong arguments; 3 no vehicle within --wait; 4 refused;
@@ -66,7 +74,12 @@ def run(arguments: Sequence[str]) -> int:
             action.check(options)
         if action.only_reads(options):
             action = replace(action, watches=True, takes_part=False, shows_neutral=False)
-        code = run_loop((_run_offline if action.offline else _run)(action, options, output, caught))
+        group = choose_group(output.verb, action, options)
+        code = run_loop(
+            _run_offline(action, options, output, caught)
+            if action.offline
+            else _run(action, options, output, caught, group)
+        )
         sys.stdout.flush()
     except config_error() as error:
         for problem in error.problems:
@@ -90,8 +103,13 @@ async def _run_offline(action: VerbAction, options: argparse.Namespace, output: 
     return await action.run(None, options, output)
 
 
-async def _run(action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int]) -> int:
-    """Run the action. A signal cancels it, so that it ends in order, and is noted in `caught`."""
+async def _run(
+    action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int], group: VehicleGroup | None
+) -> int:
+    """Run the action, for all vehicles of a group if there is one.
+
+    A signal cancels it, so that it ends in order, and is noted in `caught`.
+    """
     _cancel_on_signals(caught)
     station, endpoints = _find_way(action, options, output)
     ids, kept = choose_identity(action, options, station)
@@ -102,6 +120,8 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
     guard = _start_guard(ids, signing) if guarded else None  # before the links are open
 
     async def script(session: VerbSession) -> int:
+        if group is not None:
+            return await _run_for_group(session, action, options, output, group, " ".join(endpoints))
         await _prepare(session, action, options, " ".join(endpoints))
         _keep(session, kept, output)
         if action.finds and options.endpoints:
@@ -112,7 +132,7 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
         return await action.run(session, options, output)
 
     try:
-        async with asyncio.timeout(None if action.own_timeout else options.timeout):
+        async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
             if action.station:
                 from groundstation.verbs.station_session import run_station  # loads the whole station
 
@@ -135,6 +155,19 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
         kept.end(time.monotonic())
         if guard is not None:
             guard.close()
+
+
+async def _run_for_group(
+    session: VerbSession,
+    action: VerbAction,
+    options: argparse.Namespace,
+    output: Output,
+    group: VehicleGroup,
+    where: str,
+) -> int:
+    await session.find_vehicle(options.wait, None, where)
+    code: int = await many.ManyVehicles(session, action, options, group, output).run()
+    return code
 
 
 def _find_way(
@@ -226,14 +259,14 @@ def _add_arguments(parser: argparse.ArgumentParser, action: VerbAction) -> None:
     for argument, settings in action.arguments:
         parser.add_argument(argument, **settings)
     if not action.offline:
-        _add_common(parser)
+        _add_common(parser, action)
     _add_local(parser)
 
 
 _HELP = argparse.RawDescriptionHelpFormatter
 
 
-def _add_common(parser: argparse.ArgumentParser) -> None:
+def _add_common(parser: argparse.ArgumentParser, action: VerbAction) -> None:
     add = parser.add_argument
     add(
         "-e",
@@ -245,6 +278,8 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     )
     add("--config", metavar="FILE", help="config file with names of endpoints")
     add("-v", "--vehicle", type=vehicle_id, metavar="ID", help="its system id or name (default: the only vehicle)")
+    add("--all", action="store_true", help=HELP_ALL if action.many else argparse.SUPPRESS)
+    add("--group", metavar="GROUP", help=HELP_GROUP if action.many else argparse.SUPPRESS)
     add("--wait", type=seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
     add(
         "--station",

@@ -66,8 +66,14 @@ class Output:
         if not self._shows_progress or report.state.ended or now < self._progress_due:
             return
         self._progress_due = now + PROGRESS_PERIOD
-        of = f"/{report.total}" if report.total is not None else ""
-        sys.stderr.write(f"\r\x1b[K{printable(report.what)} {report.done}{of}")
+        self.count(report.what, report.done, report.total)
+
+    def count(self, what: str, done: int, total: int | None) -> None:
+        """Show how many of a total are done, on a terminal only."""
+        if not self._shows_progress:
+            return
+        of = f"/{total}" if total is not None else ""
+        sys.stderr.write(f"\r\x1b[K{printable(what)} {done}{of}")
         sys.stderr.flush()
         self._progress_shown = True
 

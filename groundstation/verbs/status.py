@@ -35,6 +35,9 @@ async def status(session: VerbSession, options: argparse.Namespace, output: Outp
     """Print the state of the vehicle, once, each second or when it changes."""
     asker = _Asker(session)
     await asker.ask(every=True)
+    if options.all or options.group:
+        _print_short(session.contact, session.now, output)
+        return ExitCode.DONE
     if not options.watch:
         _print(session.contact, session.now, output)
         return ExitCode.DONE
@@ -49,7 +52,9 @@ async def status(session: VerbSession, options: argparse.Namespace, output: Outp
 
 
 def check_status(options: argparse.Namespace) -> None:
-    """Raise VerbError for options that mean nothing without --watch."""
+    """Raise VerbError for options that mean nothing without --watch, and where it is for many vehicles."""
+    if options.watch and (options.all or options.group):
+        raise VerbError(ExitCode.USAGE, "status --watch is for one vehicle; the Links screen shows all of them")
     if not options.watch and (options.changes or options.seconds is not None):
         raise VerbError(ExitCode.USAGE, "--changes and --for belong to status --watch")
 

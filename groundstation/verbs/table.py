@@ -101,6 +101,8 @@ class VerbAction:
     """`run` gets a StationSession: a whole ground station without a screen. It finds its vehicle itself."""
     finds: bool = True
     """Waits for the vehicle before it runs."""
+    many: bool = False
+    """May be done for many vehicles at once (--all, --group). Nothing that steers is."""
     watches: bool = False
     """Only looks, and so has ids that are never those of a driver."""
     follows: bool = False
@@ -148,14 +150,14 @@ PLANS = (("mission", MissionType.MISSION), ("fence", MissionType.FENCE), ("rally
 def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
     name = kind.name.lower()
     return {
-        "show": VerbAction(f"print the {name}", made(plan.show, kind), watches=True),
+        "show": VerbAction(f"print the {name}", made(plan.show, kind), watches=True, many=True),
         "get": VerbAction(f"download the {name} into a file: .plan, or .waypoints for a mission", made(plan.get, kind),
                           (_FILE, _YES), watches=True),
         "put": VerbAction(f"upload the {name} of a file", made(plan.put, kind), (_FILE,), aliases=("set",),
-                          takes_part=True),
+                          takes_part=True, many=True),
         "check": VerbAction(f"compare the {name} of the vehicle with a file", made(mission.check, kind), (_FILE,),
-                            watches=True),
-        "clear": VerbAction(f"clear the {name} on the vehicle", made(plan.clear, kind), takes_part=True),
+                            watches=True, many=True),
+        "clear": VerbAction(f"clear the {name} on the vehicle", made(plan.clear, kind), takes_part=True, many=True),
         **_MORE_PLAN_ACTIONS.get(kind, {}),
     }  # fmt: skip
 
@@ -164,14 +166,14 @@ _ITEM = {"type": mission.item_number, "metavar": "N", "help": "number of the ite
 _MORE_PLAN_ACTIONS: dict[MissionType, dict[str, VerbAction]] = {
     MissionType.MISSION: {
         "start": VerbAction("start the mission, or go on with it", mission.start, (("item", {"nargs": "?", **_ITEM}),),
-                            takes_part=True, shows_neutral=True),
-        "pause": VerbAction("stop where the vehicle is; start goes on", mission.pause),
+                            takes_part=True, shows_neutral=True, many=True),
+        "pause": VerbAction("stop where the vehicle is; start goes on", mission.pause, many=True),
         "jump": VerbAction("make an item the current one", mission.jump, (("item", _ITEM),), takes_part=True,
-                           shows_neutral=True),
+                           shows_neutral=True, many=True),
     },
     MissionType.FENCE: {
-        "on": VerbAction("enable the fence", made(mission.enable_fence, True), takes_part=True),
-        "off": VerbAction("disable the fence", made(mission.enable_fence, False), takes_part=True),
+        "on": VerbAction("enable the fence", made(mission.enable_fence, True), takes_part=True, many=True),
+        "off": VerbAction("disable the fence", made(mission.enable_fence, False), takes_part=True, many=True),
     },
 }  # fmt: skip
 """Plan -> its actions beside those of all plans."""
@@ -183,26 +185,28 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         (("--watch", {"action": "store_true", "help": "print a line each second"}),
          ("--changes", {"action": "store_true", "help": "with --watch: print a line for each change, and each text"}),
          ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"})),
-        watches=True, check=status.check_status)},
+        watches=True, many=True, check=status.check_status)},
     "vehicles": {ONLY: VerbAction("print the vehicles that are heard", status.vehicles, (_listen(1.3),), watches=True)},
     "links": {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False,
                                watches=True)},
     "arm": {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
-                             takes_part=True)},
+                             takes_part=True, many=True)},
     "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm,
-                                own_timeout=True)},
+                                own_timeout=True, many=True)},
     "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop,
-                              own_timeout=True)},
+                              own_timeout=True, many=True)},
     "estop": {ONLY: VerbAction(
         "stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
-        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True)},
+        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True,
+        many=True)},
     "control": {
-        "show": VerbAction("print who is in control", control.show, watches=True),
+        "show": VerbAction("print who is in control", control.show, watches=True, many=True),
         "request": VerbAction(
             "take control, or ask the driver for it", control.request,
             (("--takeover", {"action": "store_true", "help": "others may take control without asking"}),),
-            takes_part=True),
-        "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, takes_part=True),
+            takes_part=True, many=True),
+        "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, takes_part=True,
+                              many=True),
         "give": VerbAction(
             "release control once another ground station asks for it, within --wait", control.give,
             (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), takes_part=True),
@@ -215,10 +219,10 @@ VERBS: dict[str, dict[str, VerbAction]] = {
          ("--by", {"nargs": 2, "type": finite, "metavar": ("NORTH", "EAST"), "help": "m from where it is"})),
         takes_part=True, shows_neutral=True, check=go_to.check_place)},
     "home": {ONLY: VerbAction("drive home by itself; done when the heartbeat reports RTL", go_to.home,
-                              takes_part=True, shows_neutral=True)},
+                              takes_part=True, shows_neutral=True, many=True)},
     "speed": {ONLY: VerbAction(
         "set the speed of modes that drive by themselves", go_to.speed,
-        (("speed", {"type": metres_per_second, "metavar": "M/S"}),), takes_part=True, shows_neutral=True)},
+        (("speed", {"type": metres_per_second, "metavar": "M/S"}),), takes_part=True, shows_neutral=True, many=True)},
     "drive": {ONLY: VerbAction(
         "drive by hand for a time, or as a script of keys says, then neutral", drive.run,
         (("--throttle", {"type": drive.percent, "metavar": "PERCENT", "help": "negative for backward"}),
@@ -254,26 +258,27 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "send a MAV_CMD; done when the vehicle has accepted", command.command,
         (("name", {"metavar": "MAV_CMD_X", "help": "its name, with or without MAV_CMD_, or its number"}),
          ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"})),
-        takes_part=True, shows_neutral=True, check=command.check_command)},
+        takes_part=True, shows_neutral=True, many=True, check=command.check_command)},
     "request": {ONLY: VerbAction(
         "request one message and print it", command.request,
         (("name", {"metavar": "MESSAGE"}),
          ("params", {"nargs": "*", "type": finite, "metavar": "P", "help": "parameters 2 and up, e.g. an index"})),
-        watches=True, check=command.check_message)},
+        watches=True, many=True, check=command.check_message)},
     "rate": {ONLY: VerbAction(
         "set how often a message comes on this link", command.rate,
         (("name", {"metavar": "MESSAGE"}), ("rate", {"type": rate_or_none, "metavar": "HZ", "help": "0: never"})),
-        watches=True, check=command.check_message)},
+        watches=True, many=True, check=command.check_message)},
     "ping": {ONLY: VerbAction(
         "measure round trips to the vehicle", ping.ping,
         (("--count", {"type": count, "default": 4, "metavar": "N", "help": "how many (4)"}),
          ("--interval", {"type": seconds, "default": 1.0, "metavar": "S", "help": "s between two (1)"})),
         watches=True)},
     "param": {
-        "get": VerbAction("print parameters", param.get, (_PATTERNS,), watches=True),
+        "get": VerbAction("print parameters", param.get, (_PATTERNS,), watches=True, many=True),
         "set": VerbAction(
             "set one parameter", param.set_value,
-            (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})), takes_part=True),
+            (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})), takes_part=True,
+            many=True),
         "save": VerbAction(
             "write parameters to a file", param.save,
             (_FILE, _PATTERNS, ("--changed", {"action": "store_true", "help": "only those not at the default"}),
@@ -282,19 +287,23 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "load": VerbAction(
             "set what differs from a file; stop at the first refusal", param.load,
             (_FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
-            takes_part=True, only_reads=param.only_prints,
+            takes_part=True, many=True, only_reads=param.only_prints,
         ),
-        "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,), watches=True),
-        "store": VerbAction("have the vehicle store all parameters", param.store, takes_part=True),
+        "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,), watches=True,
+                           many=True),
+        "store": VerbAction("have the vehicle store all parameters", param.store, takes_part=True,
+                            many=True),
         "reset": VerbAction("have the vehicle reset all parameters to their defaults", param.reset,
-                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),), takes_part=True),
+                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),), takes_part=True,
+                            many=True),
     },
     **{verb: _plan_actions(kind) for verb, kind in PLANS},
     "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes,
-                               watches=True)},
+                               watches=True, many=True)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
-                              (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True)},
-    "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, takes_part=True)},
+                              (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True, many=True)},
+    "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, takes_part=True,
+                                many=True)},
     "doctor": {ONLY: VerbAction(
         "print why the vehicle cannot be driven, and what to do", doctor.run,
         (("--report", {"metavar": "FILE", "help": "write a report for a bug, without keys and public addresses"}),

@@ -62,6 +62,8 @@ def parse_line(text: str) -> ParsedLine:
         raise VerbError(ExitCode.USAGE, f"{name}: {rule.elsewhere}")
     if any(getattr(options, each) for each in FOR_SHELLS):
         raise VerbError(ExitCode.USAGE, f"{name}: a line uses the links and the dialect of this ground station")
+    if options.all or options.group:
+        raise VerbError(ExitCode.USAGE, f"{name}: a line is for the selected vehicle; use --all and --group in a shell")
     if action.check is not None:
         action.check(options)
     return ParsedLine(name, action, rule, options)

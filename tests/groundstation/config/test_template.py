@@ -24,7 +24,7 @@ def test_with_every_line_set_it_has_all_settings_and_their_defaults(tmp_path: Pa
     values = read_config(tmp_path / "my.toml").values
     assert set(values) == set(ROWS)
     defaults = msgspec.to_builtins(Settings())
-    for name in set(ROWS) - set(EXAMPLES) - {"endpoints", "keys", "pad"}:
+    for name in set(ROWS) - set(EXAMPLES) - {"endpoints", "groups", "keys", "pad"}:
         assert values[name] == defaults[name]
 
 
@@ -32,7 +32,7 @@ def test_the_example_of_the_document_is_valid(tmp_path: Path) -> None:
     text = (Path(__file__).parents[3] / "docs" / "groundstation.md").read_text()
     [example] = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
     (tmp_path / "my.toml").write_text(example)
-    assert set(read_config(tmp_path / "my.toml").values) == {"open", "speed", "theme", "endpoints", "keys"}
+    assert set(read_config(tmp_path / "my.toml").values) == {"open", "speed", "theme", "endpoints", "groups", "keys"}
 
 
 def test_no_line_is_wider_than_the_code() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.cli.main import main
-from groundstation.verbs.completion import COMMON, LOCAL_COMMON
+from groundstation.verbs.completion import COMMON, LOCAL_COMMON, MANY
 from groundstation.verbs.main import build_parser
 from groundstation.verbs.table import ONLY, VERBS
 from tests.groundstation.verbs.shell import HELPS, complete, type_and_tab
@@ -68,6 +68,7 @@ def test_every_proposed_option_exists(capsys: pytest.CaptureFixture[str]) -> Non
                 build_parser(verb).parse_args([*([] if name == ONLY else [name]), "--help"])
             text = capsys.readouterr().out
             assert all(option in text for option in (LOCAL_COMMON if action.offline else COMMON)), (verb, name)
+            assert all((option in text) == action.many for option in MANY), (verb, name)
             assert action.help.lower()[:20] in " ".join(text.lower().split())
 
 

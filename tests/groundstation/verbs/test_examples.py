@@ -61,7 +61,8 @@ def test_each_example_runs(capsys: pytest.CaptureFixture[str], tmp_path: Path, m
             Path("patrol.plan").write_text(as_text(document()))
             name = name_of(words)
             overwrites = ["--yes"] if name in ("mission get", "param save") else []
-            ours = ["-e", vehicle.endpoint, "-v", "1", *overwrites, *SHORTER.get(name, ())]
+            one = [] if "--all" in words else ["-v", "1"]
+            ours = ["-e", vehicle.endpoint, *one, *overwrites, *SHORTER.get(name, ())]
             ran = run_verb(capsys, *(word for word in words if word != "-e" and not word.startswith("udpout:")), *ours)
             if ran.code not in CODES.get(name, {ExitCode.DONE}):
                 failed.append((words, ran.code, ran.err))

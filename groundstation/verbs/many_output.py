@@ -1,0 +1,57 @@
+"""What a verb prints for one of many vehicles: kept until the table or the JSON object of the vehicle is printed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from groundstation.vehicles.requests import RequestReport
+
+
+class VehicleOutput:
+    """Has the methods of Output."""
+
+    as_json = False
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        """Data."""
+        self.notes: list[str] = []
+        """Notes and errors, one line each."""
+        self.records: list[dict[str, Any]] = []
+        """Data as objects."""
+        self.fields: dict[str, Any] = {}
+        """What the verb says about its end."""
+
+    def words(self, name: str, *, brief: bool) -> tuple[str, ...]:
+        """Return what the table shows: the data, then the notes, without the name of the vehicle in front.
+
+        `brief`: of each note what stands before a semicolon; the advice behind it is for one vehicle.
+        """
+        notes = (each.removeprefix(name).removeprefix(":").strip() for each in self.notes)
+        return (*self.lines, *(each.partition("; ")[0] if brief else each for each in notes))
+
+    def line(self, text: str) -> None:
+        """Take lines of data."""
+        self.lines += text.split("\n")
+
+    def record(self, **fields: Any) -> None:
+        """Take an object."""
+        self.records.append(fields)
+
+    def result(self, ok: bool, vehicle: int | None, **fields: Any) -> None:
+        """Take how the verb ended."""
+        self.fields = {key: value for key, value in fields.items() if key not in ("text", "name")}
+
+    def flush(self) -> None:
+        """Do nothing."""
+
+    def note(self, text: str) -> None:
+        """Take something worth knowing."""
+        self.notes.append(" ".join(text.split()))
+
+    def error(self, text: str) -> None:
+        """Take an error."""
+        self.note(text)
+
+    def progress(self, report: RequestReport) -> None:
+        """Ignore the progress of one of many."""
