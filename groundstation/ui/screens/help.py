@@ -47,6 +47,9 @@ _NOTES = (
     "Mouse reports are captured, so that the wheel cannot drive as arrow keys: Shift and drag selects text.",
 )
 
+_MIN_WIDTH = 12
+"""Cells of the column of keys; it is wider where a key map or a gamepad adds longer ones."""
+
 _SCROLL_KEYS = ("up", "down", "pageup", "pagedown", "home", "end")
 
 
@@ -74,19 +77,25 @@ class HelpScreen(ConsoleScreen):
         return True
 
     def _lines(self) -> Iterator[tuple[str, str]]:
+        keymap = self.context.keymap
+        keys = {
+            action.id: _key_list(keymap.get_keys(action.id), confirm=action.confirm)
+            for action in ACTIONS.values()
+            if keymap.get_keys(action.id)
+        }
+        width = max(_MIN_WIDTH, *map(len, keys.values())) + 2
         for group, title in TITLES.items():
             yield f"{title}\n", f"bold {BLUE}"
             for action in ACTIONS.values():
-                keys = self.context.keymap.get_keys(action.id)
-                if action.group == group and keys:
-                    yield f"  {_key_list(keys, confirm=action.confirm):<14}", RED if group == "stop" else YELLOW
+                if action.group == group and action.id in keys:
+                    yield f"  {keys[action.id]:<{width}}", RED if group == "stop" else YELLOW
                     yield f"{action.help}\n", ""
             yield "\n", ""
         for row in SCREENS:
-            yield from _screen_keys(row)
+            yield from _screen_keys(row, width)
         yield "Status line\n", f"bold {BLUE}"
         for name, meaning in STATUS_LINE:
-            yield f"  {name:<14}", YELLOW
+            yield f"  {name:<{width}}", YELLOW
             yield f"{meaning}\n", ""
         yield "\n", ""
         for note in _NOTES:
@@ -96,14 +105,14 @@ class HelpScreen(ConsoleScreen):
 _OTHER_SCREENS = frozenset(row.action for row in SCREENS if not row.target.endswith(f":{HelpScreen.__name__}"))
 
 
-def _screen_keys(row: ScreenRow) -> Iterator[tuple[str, str]]:
+def _screen_keys(row: ScreenRow, width: int) -> Iterator[tuple[str, str]]:
     """Yield the keys that a screen has beside the actions."""
     keys = load_screen(row).KEYS
     if not keys:
         return
     yield f"{row.title} screen\n", f"bold {BLUE}"
     for key in keys:
-        yield f"  {format_key(key.key):<14}", YELLOW
+        yield f"  {format_key(key.key):<{width}}", YELLOW
         yield f"{key.help}\n", ""
     yield "\n", ""
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from groundstation.actions import ACTIONS
+from groundstation.input.keymap import KEYMAPS, Keymap
+from groundstation.input.pad_mapping import add_buttons, build_mapping
 from tests.groundstation.ui.pilots import console, helps, helps_pushed, type_in
 from tests.groundstation.ui.ptys import until
 
@@ -17,6 +19,15 @@ async def test_help_shows_every_key_and_goes_back() -> None:
         await screen.press("escape")
         await until(lambda: screen.app.gate.closure is None)
         assert screen.app.screen is screen.app.drive
+
+
+async def test_the_buttons_of_a_gamepad_stand_clear_of_the_text(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_pad = add_buttons(Keymap("pad", KEYMAPS["standard"]), build_mapping({}))
+    monkeypatch.setitem(KEYMAPS, "pad", with_pad.bindings)
+    async with console(size=(120, 60), keymap="pad") as screen:
+        await screen.press("question_mark")
+        assert "pad D-pad up   Raise both limits" in screen.text
+        assert "hold r  pad START    Arm" in screen.text
 
 
 async def test_several_keys_of_one_read_open_one_help_screen(monkeypatch: pytest.MonkeyPatch) -> None:
