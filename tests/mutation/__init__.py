@@ -4,6 +4,7 @@
     python -m tests.mutation vehicle/drive/gate.py        one module
     python -m tests.mutation --list vehicle/drive         list the mutants, run no test
     python -m tests.mutation --jobs 2                     two processes
+    python -m tests.mutation --results FILE               keep results; started again, go on where it ended
 
 A mutant changes one comparison, operator, number, condition, enum member, return value or call, or removes a statement
 (changes.py). A mutant is killed if a test fails or exceeds its time limit. A survivor is a gap in the tests: write the
@@ -12,13 +13,16 @@ The run fails if a survivor has no explanation, and if an explanation fits no su
 
 How a run works:
 
-1. pytest collects the tests of `TESTS` once (__main__.py). A forked child runs them on the unchanged code under
-   coverage and records the lines that each test executes and its duration (baseline.py).
+1. pytest collects the tests of the rooms once (`ROOMS`, __main__.py). A forked child runs them on the unchanged code
+   under coverage and records the lines that each test executes and its duration (baseline.py).
 2. Each mutant gets a forked child (runner.py). For a change inside a function, the child replaces the `__code__` of the
    loaded function (loading.py) and runs the tests that execute the changed line, likely and fast ones first, until one
    fails or the time for this mutant is over.
 3. For a change at module level (tables, defaults, constants), the child imports vehicle/, link/ and tests/ anew and
    runs the test files one after the other, the module's own first.
+
+With --results, a mutant that was killed is not run again while its module is the same, and a survivor not while the
+tests are the same, too (results.py).
 
 Hypothesis draws the same examples in each run and does not shrink failures.
 

@@ -8,29 +8,33 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pytest
 
 from tests.mutation.child import OPTIONS, Examples
 from tests.mutation.mutants import Mutant, build_mutants
-from tests.mutation.runner import Outcome, Runner
+from tests.mutation.results import Outcome, Result, Results
+from tests.mutation.runner import Runner
 from tests.mutation.survivors import load_explanations, unexplained_and_stale
 
-MODULES = ("vehicle/drive", "vehicle/safety", "link/protocol")
-"""Modules to mutate: those that decide whether the wheels turn, and which frames count."""
-TESTS = (
+_VEHICLE_TESTS = (
     "tests/vehicle/drive", "tests/vehicle/safety", "tests/vehicle/commands/test_arming.py",
     "tests/vehicle/commands/test_actuator_test.py", "tests/vehicle/commands/test_buttons.py",
-    "tests/vehicle/test_signed_drivers.py", "tests/link/protocol",
+    "tests/vehicle/test_signed_drivers.py",
 )  # fmt: skip
-"""Tests to run against the mutants."""
+ROOMS: dict[str, tuple[str, ...]] = {
+    "vehicle/drive": _VEHICLE_TESTS,
+    "vehicle/safety": _VEHICLE_TESTS,
+    "link/protocol": ("tests/link/protocol",),
+}
+"""Folders to mutate, those that decide whether the wheels turn and which frames count -> tests to run against them."""
 DESELECTED = ("tests/vehicle/safety/test_estop_button.py",)
 """Tests that start the vehicle in a process of its own, which has no mutant."""
 
 LIMIT = 2.0
 """s of tests to run against a mutant: behaviour that takes longer to test needs a test of its own."""
-
 
 MISSING = "the package coverage is missing: pip install -e '.[test,mutation]'"
 
@@ -53,11 +57,14 @@ def _parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m tests.mutation", description="Mutation testing of the safety code."
     )
-    parser.add_argument("paths", nargs="*", default=MODULES, help="modules or folders (default: %(default)s)")
+    parser.add_argument("paths", nargs="*", default=list(ROOMS), help="modules or folders (default: %(default)s)")
     parser.add_argument("--only", default="", metavar="TEXT", help="mutants with TEXT in 'function: before -> after'")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="children at a time (default: %(default)s)")
     parser.add_argument("--limit", type=float, default=LIMIT, metavar="S", help="s of tests (default: %(default)s)")
     parser.add_argument("--list", action="store_true", help="list the mutants, run no test")
+    parser.add_argument(
+        "--results", type=Path, metavar="FILE", help="keep results in FILE; skip what it has of unchanged code"
+    )
     parser.add_argument("--verbose", action="store_true", help="show which test kills each mutant")
     return parser.parse_args()
 
@@ -72,28 +79,46 @@ def describe(mutant: Mutant) -> str:
     return f"{mutant.path}:{mutant.line}: {mutant.function or 'module'}: {mutant.text}"
 
 
+def _tests_of(mutants: Iterable[Mutant]) -> list[str]:
+    """Return the tests of the rooms of `mutants`; those of all rooms for a module elsewhere."""
+    rooms = {Path(mutant.path).parent.as_posix() for mutant in mutants}
+    return list(dict.fromkeys(test for room in sorted(rooms) for test in ROOMS.get(room, sum(ROOMS.values(), ()))))
+
+
 def _run(mutants: list[Mutant], args: argparse.Namespace) -> int:
-    began, counts, survivors = time.monotonic(), Counter[Outcome](), list[Mutant]()
+    began, tests = time.monotonic(), _tests_of(mutants)
+    results = Results(args.results, tests)
+    outcomes = {mutant: result for mutant in mutants if (result := results.find(mutant))}
+    left = [mutant for mutant in mutants if mutant not in outcomes]
 
-    def done(mutant: Mutant, outcome: Outcome, test: str) -> None:
-        counts[outcome] += 1
-        if outcome is not Outcome.KILLED:
-            survivors.append(mutant)
-        if args.verbose or counts.total() % 100 == 0:
-            count = f"{counts.total()}/{len(mutants)}"
-            print(f"{count} {outcome.name} {describe(mutant)} {test}" if args.verbose else count, flush=True)
+    def done(mutant: Mutant, result: Result) -> None:
+        outcomes[mutant] = result
+        results.add(mutant, result)
+        if args.verbose or len(outcomes) % 100 == 0:
+            count, name = f"{len(outcomes)}/{len(mutants)}", result.outcome.name
+            print(f"{count} {name} {describe(mutant)} {result.test}" if args.verbose else count, flush=True)
 
-    print(f"{len(mutants)} mutants; first the tests without a change", flush=True)
-    runner = Runner(mutants, args.jobs, args.limit, done)
+    known = f", {len(outcomes)} known from {args.results}" if outcomes else ""
+    print(f"{len(mutants)} mutants{known}; first the tests without a change", flush=True)
+    faults = _run_tests(Runner(left, args.jobs, args.limit, done), tests) if left else []
+    if faults or len(outcomes) != len(mutants):
+        print("Tests fail without a change:", *faults, sep="\n  ")
+        return 2
+    survivors = [mutant for mutant in mutants if outcomes[mutant].outcome is not Outcome.KILLED]
+    for room, count in Counter(Path(mutant.path).parent.as_posix() for mutant in mutants).items():
+        alive = sum(Path(mutant.path).parent.as_posix() == room for mutant in survivors)
+        print(f"{room}: {count} mutants, {count - alive} killed")
+    print(f"{time.monotonic() - began:.0f} s")
+    return _judge(mutants, survivors)
+
+
+def _run_tests(runner: Runner, tests: Sequence[str]) -> list[str]:
+    """Run `tests` against the mutants of `runner`; return those that fail without a mutant."""
     options = [option for test in DESELECTED for option in ("--deselect", test)]
     with tempfile.TemporaryDirectory() as cache:
         sys.pycache_prefix, sys.dont_write_bytecode = cache, False  # what is imported anew is compiled once
-        code = pytest.main([*OPTIONS, *options, *TESTS], plugins=[runner, Examples()])
-    if code or runner.baseline.failed or counts.total() != len(mutants):
-        print("Tests fail without a change:", *runner.baseline.failed, sep="\n  ")
-        return 2
-    print(f"{len(mutants)} mutants, {counts[Outcome.KILLED]} killed, {time.monotonic() - began:.0f} s")
-    return _judge(mutants, survivors)
+        code = pytest.main([*OPTIONS, *options, *tests], plugins=[runner, Examples()])
+    return runner.baseline.failed or ([f"pytest ended with {code}"] if code else [])
 
 
 def _judge(mutants: list[Mutant], survivors: list[Mutant]) -> int:

@@ -136,7 +136,8 @@ def _enum_members(node: ast.AST, namespace: Namespace) -> Iterator[ast.AST]:
         member = namespace.get(node.id)
         if isinstance(member, Enum):
             same = [name for name, value in namespace.items() if type(value) is type(member)]
-            yield _with(node, id=_next(same, node.id))
+            if len(same) > 1:
+                yield _with(node, id=_next(same, node.id))
 
 
 def _next(names: list[str], name: str) -> str:

@@ -9,7 +9,6 @@ import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 from itertools import accumulate
 from pathlib import Path
 
@@ -19,14 +18,7 @@ from tests.mutation.baseline import Baseline, BaselineError, measure
 from tests.mutation.child import KILLED, SURVIVED, Watch, fork, run_files, run_items
 from tests.mutation.loading import Functions, find_functions, replace_function, replace_module
 from tests.mutation.mutants import Mutant, unchanged
-
-
-class Outcome(Enum):
-    """Result of the tests against a mutant."""
-
-    KILLED = 0
-    SURVIVED = 1
-    NOT_COVERED = 2
+from tests.mutation.results import Outcome, Result
 
 
 @dataclass(slots=True)
@@ -50,9 +42,9 @@ class Runner:
     """A pytest plugin that replaces the test loop."""
 
     def __init__(
-        self, mutants: Sequence[Mutant], jobs: int, limit: float, done: Callable[[Mutant, Outcome, str], None]
+        self, mutants: Sequence[Mutant], jobs: int, limit: float, done: Callable[[Mutant, Result], None]
     ) -> None:
-        """Run up to `limit` s of tests against each mutant; `done` is called with its result and the failed test."""
+        """Run up to `limit` s of tests against each mutant; `done` is called with its result."""
         self.baseline = Baseline({}, {}, [])
         self._mutants = mutants
         self._jobs = jobs
@@ -94,7 +86,7 @@ class Runner:
     def _start(self, mutant: Mutant) -> None:
         tests = self._tests(mutant)
         if not tests:
-            self._done(mutant, Outcome.NOT_COVERED, "")
+            self._done(mutant, Result(Outcome.NOT_COVERED, ""))
             return
         folder = Path(tempfile.mkdtemp(prefix="mutant-"))
         self._running[fork(lambda at: self._run(mutant, tests, at), folder)] = (mutant, folder)
@@ -113,7 +105,7 @@ class Runner:
         test = _killer(folder, status)
         if test:
             self._kills.add(mutant, test)
-        self._done(mutant, Outcome.SURVIVED if test is None else Outcome.KILLED, test or "")
+        self._done(mutant, Result(Outcome.SURVIVED if test is None else Outcome.KILLED, test or ""))
 
     def _tests(self, mutant: Mutant) -> list[str]:
         """Return the tests to run, likely and fast ones first; test files for a change at module level."""
