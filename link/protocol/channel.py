@@ -32,10 +32,6 @@ _RATE_CLASS = {**dict.fromkeys(DEMANDS, "demand"), **dict.fromkeys(COMMANDS, "co
 _RATE_CLASS_OF_STATIONS = {**_RATE_CLASS, FileTransferProtocol.id: "file"}
 
 
-_TRUSTED = Passed((0, 0, 0, 0, b""), Role.SET_UP, None)
-"""What is made of a frame on a link that verifies nothing."""
-
-
 class Channel:
     """Turns received bytes into Received, and Outgoing into bytes.
 
@@ -183,9 +179,10 @@ class Channel:
                 continue
             numbering, clash = (source.numbering.index, source.clash) if source else (0, False)
             introduced, named = system in state.systems, state.is_expected
-            one = _TRUSTED if judged is None else judged[index]
+            role = Role.SET_UP if judged is None else judged[index].role
+            verified = judged is not None and judged[index].verified is not None
             received = Received(message, system, component, sequence, state.peer, introduced, named, numbering, clash,
-                                digest, one.role, one.verified is not None)  # fmt: skip
+                                digest, role, verified)  # fmt: skip
             accepted.append(received)
         return accepted
 

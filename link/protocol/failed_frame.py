@@ -73,10 +73,6 @@ class FailedFrames:
             self._counts.crc_errors += failed.crc_errors
             self._counts.refused += failed.refused
 
-    def forget(self) -> None:
-        """Decide nothing: the failed frame was returned as a frame with an unknown id."""
-        self.newest = None
-
     def settle(self, position: int) -> None:
         """Decide on the failed frame: a frame starts, or the data ends, at `position`."""
         failed = self.newest

@@ -7,6 +7,7 @@ Hz). Received bytes never raise. Payloads are not decoded here. Format: https://
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 from enum import Enum, auto
@@ -40,14 +41,12 @@ _read_head = struct.Struct("<BBBxBBBHB").unpack_from
 
 
 class _Missing(Enum):
-    """Why there is no frame at a position."""
+    """What is missing at a position where there is no frame, but where one may follow."""
 
     MAGIC = auto()
-    """No start byte."""
+    """The start byte."""
     BYTES = auto()
-    """Maybe a frame, but its end has not arrived yet."""
-    FRAME = auto()
-    """Not a frame."""
+    """The end, which may still arrive."""
 
 
 class Framer:
@@ -97,10 +96,9 @@ class Framer:
         frames: list[Frame] = []
         while self._waiting_since is not None and now - self._waiting_since >= PARTIAL_DEADLINE:
             self._skip_first_byte()
-            found = self._take(now)
-            frames += found
-            if not found and self._waiting_since is not None:
-                self._waiting_since = now - PARTIAL_DEADLINE  # the bytes behind it have waited as long
+            frames = self._take(now)  # if there are any, what is left behind them waits from now on
+            if not frames and self._waiting_since is not None:
+                self._waiting_since = -math.inf  # the bytes behind the first one have waited as long
         return frames
 
     def _feed_unusual(self, data: bytes) -> list[Frame]:
@@ -109,11 +107,11 @@ class Framer:
         if header is not None and header.size == len(data):
             message_id, system, component, sequence, size = header
             extra = CRC_EXTRA.get(message_id)
-            if not data[2] and extra is None and not self._unknown:
+            if extra is None and not self._unknown:
                 self.counts.unknown += 1
                 self.counts.add_unknown((system, component, message_id), 1, size)
                 return []
-            if data[2] and extra is not None:  # signed, so that it has the bytes of a trailer
+            if extra is not None and data[2]:  # signed, so that it has the bytes of a trailer
                 claimed = data[-_TRAILER] | data[1 - _TRAILER] << 8
                 if mcrf4xx(data[1:-_TRAILER] + extra) == claimed:
                     self.counts.frames += 1
@@ -201,7 +199,7 @@ class Framer:
         The first is `position` itself while the end of a frame has not arrived.
         """
         found = self._frame_at(data, position, size)
-        if found is _Missing.FRAME and position == border and self._unknown:
+        if found is None and position == border and self._unknown:
             found = self._unknown_at(data, position, size)
         if isinstance(found, tuple):
             self._failed.settle(position)
@@ -215,17 +213,16 @@ class Framer:
         self.counts.resync_bytes += 1
         return position + 1, border
 
-    def _unknown_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+    def _unknown_at(self, data: bytes, start: int, size: int) -> Frame | _Missing | None:
         """Return the frame with an id outside the dialect at `start`, judged by its boundaries alone."""
         header = read_header(data, start)
         if header is None or header.message_id in CRC_EXTRA or not header.system:
-            return _Missing.FRAME
+            return None
         end = start + header.size
         if end > size:
             return _Missing.BYTES
         if end < size and data[end] not in (MAGIC_V1, MAGIC_V2):
-            return _Missing.FRAME
-        self._failed.forget()
+            return None
         self.counts.unknown += 1
         self.counts.frames -= 1  # _scan counts it among the verified frames
         return (header.message_id, header.system, header.component, header.sequence, data[start:end])
@@ -236,8 +233,8 @@ class Framer:
         self.counts.resync_bytes += end - position
         return end
 
-    def _frame_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
-        """Return the frame at `start`, or why there is none."""
+    def _frame_at(self, data: bytes, start: int, size: int) -> Frame | _Missing | None:
+        """Return the frame at `start`, or what is missing; None: what starts there is no frame."""
         if data[start] != MAGIC_V2:
             return self._frame_v1(data, start, size) if data[start] == MAGIC_V1 else _Missing.MAGIC
         if size - start < HEADER_V2 + CRC_SIZE:
@@ -248,23 +245,23 @@ class Framer:
         end = crc_at + CRC_SIZE + (SIGNATURE_SIZE if flags else 0)
         extra = CRC_EXTRA.get(message_id)
         if flags > INCOMPAT_SIGNED or extra is None:
-            return self._foreign(start, end, flags, (system, component, message_id))
+            self._add_foreign(start, end, flags, (system, component, message_id))
+            return None
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + extra) != data[crc_at] | data[crc_at + 1] << 8:
             self._failed.add_bad_crc(start, end, message_id)
-            return _Missing.FRAME
+            return None
         return (message_id, system, component, sequence, data[start:end])
 
-    def _foreign(self, start: int, end: int, flags: int, key: UnknownKey) -> _Missing:
+    def _add_foreign(self, start: int, end: int, flags: int, key: UnknownKey) -> None:
         """Handle unknown incompatibility flags (the frame must be dropped), or an id outside the dialect."""
         if flags > INCOMPAT_SIGNED:
             self._failed.add_refused(start)
         else:
             self._failed.add_unknown(start, end, key)
-        return _Missing.FRAME
 
-    def _frame_v1(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+    def _frame_v1(self, data: bytes, start: int, size: int) -> Frame | _Missing | None:
         if size - start < HEADER_V1 + CRC_SIZE:
             return _Missing.BYTES
         length, sequence, system, component, message_id = data[start + 1 : start + HEADER_V1]
@@ -273,13 +270,13 @@ class Framer:
         size_in_dialect = BASE_SIZE.get(message_id)
         if size_in_dialect is None:
             self._failed.add_unknown(start, end, (system, component, message_id))
-            return _Missing.FRAME
+            return None
         if size_in_dialect != length:
             self._failed.add_refused(start)
-            return _Missing.FRAME
+            return None
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + CRC_EXTRA[message_id]) != data[crc_at] | data[crc_at + 1] << 8:
             self._failed.add_bad_crc(start, end, message_id)
-            return _Missing.FRAME
+            return None
         return (message_id, system, component, sequence, data[start:end])
