@@ -40,7 +40,7 @@ from groundstation.ui.replay.log_child import LogChild
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
-from groundstation.ui.terminal import interpreter
+from groundstation.ui.terminal import drawn_lines, interpreter
 from groundstation.ui.terminal.console_driver import PING, ConsoleDriver, TerminalClosed
 from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.terminal.tmux import TmuxSession
@@ -86,6 +86,7 @@ class ConsoleApp(App[int]):
 
         `replay_options` are for `groundstation replay`, which shows logs that are opened here.
         """
+        drawn_lines.free_with_widget()
         self.gate = KeyGate(client, keymap, clock)
         self._first = first
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
@@ -178,6 +179,8 @@ class ConsoleApp(App[int]):
             self.gate.screen_opened()
         if isinstance(screen, Screen):
             self._appearance.settle(screen)
+        if isinstance(screen, ConsoleScreen):
+            screen.call_after_refresh(interpreter.free_closed_screens)
         return super().push_screen(screen, *arguments, **options)
 
     def pop_screen(self) -> AwaitComplete:

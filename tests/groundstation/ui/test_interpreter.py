@@ -87,21 +87,3 @@ def test_lines_that_are_no_longer_shown_are_soon_freed() -> None:
     assert most_kept(30_000) > 40 * SHOWN * OBJECTS, "of all lines that outlived a collection"
     interpreter.freeze()
     assert most_kept(30_000) < 30 * SHOWN * OBJECTS
-
-
-def test_no_pass_over_all_objects_interrupts_a_driver_once_one_took_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(interpreter, "_PASSES", passes := interpreter.FullPasses())
-    interpreter.freeze()
-    try:
-        favour_input(True)
-        assert gc.get_threshold()[2] == interpreter.OLDEST_AFTER
-        passes.took = 0.06
-        favour_input(True)
-        assert gc.get_threshold()[2] == interpreter.NEVER
-        favour_input(False)
-        assert gc.get_threshold()[2] == interpreter.OLDEST_AFTER
-        passes.took = 9.0
-        gc.collect()
-        assert 0.0 < passes.took < 9.0  # it is measured
-    finally:
-        gc.callbacks.remove(passes.note)
