@@ -6,12 +6,8 @@ https://mcap.dev/spec/registry#ros2: every channel needs `offered_qos_profiles`,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
-import numpy as np
 from mcap.writer import Writer
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys import get_types_from_msg
 
 from dialects.enums import Autopilot
 from dialects.messages import Heartbeat, ManualControl, Message, RoverOperatorPresence
@@ -20,13 +16,11 @@ from groundstation.export.exporter import LogInfo
 from groundstation.export.log_time import iso_time
 from groundstation.export.ros_types import RosType
 from groundstation.export.sample import Sample
+from groundstation.ros.types import RosTypes
 from groundstation.ros.vehicle import ODOMETRY, ROWS, RosVehicle, Values, transforms
 
-SECONDS_MAX = 0x7FFFFFFF
-"""builtin_interfaces/Time ends in 2038."""
-
-_TYPES = get_typestore(Stores.ROS2_HUMBLE)
-"""Standard types of the oldest supported release of ROS 2, and those made so far: each costs 10 ms."""
+_TYPES = RosTypes()
+"""Standard types, and those made so far."""
 
 
 class McapExport:
@@ -109,7 +103,7 @@ class _Topics:
 
     def __init__(self, writer: Writer, log: LogInfo) -> None:
         self.writer = writer
-        self._store = _TYPES
+        self._store = _TYPES.store
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, str], int] = {}
         writer.start(profile="ros2", library="mavhelm")
@@ -131,7 +125,7 @@ class _Topics:
         channel = self._channels.get((topic, kind))
         if channel is None:
             channel = self._open(topic, kind, self._store.generate_msgdef(kind, ros_version=2)[0])
-        self._write(channel, sample, kind, self._build(kind, values))
+        self._write(channel, sample, kind, _TYPES.build(kind, values))
 
     def _write(self, channel: int, sample: Sample, kind: str, value: object) -> None:
         at = sample.microseconds * 1000
@@ -145,24 +139,3 @@ class _Topics:
         channel = self.writer.register_channel(topic, "cdr", schema, {"offered_qos_profiles": ""})
         self._channels[topic, kind] = channel
         return channel
-
-    def _build(self, kind: str, values: Mapping[str, Any]) -> Any:
-        """Return the message of a type, and of the types in it."""
-        fields = self._store.get_msgdef(kind).fields
-        return self._store.types[kind](**{name: self._field(name, of, values[name]) for name, of in fields})
-
-    def _field(self, name: str, of: Any, value: Any) -> Any:
-        if name == "header":
-            return self._header(*value)
-        if isinstance(value, dict):
-            return self._build(of[1], value)
-        if isinstance(value, list) and value and isinstance(value[0], dict):
-            return [self._build(of[1][0][1], each) for each in value]
-        if isinstance(value, list):
-            return np.array(value, dtype=of[1][0][1][0])
-        return value
-
-    def _header(self, microseconds: int, frame: str) -> Any:
-        seconds, rest = divmod(microseconds, 1_000_000)
-        stamp = self._store.types["builtin_interfaces/msg/Time"](sec=min(seconds, SECONDS_MAX), nanosec=rest * 1000)
-        return self._store.types["std_msgs/msg/Header"](stamp=stamp, frame_id=frame)

@@ -23,8 +23,8 @@ from groundstation.verbs.session import VerbSession
 
 LOOK_PERIOD = 0.02
 """s between looks whether the vehicle still takes demands: a tick of the session."""
-NOTE_PERIOD = 5.0
-"""s after which the same line is told again."""
+NOTE_PERIOD, MOST_NOTES = 5.0, 5
+"""s after which the same line is told again, and how many different ones are told meanwhile."""
 
 
 class RosDriver:
@@ -182,7 +182,8 @@ class RosDriver:
         self._disengage()
         report = await disarm_vehicle(self._session)
         self._armed_here &= self._session.vehicle.armed
-        return report.state is RequestState.ACCEPTED, report.text or f"{self._session.vehicle.name} is disarmed"
+        done = report.state is RequestState.ACCEPTED
+        return done, f"{self._session.vehicle.name} is disarmed" if done else report.text
 
     async def leave(self) -> None:
         """Send the final neutrals; disarm what this program has armed."""
@@ -193,6 +194,7 @@ class RosDriver:
     def note(self, text: str) -> None:
         """Tell something, not more often than once in NOTE_PERIOD."""
         now = self._session.now
-        if now - self._told.get(text, -NOTE_PERIOD) >= NOTE_PERIOD:
-            self._told = {each: at for each, at in self._told.items() if now - at < NOTE_PERIOD} | {text: now}
+        self._told = {each: at for each, at in self._told.items() if now - at < NOTE_PERIOD}
+        if text not in self._told and len(self._told) < MOST_NOTES:
+            self._told[text] = now
             self._output.note(text)

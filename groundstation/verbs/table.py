@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         plan,
         reboot,
         record,
+        ros2,
         send,
         sign,
         sign_setup,
@@ -78,6 +79,7 @@ else:
     plan = LaterModule("plan")
     reboot = LaterModule("reboot")
     record = LaterModule("record")
+    ros2 = LaterModule("ros2")
     send = LaterModule("send")
     sign = LaterModule("sign")
     sign_setup = LaterModule("sign_setup")
@@ -363,6 +365,9 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "use": VerbAction("sign with this key from now on", sign.use, (_WHICH_KEY,), offline=True),
         "forget": VerbAction("remove a key here; the vehicle still has it", sign.forget, (_WHICH_KEY,), offline=True),
     },
+    "ros2": {ONLY: VerbAction(
+        "be a node of ROS 2 over rmw_zenoh: /cmd_vel and /command drive, telemetry is published; until Ctrl-C",
+        ros2.run, ros2.ARGUMENTS, takes_part=True, check=ros2.check, guarded=lambda _: True)},
     "export": {ONLY: VerbAction(
         "write a telemetry log, or a part of it, for other programs; several outputs at once", export.run,
         export.ARGUMENTS, offline=True, check=export.check)},

@@ -22,7 +22,9 @@ SHORTER = {
     "watch": ("--timeout", "0.3"), "ping": ("--count", "2", "--interval", "0.1"), "control give": ("--wait", "2"),
 }  # fmt: skip
 """Verb -> options that make it take less time."""
-ELSEWHERE = frozenset({"drive", "send", "doctor", "motor", "export", "replay", "record", "sign", "keys", "completion"})
+ELSEWHERE = frozenset(
+    {"drive", "send", "doctor", "motor", "export", "replay", "record", "ros2", "sign", "keys", "completion"}
+)
 """Verbs that other tests run: with a watchdog, with a station, or without a vehicle."""
 OF_HANDS = frozenset({"wp", "compass", "sticks"})
 """Words of examples that need more of a vehicle, and have tests of their own."""

@@ -1,0 +1,63 @@
+"""Which Zenoh router a node connects to, and how: a locator, or a Zenoh configuration file, e.g. with certificates."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import zenoh
+
+from link.fleet.config import apply_settings
+from link.transport.transport import LinkError
+
+SETTINGS: dict[str, Any] = {
+    "mode": "client",  # a router passes between clients and peers, wherever they run
+    "listen/endpoints": [],
+    "connect/timeout_ms": 0,
+    "connect/exit_on_failure": True,
+    "connect/retry": {"period_init_ms": 200, "period_max_ms": 500, "period_increase_factor": 1.5},
+    "transport/shared_memory/enabled": False,
+    "transport/link/tx/lease": 3000,
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+}
+_LOCATOR = re.compile(r"(tcp|udp|tls|quic|ws)/\S+:\d+(\?\S*)?")
+
+
+@dataclass(frozen=True, slots=True)
+class Router:
+    """The router of a session."""
+
+    locator: str
+    config: zenoh.Config
+
+
+def load_router(text: str) -> Router:
+    """Return the router of a locator such as tcp/localhost:7447, or of a file. Raises LinkError, in one line."""
+    if ".json" in text:
+        return _load_file(text)
+    if not _LOCATOR.fullmatch(text):
+        raise LinkError(f"{text!r} is no locator such as tcp/localhost:7447, nor a file .json5")
+    config = zenoh.Config()
+    apply_settings(config, SETTINGS | {"connect/endpoints": [text]})
+    return Router(text, config)
+
+
+def _load_file(text: str) -> Router:
+    path = Path(text).expanduser()
+    try:
+        path.read_bytes()
+        config = zenoh.Config.from_file(str(path))
+        locators = json.loads(config.get_json("connect/endpoints"))
+    except OSError as error:
+        raise LinkError(f"{path}: {error.strerror}") from None
+    except (zenoh.ZError, ValueError) as error:
+        why = " ".join(str(error).split(" at /")[0].split())
+        raise LinkError(f"{path} is no Zenoh configuration: {why[:160]}") from None
+    if not isinstance(locators, list) or not locators:
+        raise LinkError(f"{path} names no router; add it to connect/endpoints")
+    apply_settings(config, SETTINGS)
+    return Router(str(locators[0]), config)

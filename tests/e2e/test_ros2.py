@@ -1,0 +1,192 @@
+"""`groundstation ros2` with a router, a simulated rover and another node as processes: all ends are stops."""
+
+from __future__ import annotations
+
+import signal
+import struct
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from groundstation.ros.parameters import value_of
+from groundstation.ros.services import SERVICES
+from groundstation.ros.types import RosTypes
+from link.services.param.client import Param
+from tests.e2e import ros2_peer
+from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.ros2_peer import CDR, TWIST, Peer
+from tests.ports import free_port
+
+pytestmark = [pytest.mark.e2e, pytest.mark.slow]
+STEP = 0.02
+SET_BOOL = "std_srvs::srv::dds_::SetBool_/RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"
+ARM = f"0/mavhelm_1/arm/{SET_BOOL}"
+PARAMETERS = "0/mavhelm_1/{}_parameters/rcl_interfaces::srv::dds_::{}Parameters_/RIHS01_{}"
+GET = PARAMETERS.format("get", "Get", "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc")
+SET = PARAMETERS.format("set", "Set", "56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0")
+
+
+class World:
+    """A router, a vehicle, our node, and another node in this process."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        self._folder, self._stack = folder, stack
+        self.router, self.port = free_port(), free_port()
+        stack.callback(_kill, ros2_peer.start("router", self.router))
+        self.vehicle = Vehicle(folder, self.port)
+        stack.callback(self.vehicle.end)
+        self.peer = Peer(self.router)
+        stack.callback(self.peer.close)
+
+    def start(self, *options: str) -> subprocess.Popen[bytes]:
+        """Start our node, and wait until others see it."""
+        command = [sys.executable, "-m", "groundstation", "ros2", "-e", f"udpin:127.0.0.1:{self.port}", "--wait", "50"]
+        command += ["--station", "never", "--router", f"tcp/127.0.0.1:{self.router}", *options]
+        with self.log.open("wb") as log:
+            process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+        self._stack.callback(_kill, process)
+        self.until(lambda: "node /mavhelm_1 at" in self.text, "the node does not start")
+        return process
+
+    def until(self, condition: Callable[[], bool], missing: str) -> None:
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f"{missing}\n{self.text}"
+            time.sleep(STEP)
+
+    @property
+    def log(self) -> Path:
+        return self._folder / "ros2.log"
+
+    @property
+    def text(self) -> str:
+        return self.log.read_text() if self.log.exists() else ""
+
+    def turns(self) -> None:
+        self.until(self.vehicle.turning, "the wheels do not turn")
+
+    def stands(self) -> None:
+        self.until(self.vehicle.stands, "the wheels turn on")
+
+    @contextmanager
+    def repeating(self, send: Callable[[], None]) -> Iterator[None]:
+        """Publish at 20 Hz meanwhile."""
+        ended = threading.Event()
+
+        def run() -> None:
+            while not ended.wait(0.05):
+                send()
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    process.kill()
+    process.wait(PATIENCE)
+    if process.stdout is not None:
+        process.stdout.close()
+
+
+@pytest.fixture
+def world(tmp_path: Path) -> Iterator[World]:
+    with ExitStack() as stack:
+        yield World(tmp_path, stack)
+
+
+def _call(world: World, key: str, kind: str, request: bytes) -> Any:
+    types = RosTypes()
+    types.register_service(kind, *SERVICES[kind])
+    data, attachment = world.peer.call(key, request)
+    assert struct.unpack("<qqB16s", attachment)[::3] == (3, b"c" * 16), "the response is not matched to the request"
+    return types.decode(f"{kind}_Response", data)
+
+
+def _keep(heard: dict[str, bytes], topic: str, data: bytes, attachment: bytes) -> None:
+    heard[topic] = data
+
+
+def _send_nonsense(peer: Peer) -> None:
+    """Send what is no demand: NaN, other bytes, an unknown word, and a Twist without an attachment."""
+    peer.twist(float("nan"), 1.0)
+    peer.put("cmd_vel", TWIST, b"\xff" * 9)
+    peer.word("faster")
+    peer.session.put(f"0/cmd_vel/{TWIST}", CDR + struct.pack("<6d", 1, 0, 0, 0, 0, 0))
+
+
+def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
+    node = world.start("--arm")
+    peer = world.peer
+    with world.repeating(lambda: peer.twist(1.0)):
+        world.turns()
+    world.stands()  # silence
+    with world.repeating(lambda: peer.word("i")):
+        world.turns()
+    world.stands()
+    with world.repeating(partial(_send_nonsense, peer)):
+        world.until(lambda: "refused: linear.x nan" in world.text, "NaN is not refused")
+        world.until(lambda: "are no geometry_msgs/msg/Twist" in world.text, "garbage is not refused")
+        assert world.vehicle.stands()
+    other = ros2_peer.start("publish", world.router, 1.0, 0.0)
+    world._stack.callback(_kill, other)
+    world.turns()
+    other.kill()
+    world.stands()
+    with world.repeating(lambda: peer.twist(0.5, 1.0)):
+        world.turns()
+        node.send_signal(signal.SIGKILL)
+        world.stands()
+        assert node.wait(PATIENCE) == -signal.SIGKILL
+
+
+def test_graph_telemetry_parameters_and_arming(world: World) -> None:
+    world.start("--tf")
+    peer = world.peer
+    tokens = peer.tokens()
+    assert any(each.endswith("/0/0/NN/%/%/mavhelm_1") for each in tokens)
+    kinds = {"/".join(each.split("/")[5:6] + each.split("/")[9:10]) for each in tokens}
+    assert {"MP/%odom", "MP/%tf", "MS/%cmd_vel", "SS/%mavhelm_1%arm", "SS/%mavhelm_1%set_parameters"} <= kinds
+    heard: dict[str, bytes] = {}
+    for topic in ("odom", "imu", "fix", "battery_state", "diagnostics", "tf"):
+        peer.listen(f"0/{topic}/**", partial(_keep, heard, topic))
+    with world.repeating(lambda: peer.twist(1.0)):
+        world.until(lambda: "is disarmed" in world.text, "a message moves a disarmed vehicle, or nobody is told")
+    assert not world.vehicle.turning()
+    armed = _call(world, ARM, "std_srvs/srv/SetBool", b"\x01")
+    assert (armed.success, armed.message) == (True, "Rover 1 is armed")
+    with world.repeating(lambda: peer.twist(0.0, 2.0)):
+        world.turns()
+    assert _call(world, ARM, "std_srvs/srv/SetBool", b"\x00").success
+    world.stands()
+    name = b"\x01\x00\x00\x00\x0b\x00\x00\x00FS_TIMEOUT\x00"
+    get = "rcl_interfaces/srv/GetParameters"
+    before = _call(world, GET, get, name).values[0]
+    assert (before.type, before.double_value > 0) == (3, True)
+    types = RosTypes()
+    kind = "rcl_interfaces/srv/SetParameters"
+    types.register_service(kind, *SERVICES[kind])
+    wanted = {"name": "FS_TIMEOUT", "value": value_of(Param("FS_TIMEOUT", 2.5, 9, None))}
+    request = types.encode(f"{kind}_Request", {"parameters": [wanted, wanted | {"name": "NO_SUCH"}]})
+    results = _call(world, SET, kind, request.removeprefix(CDR)).results
+    assert [each.successful for each in results] == [True, False]
+    assert "no such parameter" in results[1].reason
+    assert _call(world, GET, get, name).values[0].double_value == 2.5
+    wanted_topics = {"odom", "imu", "fix", "battery_state", "diagnostics", "tf"}
+    world.until(lambda: heard.keys() == wanted_topics, f"not published: {wanted_topics - heard.keys()}")
+    odometry = types.decode("nav_msgs/msg/Odometry", heard["odom"])
+    assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
+    status = types.decode("diagnostic_msgs/msg/DiagnosticArray", heard["diagnostics"]).status[0]
+    assert status.hardware_id == "1"
