@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import signal
 import struct
-import subprocess
-import sys
-import threading
-import time
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,84 +17,16 @@ from groundstation.ros.services import SERVICES
 from groundstation.ros.types import RosTypes
 from link.services.param.client import Param
 from tests.e2e import ros2_peer
-from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.programs import PATIENCE
 from tests.e2e.ros2_peer import CDR, TWIST, Peer
-from tests.ports import free_port
+from tests.e2e.ros2_world import World, kill
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
-STEP = 0.02
 SET_BOOL = "std_srvs::srv::dds_::SetBool_/RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"
 ARM = f"0/mavhelm_1/arm/{SET_BOOL}"
 PARAMETERS = "0/mavhelm_1/{}_parameters/rcl_interfaces::srv::dds_::{}Parameters_/RIHS01_{}"
 GET = PARAMETERS.format("get", "Get", "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc")
 SET = PARAMETERS.format("set", "Set", "56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0")
-
-
-class World:
-    """A router, a vehicle, our node, and another node in this process."""
-
-    def __init__(self, folder: Path, stack: ExitStack) -> None:
-        self._folder, self._stack = folder, stack
-        self.router, self.port = free_port(), free_port()
-        stack.callback(_kill, ros2_peer.start("router", self.router))
-        self.vehicle = Vehicle(folder, self.port)
-        stack.callback(self.vehicle.end)
-        self.peer = Peer(self.router)
-        stack.callback(self.peer.close)
-
-    def start(self, *options: str) -> subprocess.Popen[bytes]:
-        """Start our node, and wait until others see it."""
-        command = [sys.executable, "-m", "groundstation", "ros2", "-e", f"udpin:127.0.0.1:{self.port}", "--wait", "50"]
-        command += ["--station", "never", "--router", f"tcp/127.0.0.1:{self.router}", *options]
-        with self.log.open("wb") as log:
-            process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
-        self._stack.callback(_kill, process)
-        self.until(lambda: "node /mavhelm_1 at" in self.text, "the node does not start")
-        return process
-
-    def until(self, condition: Callable[[], bool], missing: str) -> None:
-        deadline = time.monotonic() + PATIENCE
-        while not condition():
-            assert time.monotonic() < deadline, f"{missing}\n{self.text}"
-            time.sleep(STEP)
-
-    @property
-    def log(self) -> Path:
-        return self._folder / "ros2.log"
-
-    @property
-    def text(self) -> str:
-        return self.log.read_text() if self.log.exists() else ""
-
-    def turns(self) -> None:
-        self.until(self.vehicle.turning, "the wheels do not turn")
-
-    def stands(self) -> None:
-        self.until(self.vehicle.stands, "the wheels turn on")
-
-    @contextmanager
-    def repeating(self, send: Callable[[], None]) -> Iterator[None]:
-        """Publish at 20 Hz meanwhile."""
-        ended = threading.Event()
-
-        def run() -> None:
-            while not ended.wait(0.05):
-                send()
-
-        thread = threading.Thread(target=run)
-        thread.start()
-        try:
-            yield
-        finally:
-            ended.set()
-            thread.join()
-
-
-def _kill(process: subprocess.Popen[bytes]) -> None:
-    process.kill()
-    process.wait(PATIENCE)
-    if process.stdout is not None:
-        process.stdout.close()
 
 
 @pytest.fixture
@@ -141,9 +69,16 @@ def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
         world.until(lambda: "are no geometry_msgs/msg/Twist" in world.text, "garbage is not refused")
         assert world.vehicle.stands()
     other = ros2_peer.start("publish", world.router, 1.0, 0.0)
-    world._stack.callback(_kill, other)
+    world.stack.callback(kill, other)
     world.turns()
     other.kill()
+    world.stands()
+    with world.repeating(lambda: peer.twist(1.0)):
+        world.turns()
+        world.router_process.kill()
+        world.stands()
+        world.start_router()
+        world.turns()
     world.stands()
     with world.repeating(lambda: peer.twist(0.5, 1.0)):
         world.turns()
@@ -153,7 +88,7 @@ def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
 
 
 def test_graph_telemetry_parameters_and_arming(world: World) -> None:
-    world.start("--tf")
+    node = world.start("--tf")
     peer = world.peer
     tokens = peer.tokens()
     assert any(each.endswith("/0/0/NN/%/%/mavhelm_1") for each in tokens)
@@ -190,3 +125,14 @@ def test_graph_telemetry_parameters_and_arming(world: World) -> None:
     assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
     status = types.decode("diagnostic_msgs/msg/DiagnosticArray", heard["diagnostics"]).status[0]
     assert status.hardware_id == "1"
+    assert _call(world, ARM, "std_srvs/srv/SetBool", b"\x01").success
+    with world.repeating(lambda: peer.twist(1.0)):
+        world.turns()
+        node.send_signal(signal.SIGINT)
+        world.stands()
+        assert node.wait(PATIENCE) == 128 + signal.SIGINT
+    world.until(lambda: _is_disarmed(world.vehicle.errors.read_text()), "it stays armed")
+
+
+def _is_disarmed(told: str) -> bool:
+    return told.rindex("Disarmed") > told.rindex("Armed by")

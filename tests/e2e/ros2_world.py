@@ -1,0 +1,91 @@
+"""A router, a simulated rover, `groundstation ros2` and another node, for its tests."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from tests.e2e import ros2_peer
+from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.ros2_peer import Peer
+from tests.ports import free_port
+
+STEP = 0.02
+
+
+class World:
+    """A router, a vehicle, our node, and another node in this process."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        self._folder, self.stack = folder, stack
+        self.router, self.port = free_port(), free_port()
+        self.router_process = self.start_router()
+        self.vehicle = Vehicle(folder, self.port)
+        stack.callback(self.vehicle.end)
+        self.peer = Peer(self.router)
+        stack.callback(self.peer.close)
+
+    def start_router(self) -> subprocess.Popen[bytes]:
+        """Start the router."""
+        process = ros2_peer.start("router", self.router)
+        self.stack.callback(kill, process)
+        return process
+
+    def start(self, *options: str) -> subprocess.Popen[bytes]:
+        """Start our node, and wait until others see it."""
+        command = [sys.executable, "-m", "groundstation", "ros2", "-e", f"udpin:127.0.0.1:{self.port}", "--wait", "50"]
+        command += ["--station", "never", "--router", f"tcp/127.0.0.1:{self.router}", *options]
+        with self.log.open("wb") as log:
+            process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+        self.stack.callback(kill, process)
+        self.until(lambda: "node /mavhelm_1 at" in self.text, "the node does not start")
+        return process
+
+    def until(self, condition: Callable[[], bool], missing: str) -> None:
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f"{missing}\n{self.text}"
+            time.sleep(STEP)
+
+    @property
+    def log(self) -> Path:
+        return self._folder / "ros2.log"
+
+    @property
+    def text(self) -> str:
+        return self.log.read_text() if self.log.exists() else ""
+
+    def turns(self) -> None:
+        self.until(self.vehicle.turning, "the wheels do not turn")
+
+    def stands(self) -> None:
+        self.until(self.vehicle.stands, "the wheels turn on")
+
+    @contextmanager
+    def repeating(self, send: Callable[[], None]) -> Iterator[None]:
+        """Publish at 20 Hz meanwhile."""
+        ended = threading.Event()
+
+        def run() -> None:
+            while not ended.wait(0.05):
+                send()
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+
+
+def kill(process: subprocess.Popen[bytes]) -> None:
+    process.kill()
+    process.wait(PATIENCE)
+    if process.stdout is not None:
+        process.stdout.close()
