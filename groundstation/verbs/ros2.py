@@ -1,7 +1,7 @@
 """`groundstation ros2`: the vehicle as a node of ROS 2 over rmw_zenoh, without an installation of ROS.
 
 Messages of /cmd_vel and /command drive by the rules of every driver (ros_driver.py), telemetry is published as standard
-messages, parameters are those of the vehicle, and the service ~/arm arms and disarms. It runs until Ctrl-C.
+messages, and parameters are those of the vehicle. A service that arms is there on request only. It runs until Ctrl-C.
 """
 
 from __future__ import annotations
@@ -102,6 +102,7 @@ def _prepare_types() -> RosTypes:
 
 ARGUMENTS: tuple[Argument, ...] = (
     *SCALE_ARGUMENTS,
+    ("--arm-service", {"action": "store_true", "help": "offer the service ~/arm: every node of this ROS may arm"}),
     ("--router", {"default": DEFAULT_ROUTER, "metavar": "LOCATOR|FILE.json5",
                   "help": f"the Zenoh router of ROS (default: {DEFAULT_ROUTER})"}),
     ("--domain", {"type": domain, "metavar": "N", "help": f"ROS domain (default: {DOMAIN_VARIABLE}, else 0)"}),
@@ -161,7 +162,8 @@ def _build(session: VerbSession, driver: RosDriver, options: argparse.Namespace)
 
     node.add_subscription(CMD_VEL, TWIST_TYPE, take_twist)
     node.add_subscription(COMMAND, WORD_TYPE, take_word)
-    node.add_service("~/arm", "std_srvs/srv/SetBool", arm)
+    if options.arm_service:
+        node.add_service("~/arm", "std_srvs/srv/SetBool", arm)
     add_parameter_services(node, session)
     return node
 

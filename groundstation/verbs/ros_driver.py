@@ -136,7 +136,7 @@ class RosDriver:
             return "is not heard"
         fault = drive_fault(self._session)
         if fault is not None:
-            return f"{fault}: call the service arm" if not self._session.vehicle.armed else fault
+            return fault
         if self.engaged and self._session.contact.other_driver is not None:
             return f"is driven by GCS {self._session.contact.other_driver}"
         return None

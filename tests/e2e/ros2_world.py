@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from groundstation.station_socket.connect import running_stations
 from tests.e2e import ros2_peer
 from tests.e2e.programs import PATIENCE, Vehicle
 from tests.e2e.ros2_peer import Peer
@@ -36,10 +37,21 @@ class World:
         self.stack.callback(kill, process)
         return process
 
+    def start_station(self) -> tuple[str, str]:
+        """Start a station without a screen; return the options of a verb that goes through it."""
+        command = [sys.executable, "-m", "groundstation", "serve", "--headless", self.endpoint]
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        self.stack.callback(kill, process)
+        self.until(lambda: process.pid in running_stations(), "the station does not start")
+        return "--station", str(process.pid)
+
     def start(self, *options: str) -> subprocess.Popen[bytes]:
         """Start our node, and wait until others see it."""
-        command = [sys.executable, "-m", "groundstation", "ros2", "-e", f"udpin:127.0.0.1:{self.port}", "--wait", "50"]
-        command += ["--station", "never", "--router", f"tcp/127.0.0.1:{self.router}", *options]
+        way = () if "--station" in options else ("-e", self.endpoint, "--station", "never")
+        command = [sys.executable, "-m", "groundstation", "ros2", *way, "--wait", "50"]
+        command += ["--router", f"tcp/127.0.0.1:{self.router}", *options]
         with self.log.open("wb") as log:
             process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
         self.stack.callback(kill, process)
@@ -51,6 +63,10 @@ class World:
         while not condition():
             assert time.monotonic() < deadline, f"{missing}\n{self.text}"
             time.sleep(STEP)
+
+    @property
+    def endpoint(self) -> str:
+        return f"udpin:127.0.0.1:{self.port}"
 
     @property
     def log(self) -> Path:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import struct
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from functools import partial
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from groundstation.ros.freshness import MAX_LATENESS
 from groundstation.ros.parameters import value_of
 from groundstation.ros.services import SERVICES
 from groundstation.ros.types import RosTypes
@@ -87,8 +89,28 @@ def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
         assert node.wait(PATIENCE) == -signal.SIGKILL
 
 
-def test_graph_telemetry_parameters_and_arming(world: World) -> None:
-    node = world.start("--tf")
+def test_a_router_that_stood_still_delivers_no_old_command(world: World) -> None:
+    world.start("--arm")
+    peer = world.peer
+    with world.repeating(lambda: peer.twist(1.0)):
+        world.turns()
+        world.router_process.send_signal(signal.SIGSTOP)
+        world.stands()
+    ended = time.monotonic()
+    world.until(lambda: time.monotonic() > ended + 3 * MAX_LATENESS, "")  # also the newest message is old now
+    thawed = time.monotonic()
+    world.router_process.send_signal(signal.SIGCONT)
+    world.until(lambda: "messages come more than" in world.text, "what was held up was not delivered, or not noticed")
+    with world.repeating(lambda: peer.twist(0.0)):
+        world.until(lambda: peer.tokens() != [], "the router does not answer")
+    assert not world.vehicle.moved_since(thawed)
+    with world.repeating(lambda: peer.twist(1.0)):
+        world.turns()
+    world.stands()
+
+
+def test_graph_telemetry_parameters_and_arming_through_a_station(world: World) -> None:
+    node = world.start("--tf", "--arm-service", *world.start_station())
     peer = world.peer
     tokens = peer.tokens()
     assert any(each.endswith("/0/0/NN/%/%/mavhelm_1") for each in tokens)
@@ -132,6 +154,14 @@ def test_graph_telemetry_parameters_and_arming(world: World) -> None:
         world.stands()
         assert node.wait(PATIENCE) == 128 + signal.SIGINT
     world.until(lambda: _is_disarmed(world.vehicle.errors.read_text()), "it stays armed")
+
+
+def test_a_kill_while_a_station_sends_its_demands(world: World) -> None:
+    node = world.start("--arm", *world.start_station())
+    with world.repeating(lambda: world.peer.twist(1.0)):
+        world.turns()
+        node.kill()
+        world.stands()
 
 
 def _is_disarmed(told: str) -> bool:

@@ -39,7 +39,7 @@ def world(tmp_path: Path) -> Iterator[World]:
 
 
 def test_it_lists_our_topics_and_services_and_drives(world: World) -> None:
-    world.start("--arm")
+    world.start("--arm", "--arm-service")
     assert "/odom [nav_msgs/msg/Odometry]\n" in listed(world, "topic")
     assert "/mavhelm_1/arm [std_srvs/srv/SetBool]\n" in listed(world, "service")
     with subprocess.Popen([sys.executable, "-c", DRIVE, str(world.router)], stdout=subprocess.DEVNULL) as publisher:
