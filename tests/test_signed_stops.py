@@ -30,11 +30,16 @@ WATCHED = SigningPolicy(unsigned=Role.WATCH, open_stops=True)
 def signed_drive(key: SigningKey | None = DRIVER, policy: SigningPolicy = SIGNED_ONLY) -> Drive:
     """Return a rover with the key DRIVER, and a station with `key` or without one."""
     drive = Drive()
+    sign(drive, key, policy)
+    return drive
+
+
+def sign(drive: Drive, key: SigningKey | None = DRIVER, policy: SigningPolicy = SIGNED_ONLY) -> None:
+    """Give the rover of a drive the key DRIVER, and the station `key`."""
     now = drive.world.now
     drive.world.far.channel.guard = SigningGuard(keep(DRIVER, now=now), policy, 0)
     if key is not None:
         drive.world.near.channel.guard = SigningGuard(keep(key, now=now), SIGNED_ONLY, 0)
-    return drive
 
 
 def signing_of(drive: Drive) -> SigningView:

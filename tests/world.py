@@ -22,6 +22,8 @@ class Host:
     tick_due: float = 0.0
     report_due: float = 0.0
     sent: list[tuple[float, Message]] = field(default_factory=list)
+    sent_at: dict[int, float] = field(default_factory=dict)
+    """Sequence number -> when it was sent last."""
     frozen: bool = False
     """As after SIGSTOP: it neither receives nor acts."""
     listener: SendListener | None = field(init=False)
@@ -62,6 +64,7 @@ class Host:
         for outgoing in outbox:
             self.sent.append((now, outgoing.message))
             for data, address, sequence in self.channel.send(outgoing, now=now):
+                self.sent_at[sequence] = now
                 if address == to:
                     frames.append(data)
                 if self.listener is not None:

@@ -31,11 +31,12 @@ def main() -> int:
     options = parser.parse_args()
     with TemporaryDirectory(prefix="mavhelm-soak-") as folder:
         os.environ |= dict.fromkeys(("XDG_STATE_HOME", "XDG_CONFIG_HOME", "XDG_RUNTIME_DIR"), folder)  # not the user's
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # to compile at each start takes 40 MB, which hide all growth
         soak: Soak | VirtualSoak
+        keys, signing = not options.no_keys, options.signing
         if options.virtual_hours:
-            soak = VirtualSoak(options.virtual_hours * 3600, options.seed, trace=options.trace)
+            soak = VirtualSoak(options.virtual_hours * 3600, options.seed, signing=signing, trace=options.trace)
         else:
-            keys, signing = not options.no_keys, options.signing
             soak = Soak(Path(folder), options.minutes * 60, options.seed, keys=keys, signing=signing)
         soak.run()
     text = json.dumps(soak.report(), indent=2)

@@ -27,8 +27,8 @@ WATCHED = (
     SpeedRequest(),
 )
 """Views that the screen asks for, one after the other; with a change of view the station sends the whole view again."""
-REPORTED = 0.05
-"""s between two control cycles, at most: the vehicle reports the age of a demand in the second."""
+RESOLUTION = 0.001
+"""s: the vehicle's time that a demand echoes is in ms."""
 
 
 class StrictMonkey(Monkey):
@@ -36,7 +36,10 @@ class StrictMonkey(Monkey):
 
     def __init__(self, style: str) -> None:
         self.oldest_obeyed = 0.0
-        """s; largest age of a demand of motion that the vehicle has reported as obeyed (ROVER_DRIVE_STATUS)."""
+        """s; largest age of a demand of motion that the vehicle has reported as obeyed (ROVER_DRIVE_STATUS), counted
+        from its arrival."""
+        self.oldest_sent = 0.0
+        """s; the same, counted from its sending."""
         self._before = 0.0
         self._reports = 0
         self._looks = 0
@@ -63,12 +66,16 @@ class StrictMonkey(Monkey):
             self._look(now)
 
     def _check_reports(self) -> None:
-        sent = self.world.far.sent
-        for _, message in sent[self._reports :]:
+        sent, sent_at = self.world.far.sent, self.world.near.sent_at
+        for at, message in sent[self._reports :]:
             if isinstance(message, RoverDriveStatus) and (message.demand_throttle or message.demand_steering):
                 self.oldest_obeyed = max(self.oldest_obeyed, message.demand_age_ms / 1000)
+                self.oldest_sent = max(self.oldest_sent, at - sent_at[message.source_seq])
         self._reports = len(sent)
-        assert self.oldest_obeyed <= OBEYED + REPORTED, f"a demand of {self.oldest_obeyed:.3f} s was obeyed"
+        assert self.oldest_obeyed <= OBEYED, f"a demand was obeyed {self.oldest_obeyed:.3f} s after it arrived"
+        assert self.oldest_sent <= OBEYED + RESOLUTION, (
+            f"a demand was obeyed {self.oldest_sent:.3f} s after it was sent"
+        )
 
     def _look(self, now: float) -> None:
         """Do what the station process does for its screen."""

@@ -7,7 +7,7 @@ import pytest
 from tests.soak.census import HOUR, MAX_GROWTH
 from tests.soak.heap import MEGABYTE, Heap
 from tests.soak.rules import OBEYED
-from tests.soak.strict import StrictMonkey
+from tests.soak.strict import RESOLUTION, StrictMonkey
 from vehicle.drive.control import Control
 
 
@@ -24,6 +24,7 @@ def test_a_rover_that_stops_keeps_the_rules() -> None:
     monkey = cut_while_driving()
     assert monkey.power == 0.0
     assert 0.0 < monkey.oldest_obeyed <= OBEYED
+    assert monkey.oldest_obeyed <= monkey.oldest_sent <= OBEYED + RESOLUTION
 
 
 def test_a_drive_of_days_has_a_charged_battery() -> None:
@@ -32,6 +33,16 @@ def test_a_drive_of_days_has_a_charged_battery() -> None:
     monkey.forget()
     monkey.get_going()
     assert monkey.power > 0.5
+
+
+def test_a_late_demand_that_is_obeyed_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its age on arrival is not: only its sender knows when that was."""
+    monkey = StrictMonkey("hold")
+    monkey.get_going()
+    monkeypatch.setattr("vehicle.drive.operator_session.echo_age", lambda echo, since_boot: 0.0)
+    monkey.delay(0.6)
+    with pytest.raises(AssertionError, match="after it was sent"):
+        monkey.run(2.0)
 
 
 def test_a_rover_that_drives_on_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ from tests.soak.census import HOUR, MAX_GROWTH
 from tests.soak.heap import Heap
 from tests.soak.soak import Findings
 from tests.soak.strict import StrictMonkey
+from tests.test_signed_stops import sign
 
 WELL = {
     "station_runs": True,
@@ -51,9 +52,12 @@ LOOKED = 600.0
 class VirtualSoak:
     """`run` it once, then read `report`."""
 
-    def __init__(self, seconds: float, seed: int, *, trace: bool = False) -> None:
-        """`trace` the memory that Python allocates, which takes three times as long."""
-        self._seconds, self._seed = seconds, seed
+    def __init__(self, seconds: float, seed: int, *, signing: bool = False, trace: bool = False) -> None:
+        """`signing`: both ends sign, and ignore what is not signed.
+
+        `trace` the memory that Python allocates, which takes three times as long.
+        """
+        self._seconds, self._seed, self._signing = seconds, seed, signing
         self._chance = random.Random(seed)
         self.findings, self.heap = Findings(), Heap(trace=trace)
         self._monkey: StrictMonkey | None = None
@@ -76,6 +80,8 @@ class VirtualSoak:
 
     def _go_on(self) -> None:
         monkey = self._monkey = StrictMonkey("hold")
+        if self._signing:
+            sign(monkey)
         monkey.get_going()
         start, looks = monkey.world.now, 0
         while self._lasted < self._seconds:
@@ -110,9 +116,9 @@ class VirtualSoak:
         monkey.forget()
 
     @property
-    def oldest_obeyed(self) -> float:
-        """Return the largest age of a demand of motion that was obeyed, s."""
-        return self._monkey.oldest_obeyed if self._monkey else 0.0
+    def oldest_obeyed(self) -> tuple[float, float]:
+        """Return the largest age of a demand of motion that was obeyed, s: since it arrived, and since it was sent."""
+        return (self._monkey.oldest_obeyed, self._monkey.oldest_sent) if self._monkey else (0.0, 0.0)
 
     def report(self) -> dict[str, object]:
         """Return all figures, and the faults."""
@@ -124,7 +130,8 @@ class VirtualSoak:
             "cpu, s": round(self._took, 1),
             "faults": self.findings.faults,
             "motors had power, s": round(self.findings.turned, 1),
-            "oldest obeyed demand, s": self.oldest_obeyed,
+            "signing": self._signing,
+            "oldest obeyed demand, s since it arrived, was sent": [round(each, 4) for each in self.oldest_obeyed],
             "traced MB, blocks, rss MB per hour": [round(each, 3) for each in growth] if growth else None,
             "hour, traced MB, blocks, rss MB": [each.row() for each in self.heap.samples],
         }
