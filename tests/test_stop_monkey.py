@@ -36,14 +36,14 @@ Step = tuple[Any, ...]
 class Monkey(Drive):
     """A drive that checks the bounds at each step of time."""
 
-    def __init__(self, style: str) -> None:
+    def __init__(self, style: str, session: int = 0) -> None:
         self.last_demand = self.last_key = self.last_lease = -math.inf
         self.gate_closed_at = math.inf
         self._seen = 0
         self._style = style
         self.turned = 0.0
         """s in which the wheels turned."""
-        super().__init__(style=style)
+        super().__init__(style=style, session=session)
 
     # ---- what the monkey does ----
 

@@ -41,9 +41,12 @@ REPEAT = 0.04
 class Drive:
     """An operator with keys, a station, a link and a simulated rover."""
 
-    def __init__(self, *, loss: float = 0.0, delay: float = 0.0, seed: int = 0, style: str = "hold") -> None:
+    def __init__(
+        self, *, loss: float = 0.0, delay: float = 0.0, seed: int = 0, style: str = "hold", session: int = 0
+    ) -> None:
+        """`session`: number of the station's operator session, which bounds the age of its demands; 0 for none."""
         start = 100.0
-        self.station = Station(["memory"], now=start)
+        self.station = Station(["memory"], now=start, session=session)
         self.motors, self.battery = SimulatedMotors(), Battery(1.0)
         params = self.params = Params({})
         self.rover = Rover(params, now=start)

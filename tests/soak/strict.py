@@ -27,6 +27,8 @@ WATCHED = (
     SpeedRequest(),
 )
 """Views that the screen asks for, one after the other; with a change of view the station sends the whole view again."""
+SESSION = 1479
+"""The station proves the age of its demands, as the program does."""
 RESOLUTION = 0.001
 """s: the vehicle's time that a demand echoes is in ms."""
 
@@ -43,7 +45,7 @@ class StrictMonkey(Monkey):
         self._before = 0.0
         self._reports = 0
         self._looks = 0
-        super().__init__(style)
+        super().__init__(style, SESSION)
         self.world.step = STEP
 
     def forget(self) -> None:

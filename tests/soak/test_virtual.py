@@ -47,7 +47,7 @@ def test_a_late_demand_that_is_obeyed_is_noticed(monkeypatch: pytest.MonkeyPatch
 
 def test_a_rover_that_drives_on_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Control, "demand_timeout", 5.0)
-    monkeypatch.setattr(Control, "_echo_is_stale", lambda self: False)
+    monkeypatch.setattr("vehicle.drive.operator_session.echo_age", lambda echo, since_boot: 0.0)
     with pytest.raises(AssertionError, match="was obeyed"):
         cut_while_driving()
 

@@ -87,7 +87,8 @@ class Control:
             self._report_invalid(received, "axes outside -1000..1000 count as neutral", now)
         if demand is None:
             return False
-        return self._use_old(demand, now) if self._echo_is_stale() else self._use(demand, now)
+        lifetime = self._params["OPR_ECHO_MAX"] - self.presence.echo_age(now)
+        return self._use_old(demand, now) if lifetime < 0.0 else self._use(demand._replace(lifetime=lifetime), now)
 
     def handle_rc_override(self, received: Received, message: RcChannelsOverride, now: float) -> bool:
         """Handle an RC_CHANNELS_OVERRIDE; return True if it is the demand now."""
@@ -234,9 +235,6 @@ class Control:
         """Report an invalid message once: a wrong joystick program sends it all the time."""
         text = f"GCS {received.system}: {problem}"
         self._texts.reply_once(f"demand invalid {received.system}", received, Severity.WARNING, text, now)
-
-    def _echo_is_stale(self) -> bool:
-        return self.presence.known and self.presence.echo_age > self._params["OPR_ECHO_MAX"]
 
 
 def _is_out_of_range(axis: int) -> bool:

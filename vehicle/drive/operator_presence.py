@@ -15,11 +15,11 @@ class OperatorPresence:
     def __init__(self) -> None:
         self.known = False
         """The ground station sends ROVER_OPERATOR_PRESENCE."""
-        self.echo_age = 0.0
-        """Age in s of the newest vehicle data that the operator has seen; no demand with it is older.
-
-        0 before the first echo; infinite for a ground station that sends none any more."""
         self._has_echoed = False
+        self._echoed_at = math.inf
+        """Time of the newest vehicle data that the operator has seen; no demand with it is older.
+
+        Infinite before the first echo; -infinite for a ground station that sends none any more."""
         self._session: int | None = None
         self._input_at = -math.inf
         self._input_lost = False
@@ -30,19 +30,23 @@ class OperatorPresence:
         self.known = True
         self._session = message.session_id
         self._has_echoed |= message.echo_time_boot_ms != 0
-        self.echo_age = self._measure_echo(message.echo_time_boot_ms, since_boot)
+        self._echoed_at = now - self._measure_echo(message.echo_time_boot_ms, since_boot)
         age = message.last_input_age_ms
         self._input_at = -math.inf if age == UINT16_MAX else now - age / 1000
         self._input_lost = bool(message.flags & OperatorFlag.INPUT_LOST)
         return new_session
+
+    def echo_age(self, now: float) -> float:
+        """Return the s since the newest vehicle data that the operator has seen; -infinite before the first echo."""
+        return now - self._echoed_at
 
     def is_lost(self, timeout: float, now: float) -> bool:
         """Return True if there was no key or stick event for `timeout` s, or the input device is lost."""
         return self.known and (self._input_lost or now - self._input_at > timeout)
 
     def _measure_echo(self, echo: int, since_boot: float) -> float:
-        """Return the age of the echoed boot time in s; 0 if there was none yet.
+        """Return the age of the echoed boot time in s; -infinite if there was none yet.
 
         An echo of 0 after others is old, else a program that stopped echoing would switch the check off.
         """
-        return echo_age(echo, since_boot) if echo or self._has_echoed else 0.0
+        return echo_age(echo, since_boot) if echo or self._has_echoed else -math.inf

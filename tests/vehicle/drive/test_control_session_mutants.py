@@ -119,7 +119,7 @@ class TestDemands:
         assert demand.lifetime == pytest.approx(0.3)
         assert rig.control.demand_timeout == pytest.approx(0.3)
         assert rig.control.presence.known
-        assert rig.control.presence.echo_age == pytest.approx(0.2)
+        assert rig.control.presence.echo_age(rig.now) == pytest.approx(0.2)
 
     def test_a_copy_and_one_that_was_overtaken_are_none(self) -> None:
         rig = Sessions().owned()

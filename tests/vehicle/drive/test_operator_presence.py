@@ -37,6 +37,17 @@ def test_demands_that_are_old_on_arrival_are_rejected() -> None:
     assert said(bench, "older than OPR_ECHO_MAX on arrival")
 
 
+def test_a_demand_ends_when_its_echo_is_as_old_as_opr_echo_max() -> None:
+    """It may be as old as that: to count 0.45 s from its arrival would obey it for twice as long."""
+    bench = going()
+    drive(bench, 0.05, AHEAD, delay=0.25)
+    bench.wait(0.15)
+    assert bench.turning
+    assert bench.throttles[0] == 1.0, "0.20 s after it arrived"
+    bench.wait(0.05)
+    assert bench.throttles[0] < 1.0, "0.25 s after it arrived"
+
+
 def test_a_stop_of_any_age_is_obeyed() -> None:
     bench = going()
     drive(bench, 0.1, NEUTRAL, delay=2.0)

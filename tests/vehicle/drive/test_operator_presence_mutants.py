@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from dialects.enums import OperatorFlag
@@ -16,7 +18,7 @@ def message(*, session: int = 1, echo: int = 0, age: int = 0, flags: int = 0) ->
 def test_a_driver_who_does_not_send_it_is_never_lost() -> None:
     presence = OperatorPresence()
     assert not presence.known
-    assert presence.echo_age == 0.0
+    assert presence.echo_age(1e9) == -math.inf
     assert not presence.is_lost(10.0, 1e9)
 
 
@@ -50,10 +52,11 @@ def test_without_any_input_or_device_it_is_lost() -> None:
 
 @pytest.mark.parametrize(
     ("echo", "since_boot", "age"),
-    [(0, 50.0, 0.0), (1, 50.0, 49.999), (49_500, 50.0, 0.5), (50_000, 50.0, 0.0),
+    [(0, 50.0, -math.inf), (1, 50.0, 49.999), (49_500, 50.0, 0.5), (50_000, 50.0, 0.0),
      (50_001, 50.0, 2**32 / 1000 - 0.001), (2**32 - 500, 2**32 / 1000 + 0.5, 1.0)],
 )  # fmt: skip
 def test_the_age_of_an_echo(echo: int, since_boot: float, age: float) -> None:
     presence = OperatorPresence()
     presence.handle(message(echo=echo), since_boot, 100.0)
-    assert presence.echo_age == pytest.approx(age)
+    assert presence.echo_age(100.0) == pytest.approx(age)
+    assert presence.echo_age(100.25) == pytest.approx(age + 0.25)

@@ -154,6 +154,23 @@ def test_a_proof_after_arming_names_no_session() -> None:
     assert bench.turning
 
 
+def test_armed_over_a_late_link_its_demands_have_the_same_bound() -> None:
+    """No proof was good when it armed, so that it drives without a session once the link is better."""
+    bench = Bench()
+    bench.wait(2.0)
+    station = Station(bench)
+    station.hold(1.0, NEUTRAL, echo_age=0.6)
+    bench.arm()
+    station.hold(0.2, NEUTRAL)
+    station.hold(1.0, AHEAD, echo_age=0.3)
+    assert bench.turning
+    full = bench.throttles[0]
+    bench.wait(0.05)
+    assert bench.throttles[0] == full, "0.40 s after what it had seen"
+    bench.wait(0.07)
+    assert bench.throttles[0] < full, "0.47 s after what it had seen"
+
+
 # ---- old proofs ----
 
 
