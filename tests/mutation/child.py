@@ -16,7 +16,7 @@ WAIT_MAX = 600
 """s for a test, for mutants that wait forever."""
 OPTIONS = (
     "-o", "addopts=--import-mode=importlib", "-qq", "-s", "--no-header", "--no-summary", "--timeout=0",
-    "-p", "no:cacheprovider", "-p", "no:xdist",
+    "-p", "no:cacheprovider", "-p", "no:xdist", "--assert=plain",
 )  # fmt: skip
 KILLED, SURVIVED, BROKEN = 10, 11, 12
 """Exit codes. A child that ends by a signal has exceeded the time limit, or the mutant has crashed Python."""
@@ -34,6 +34,12 @@ class Watch:
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, TIME_MAX)
         signal.alarm(WAIT_MAX)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> None:
+        """End the process at a failed assertion: its report would cost more than the test."""
+        if call.excinfo is not None and call.excinfo.errisinstance(AssertionError):
+            self.end(item.nodeid)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """End the process at the first failure."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import pytest
 
-from dialects.messages import RadioStatus
+from dialects.messages import FileTransferProtocol, RadioStatus
 from link.core import LinkReport, Outgoing, SigningCounts, SourceCount
 from link.protocol.channel import Channel
 from link.protocol.failed_frame import MAX_MISMATCHES
@@ -58,6 +58,12 @@ def test_each_kind_of_message_has_its_rate_and_burst(kind: str, rate: int, burst
     assert sum(bucket.consume(0.0) for _ in range(burst + 10)) == burst
     eighths = [sum(bucket.consume(eighth / 8) for _ in range(rate // 8 + 2)) for eighth in range(1, 9)]
     assert sum(eighths) == rate
+
+
+@pytest.mark.parametrize(("downloads", "burst"), [(True, 2000), (False, 1000)])
+def test_files_come_in_larger_bursts_to_a_station_that_downloads(downloads: bool, burst: int) -> None:
+    channel, piece = vehicle(downloads=downloads), FileTransferProtocol(0, 1, 1, bytes(251))
+    assert sum(len(channel.receive(frame(piece, number % 256), HERE, 0.0)) for number in range(burst + 10)) == burst
 
 
 def test_a_meter_counts_what_came_in_its_window() -> None:
