@@ -125,7 +125,7 @@ class PeerTable:
 
     def _is_reserved(self, frames: Iterable[Frame]) -> bool:
         """Return whether a frame has the ids for which places are kept."""
-        return self.reserved_ids is not None and any((each[1], each[2]) == self.reserved_ids for each in frames)
+        return any((each[1], each[2]) == self.reserved_ids for each in frames)
 
     def _is_evictable(self, state: PeerState, now: float) -> bool:
         return not state.systems or now - state.last_seen > PEER_SILENCE
