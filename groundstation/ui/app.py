@@ -324,6 +324,7 @@ class ConsoleApp(App[int]):
             self._quitting.request()
             return True
         if self._navigator.closing:
+            self._navigator.hold(name)
             return True
         self._light(event.key)
         if name == "app.goto":

@@ -46,6 +46,7 @@ class ScreenNavigator:
         self._app, self._context, self._theme = app, context, choose_theme
         self._current = self._before = ROOT
         self._closing = 0
+        self._held: ScreenRow | None = None
 
     @property
     def actions(self) -> dict[str, Callable[[], None]]:
@@ -158,6 +159,13 @@ class ScreenNavigator:
 
     def _end_closing(self) -> None:
         self._closing -= 1
+        if not self._closing and self._held is not None:
+            row, self._held = self._held, None
+            self.open(row)
+
+    def hold(self, action: str) -> None:
+        """Open the screen of an action as soon as what was chosen has been done; other keys are dropped meanwhile."""
+        self._held = next((row for row in SCREENS if row.action == action), self._held)
 
     @property
     def closing(self) -> bool:

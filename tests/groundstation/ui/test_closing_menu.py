@@ -9,9 +9,12 @@ import pytest
 from groundstation.intents.plan import ChooseMode
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.vehicle import SetMode
+from groundstation.ui.screens.goto import GoToMenu
+from groundstation.ui.screens.links import LinksScreen
 from groundstation.ui.screens.log import LogScreen
 from tests.groundstation.ui.example_map import pages, picture, plan_view, track
 from tests.groundstation.ui.pilots import console, type_in
+from tests.groundstation.ui.ptys import until
 
 ARMED = picture(armed=True, mode="HOLD", speed=0.0)
 
@@ -36,3 +39,21 @@ async def test_a_digit_behind_the_choice_of_the_menu_is_no_mode(below: str, read
                 await asyncio.sleep(0)
         assert not [each for each in screen.station.intents if isinstance(each, (SetMode, ChooseMode))]
         assert SetKeyGate(open=True) not in screen.station.intents
+
+
+@pytest.mark.parametrize("read", ["\x1b[18~", "\x1bOP\x1b[18~", "\x1b[18~1"], ids=["F7", "F1 F7", "F7 1"])
+async def test_the_key_of_a_screen_while_the_menu_closes_opens_that_screen(read: str) -> None:
+    async with console() as screen:
+        await screen.show(ARMED)
+        screen.station.intents.clear()
+        type_in(screen, "\x07")
+        await screen.pilot.pause()
+        type_in(screen, "6")
+        async with asyncio.timeout(20):
+            while isinstance(screen.app.screen, GoToMenu):  # noqa: ASYNC110, the keys come in the very next turn
+                await asyncio.sleep(0)
+        type_in(screen, read)
+        await until(lambda: isinstance(screen.app.screen, LinksScreen))
+        await screen.pilot.pause()
+        assert isinstance(screen.app.screen, LinksScreen)
+        assert not [each for each in screen.station.intents if isinstance(each, (SetMode, ChooseMode))]
