@@ -69,8 +69,9 @@ class Ros2Node:
     """The node is seen by others."""
     _plans: list[_Plan] = field(default_factory=list)
     _topics: dict[str, _Topic] = field(default_factory=dict)
-    _takes: dict[str, Take] = field(default_factory=dict)
-    _serves: dict[str, Serve] = field(default_factory=dict)
+    _takes: dict[int, Take] = field(default_factory=dict)
+    """Number of an endpoint -> what takes its messages; one topic may have several types."""
+    _serves: dict[int, Serve] = field(default_factory=dict)
     _calls: set[asyncio.Task[None]] = field(default_factory=set)
     _lateness: LatenessCheck = field(default_factory=LatenessCheck)
     _wire: Wire | None = None
@@ -85,12 +86,12 @@ class Ros2Node:
     def add_subscription(self, topic: str, kind: str, take: Take) -> None:
         """Take the messages of a topic."""
         self._plans.append(_Plan(Kind.SUBSCRIPTION, topic, kind, BEST_EFFORT_5))
-        self._takes[topic] = take
+        self._takes[len(self._plans)] = take
 
     def add_service(self, name: str, kind: str, serve: Serve) -> None:
         """Serve requests."""
         self._plans.append(_Plan(Kind.SERVICE, name, kind, RELIABLE_10))
-        self._serves[name] = serve
+        self._serves[len(self._plans)] = serve
 
     def start(self) -> None:
         """Connect to the router, and try again until it is there."""
@@ -125,10 +126,6 @@ class Ros2Node:
             endpoints.append(endpoint)
             if plan.kind is Kind.PUBLISHER:
                 self._topics[plan.name] = _Topic(endpoint, gid_of(endpoint.token))
-            elif plan.kind is Kind.SUBSCRIPTION:
-                self._takes[whole] = self._takes[plan.name]
-            else:
-                self._serves[whole] = self._serves[plan.name]
         assert self._wire is not None
         self._wire.declare(node.domain, [node.token, *(each.token for each in endpoints)], endpoints)
         self.ready = True
@@ -150,7 +147,7 @@ class Ros2Node:
         except BadMessageError as error:
             self.note(f"{arrived.endpoint.name}: {error}; ignored")
             return
-        self._takes[arrived.endpoint.name](arrived.attachment.gid, message)
+        self._takes[arrived.endpoint.number](arrived.attachment.gid, message)
 
     def _request(self, request: Request) -> None:
         if len(self._calls) < MAX_CALLS:
@@ -165,5 +162,5 @@ class Ros2Node:
         except BadMessageError as error:
             self.note(f"{request.endpoint.name}: {error}; ignored")
             return
-        values = await self._serves[request.endpoint.name](message)
+        values = await self._serves[request.endpoint.number](message)
         request.reply(self.types.encode(f"{kind}_Response", values))

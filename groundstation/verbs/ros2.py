@@ -35,7 +35,7 @@ LAST_DOMAIN = 232
 """Of ROS 2, where DDS needs a port for each."""
 DEFAULT_ROUTER = "tcp/localhost:7447"
 """Where rmw_zenoh_cpp looks for its router."""
-CMD_VEL, TWIST_TYPE = "cmd_vel", "geometry_msgs/msg/Twist"
+CMD_VEL, TWIST_TYPE, STAMPED_TYPE = "cmd_vel", "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 COMMAND, WORD_TYPE = "command", "std_msgs/msg/String"
 PUBLISHED = {
     "odom": ODOMETRY,
@@ -95,7 +95,7 @@ def _prepare_types() -> RosTypes:
     types = RosTypes()
     for name, parts in SERVICES.items():
         types.register_service(name, *parts)
-    for kind in (*PUBLISHED.values(), TRANSFORM_TYPE, TWIST_TYPE, WORD_TYPE, *SERVICES):
+    for kind in (*PUBLISHED.values(), TRANSFORM_TYPE, TWIST_TYPE, STAMPED_TYPE, WORD_TYPE, *SERVICES):
         types.prepare(kind)
     return types
 
@@ -153,6 +153,9 @@ def _build(session: VerbSession, driver: RosDriver, options: argparse.Namespace)
     def take_twist(gid: bytes, message: Any) -> None:
         driver.push_twist((CMD_VEL, gid), message.linear.x, message.angular.z)
 
+    def take_stamped(gid: bytes, message: Any) -> None:
+        take_twist(gid, message.twist)
+
     def take_word(gid: bytes, message: Any) -> None:
         driver.push_word((COMMAND, gid), message.data)
 
@@ -161,6 +164,7 @@ def _build(session: VerbSession, driver: RosDriver, options: argparse.Namespace)
         return {"success": done, "message": text}
 
     node.add_subscription(CMD_VEL, TWIST_TYPE, take_twist)
+    node.add_subscription(CMD_VEL, STAMPED_TYPE, take_stamped)
     node.add_subscription(COMMAND, WORD_TYPE, take_word)
     if options.arm_service:
         node.add_service("~/arm", "std_srvs/srv/SetBool", arm)

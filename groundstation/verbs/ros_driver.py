@@ -71,7 +71,7 @@ class RosDriver:
         now = self._session.now
         before = self.sources.axes(now)
         if not self.sources.push(source, axes, silence, now):
-            self.note("a second publisher demands motion: it is ignored until it has shown neutral")
+            self.note("motion is ignored: another publisher drives, or this one must send zero first")
         elif not axes.neutral:
             self._session.contact.operator.record_input(now)
         if self.sources.axes(now) != before:

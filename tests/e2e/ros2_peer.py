@@ -18,6 +18,8 @@ import xxhash
 import zenoh
 
 TWIST = "geometry_msgs::msg::dds_::Twist_/RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"
+STAMPED_HASH = "RIHS01_5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64"
+STAMPED = f"geometry_msgs::msg::dds_::TwistStamped_/{STAMPED_HASH}"
 STRING = "std_msgs::msg::dds_::String_/RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 CDR = b"\x00\x01\x00\x00"
 PERIOD = 0.05
@@ -38,11 +40,16 @@ class Peer:
     def __init__(self, port: int, name: str = "teleop") -> None:
         self.session = open_session(port)
         self._name = name
-        self._count = 0
+        self.count = 0
+        """Messages published so far."""
         self._held: dict[str, Any] = {}
 
     def twist(self, x: float, z: float = 0.0) -> None:
         self.put("cmd_vel", TWIST, CDR + struct.pack("<6d", x, 0, 0, 0, 0, z))
+
+    def stamped(self, x: float) -> None:
+        header = struct.pack("<iII4s", 0, 0, 1, b"")  # a stamp, the length of an empty text, its end and padding
+        self.put("cmd_vel", STAMPED, CDR + header + struct.pack("<6d", x, 0, 0, 0, 0, 0))
 
     def word(self, text: str) -> None:
         data = text.encode() + b"\x00"
@@ -52,12 +59,12 @@ class Peer:
         """Publish; the first time the token is shown."""
         zid = self.session.info.zid()
         token = f"@ros2_lv/0/{zid}/0/7/MP/%/%/{self._name}/%{topic}/{kind}/::,1:,:,:,,"
-        if topic not in self._held:
-            self._held[topic] = self.session.liveliness().declare_token(token)
-        self._count += 1
+        if token not in self._held:
+            self._held[token] = self.session.liveliness().declare_token(token)
+        self.count += 1
         gid = struct.pack("<Q", (number := xxhash.xxh3_128_intdigest(token.encode())) & (1 << 64) - 1)
         gid += struct.pack("<Q", number >> 64)
-        attachment = struct.pack("<qqB", self._count, time.time_ns(), 16) + gid
+        attachment = struct.pack("<qqB", self.count, time.time_ns(), 16) + gid
         self.session.put(f"0/{topic}/{kind}", data, attachment=attachment)
 
     def listen(self, key: str, take: Callable[[bytes, bytes], None]) -> None:

@@ -66,6 +66,9 @@ def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
     with world.repeating(lambda: peer.word("i")):
         world.turns()
     world.stands()
+    with world.repeating(lambda: peer.stamped(1.0)):
+        world.turns()
+    world.stands()
     with world.repeating(partial(_send_nonsense, peer)):
         world.until(lambda: "refused: linear.x nan" in world.text, "NaN is not refused")
         world.until(lambda: "are no geometry_msgs/msg/Twist" in world.text, "garbage is not refused")
@@ -121,9 +124,12 @@ def test_graph_telemetry_parameters_and_arming_through_a_station(world: World) -
         peer.listen(f"0/{topic}/**", partial(_keep, heard, topic))
     with world.repeating(lambda: peer.twist(1.0)):
         world.until(lambda: "is disarmed" in world.text, "a message moves a disarmed vehicle, or nobody is told")
-    assert not world.vehicle.turning()
-    armed = _call(world, ARM, "std_srvs/srv/SetBool", b"\x01")
-    assert (armed.success, armed.message) == (True, "Rover 1 is armed")
+        armed = _call(world, ARM, "std_srvs/srv/SetBool", b"\x01")
+        assert (armed.success, armed.message) == (True, "Rover 1 is armed")
+        later = peer.count + 20
+        world.until(lambda: peer.count >= later, "")  # the same stream goes on: it must show zero before it drives
+        assert not any(each.turning for each in world.vehicle.outputs())
+    peer.twist(0.0)
     with world.repeating(lambda: peer.twist(0.0, 2.0)):
         world.turns()
     assert _call(world, ARM, "std_srvs/srv/SetBool", b"\x00").success

@@ -12,6 +12,7 @@ from groundstation.ros.types import BadMessageError, RosTypes
 TWIST = "geometry_msgs/msg/Twist"
 PUBLISHED_HASHES = {
     TWIST: "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a",
+    "geometry_msgs/msg/TwistStamped": "5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64",
     "std_msgs/msg/String": "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
     "std_srvs/srv/SetBool": "abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a",
     "rcl_interfaces/srv/ListParameters": "3e6062bfbb27bfb8730d4cef2558221f51a11646d78e7bb30a1e83afac3aad9d",
@@ -55,6 +56,23 @@ def test_a_twist_is_a_header_of_cdr_and_six_doubles(types: RosTypes) -> None:
     data = types.encode(TWIST, {"linear": vector, "angular": {"x": 4.0, "y": 5.0, "z": 6.0}})
     assert data == b"\x00\x01\x00\x00" + struct.pack("<6d", 1, 2, 3, 4, 5, 6)
     assert types.decode(TWIST, data).angular.z == 6.0
+
+
+BATTERY_OF_CYCLONEDDS = bytes.fromhex(
+    "00010000010000000065cd1d0a000000626173655f6c696e6b000000000048410000a2410000c0bf00000000000000000000000000"
+    "00403f02000301030000000000804000008840000088400000000002000000300000000100000000"
+)
+"""The BatteryState below as cyclonedds 11.0.1 serializes it."""
+
+
+def test_a_battery_state_has_the_bytes_that_cyclonedds_makes(types: RosTypes) -> None:
+    values = {
+        "header": (1_500_000, "base_link"), "voltage": 12.5, "temperature": 20.25, "current": -1.5, "charge": 0.0,
+        "capacity": 0.0, "design_capacity": 0.0, "percentage": 0.75, "power_supply_status": 2,
+        "power_supply_health": 0, "power_supply_technology": 3, "present": True, "cell_voltage": [4.0, 4.25, 4.25],
+        "cell_temperature": [], "location": "0", "serial_number": "",
+    }  # fmt: skip
+    assert types.encode("sensor_msgs/msg/BatteryState", values) == BATTERY_OF_CYCLONEDDS
 
 
 def test_a_string_in_both_byte_orders(types: RosTypes) -> None:
