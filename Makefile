@@ -3,10 +3,10 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all coverage bench soak vm mutate release
+.PHONY: help setup check format test-fast test test-all coverage bench soak vm aarch64 mutate release
 
 help:  ## List the targets.
-	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
+	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
 
 setup:  ## Create .venv with everything that development needs.
 	python3 -m venv .venv
@@ -42,6 +42,9 @@ soak:  ## Drive for an hour over a bad network with programs killed in between; 
 
 vm:  ## Test pins, I2C, the service and a serial line against Debian's kernel in a virtual machine; needs root once.
 	.venv/bin/python -m tests.vm $(ARGS)
+
+aarch64:  ## Test the core on an emulated aarch64, with Debian's Python for it; needs qemu-user-static.
+	.venv/bin/python -m tests.aarch64 $(ARGS)
 
 mutate:  ## Change the safety code line by line and report what no test notices.
 	.venv/bin/python -m tests.mutation $(ARGS)
