@@ -36,6 +36,7 @@ from tests.benchmarks import (
     signing,
     stations,
     strangers,
+    tenth_core,
     verb,
 )
 from tests.benchmarks.figures import BenchmarkError, Options, Report
@@ -49,6 +50,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "hops": (hops.run, "where the time of a key goes, with each pane of Drive, beside a bare pair"),
     "serial_key": (serial_key.run, "the same over a serial cable at 57600 and 921600 baud"),
     "loop_lateness": (loop_lateness.run, "how late the vehicle's control cycles are, idle and on a busy machine"),
+    "tenth_core": (tenth_core.run, "the vehicle with a tenth of a core: control cycles, keys, failsafes"),
     "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
     "bridge_stations": (bridge_stations.run, "what 1, 10 and 100 ground stations cost a bridge"),
     "services": (services.run, "parameters, a mission and a log from a real vehicle, by UDP and at 57600 baud"),
