@@ -9,7 +9,9 @@ Definition: https://mavlink.io/en/messages/common.html#MANUAL_CONTROL.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from dialects.enums import Autopilot, DriveType
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence
@@ -18,8 +20,7 @@ FULL_DEFLECTION = 1000
 """Full deflection of an axis (common.xml, MANUAL_CONTROL)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Axes:
+class Axes(msgspec.Struct, frozen=True):
     """A demand: throttle forward positive, steering clockwise (right) positive, each -1..1."""
 
     throttle: float = 0.0
@@ -34,8 +35,7 @@ class Axes:
 NEUTRAL = Axes()
 
 
-@dataclass(frozen=True, slots=True)
-class AxisMap:
+class AxisMap(msgspec.Struct, frozen=True):
     """Which axis carries what; `throttle_neutral` and `throttle_span` are in axis units."""
 
     throttle: str

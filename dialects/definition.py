@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 FILE = Path(__file__).with_name("rover.xml")
 PRIVATE_IDS = range(46000, 46100)
 """Message ids that no public dialect uses."""
 
 
-@dataclass(frozen=True, slots=True)
-class FieldDefinition:
+class FieldDefinition(msgspec.Struct, frozen=True):
     """One field of a message."""
 
     name: str
@@ -22,8 +22,7 @@ class FieldDefinition:
     description: str
 
 
-@dataclass(frozen=True, slots=True)
-class MessageDefinition:
+class MessageDefinition(msgspec.Struct, frozen=True):
     """One message."""
 
     id: int
@@ -32,8 +31,7 @@ class MessageDefinition:
     fields: tuple[FieldDefinition, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class EnumValue:
+class EnumValue(msgspec.Struct, frozen=True):
     """One value of an enum."""
 
     number: int

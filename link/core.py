@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol, runtime_checkable
+
+import msgspec
 
 from dialects.messages import Message
 from link.signing.role import Role
@@ -69,16 +70,14 @@ class Outgoing(NamedTuple):
     """Several peers, on any links; the message is encoded once."""
 
 
-@dataclass(frozen=True, slots=True)
-class SourceCount:
+class SourceCount(msgspec.Struct, frozen=True):
     """Frames of one system and component since the link opened."""
 
     received: int
     lost: int
 
 
-@dataclass(frozen=True, slots=True)
-class SigningCounts:
+class SigningCounts(msgspec.Struct, frozen=True):
     """Frames that were refused for want of a good signature; the counters run since the link opened."""
 
     bad: int = 0
@@ -91,22 +90,20 @@ class SigningCounts:
     """The first of their stream, and more than a minute behind our clock."""
 
 
-@dataclass(frozen=True, slots=True)
-class GuardReport:
+class GuardReport(msgspec.Struct, frozen=True):
     """What is known of signing on a link that verifies."""
 
     key: str
     """Name and fingerprint of the key that signs what goes to everybody; empty without a key."""
-    refused: Mapping[int, SigningCounts] = field(default_factory=dict)
+    refused: Mapping[int, SigningCounts] = msgspec.field(default_factory=dict)
     """System id that a refused frame names -> how many. It may be anybody's: nothing of these frames is proven."""
-    behind: Mapping[int, float] = field(default_factory=dict)
+    behind: Mapping[int, float] = msgspec.field(default_factory=dict)
     """System id -> s by which the clock of its newest late frame was behind ours. The frame was genuine."""
-    ahead: Mapping[int, float] = field(default_factory=dict)
+    ahead: Mapping[int, float] = msgspec.field(default_factory=dict)
     """System id -> s by which its signing clock is ahead of ours."""
 
 
-@dataclass(frozen=True, slots=True)
-class LinkReport:
+class LinkReport(msgspec.Struct, frozen=True):
     """State of a link; counters run since the link opened."""
 
     name: str
@@ -123,7 +120,7 @@ class LinkReport:
     late: int = 0
     rate_limited: int = 0
     refused_peers: int = 0
-    unknown_ids: dict[tuple[int, int, int], tuple[int, int]] = field(default_factory=dict)
+    unknown_ids: dict[tuple[int, int, int], tuple[int, int]] = msgspec.field(default_factory=dict)
     """Of those, by system, component and id: frames, and bytes of the newest one. At most 64, and not verified."""
     dialect_mismatch: tuple[str, ...] = ()
     """Names of messages that arrive complete but with the checksum of another definition."""
@@ -152,7 +149,7 @@ class LinkReport:
     """Nothing is ever sent on it."""
     retry_in: float | None = None
     """s until the next attempt to open it; None while it is open."""
-    sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
+    sources: dict[tuple[int, int], SourceCount] = msgspec.field(default_factory=dict)
     audience: tuple[Peer, ...] = ()
     """Peers that get broadcast messages: those that sent a HEARTBEAT or connected, and the address that the user
     named."""

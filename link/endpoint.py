@@ -6,11 +6,11 @@ link/transport/ and add its row here.
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import Enum, auto
+
+import msgspec
 
 
 class EndpointError(ValueError):
@@ -24,8 +24,7 @@ class Side(Enum):
     GROUND_STATION = auto()
 
 
-@dataclass(frozen=True, slots=True)
-class Endpoint:
+class Endpoint(msgspec.Struct, frozen=True):
     """One end of a link, as parsed."""
 
     text: str
@@ -53,8 +52,7 @@ ZENOH = "zenoh"
 """The scheme of fleets."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scheme:
+class Scheme(msgspec.Struct, frozen=True):
     """One link type."""
 
     syntax: str
@@ -240,6 +238,8 @@ def _hint(text: str, scheme: str) -> str:
         path, _, baud = text.replace(",", ":").rpartition(":")
         path, baud = (path, baud) if path and baud.isdigit() else (text, str(DEFAULT_BAUD))
         return f"did you mean serial:{path}:{baud}? "
+    import difflib  # when it is needed: it takes 1 ms of each start
+
     near = difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
     if scheme in SCHEME_ALIASES or near:
         return f"did you mean {SCHEME_ALIASES.get(scheme) or near[0]}:{text.partition(':')[2].removeprefix('//')}? "

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import Enum
+
+import msgspec
 
 from dialects.modes import Mode
 from link.services.command.request import value_or_default
@@ -18,8 +19,7 @@ class ModeRequirement(Enum):
     POSITION = "position"
 
 
-@dataclass(frozen=True, slots=True)
-class ModeSpec:
+class ModeSpec(msgspec.Struct, frozen=True):
     """One mode: what drives the motors, what it needs, and who may select it."""
 
     mode: Mode

@@ -5,11 +5,10 @@ The estimator (vehicle/navigation/estimator.py) decides which of them it uses.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 
-@dataclass(frozen=True, slots=True)
-class ComputerReadings:
+class ComputerReadings(msgspec.Struct, frozen=True):
     """State of the companion computer, for ONBOARD_COMPUTER_STATUS and the overheat failsafe."""
 
     temperature: float | None = None
@@ -27,8 +26,7 @@ class ComputerReadings:
     """The processor is throttled now, because of heat or low voltage."""
 
 
-@dataclass(frozen=True, slots=True)
-class SensorFault:
+class SensorFault(msgspec.Struct, frozen=True):
     """Why a sensor gives no readings."""
 
     sensor: str
@@ -37,8 +35,7 @@ class SensorFault:
     """One line."""
 
 
-@dataclass(frozen=True, slots=True)
-class Readings:
+class Readings(msgspec.Struct, frozen=True):
     """The newest readings of all sensors; None without one. SI units; angles in rad, yaw clockwise from north."""
 
     roll: float | None = None

@@ -7,8 +7,9 @@ log budget with what the vehicle reports about itself (vehicle/statustext.py), a
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Protocol
+
+import msgspec
 
 from dialects.enums import Severity
 from link.core import Peer
@@ -43,12 +44,11 @@ class Asker(Protocol):
         """Whether the reply may be longer than the request."""
 
 
-@dataclass(slots=True)
-class _Budget:
+class _Budget(msgspec.Struct):
     """What one ground station has been sent."""
 
-    bucket: TokenBucket = field(default_factory=lambda: TokenBucket(RATE, BURST))
-    repeats: RepeatFilter = field(default_factory=lambda: RepeatFilter(ASKER_TEXTS))
+    bucket: TokenBucket = msgspec.field(default_factory=lambda: TokenBucket(RATE, BURST))
+    repeats: RepeatFilter = msgspec.field(default_factory=lambda: RepeatFilter(ASKER_TEXTS))
 
 
 class ReplyQueue:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+
+import msgspec
 
 from dialects.enums import Severity
 from dialects.messages import StatusText
@@ -36,12 +37,11 @@ ONCE_KEYS_MAX = 300
 """Keys of one group of `send_once`; beyond that the group is forgotten."""
 
 
-@dataclass(slots=True)
-class _Lane:
+class _Lane(msgspec.Struct):
     """Texts of one importance."""
 
     log_bucket: TokenBucket
-    waiting: deque[tuple[Severity, str]] = field(default_factory=lambda: deque(maxlen=QUEUE_SIZE))
+    waiting: deque[tuple[Severity, str]] = msgspec.field(default_factory=lambda: deque(maxlen=QUEUE_SIZE))
 
 
 class StatusTextQueue:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from fastcrc.crc16 import mcrf4xx
 
 TYPES: dict[str, str] = {
@@ -21,8 +21,7 @@ SIZES: dict[str, int] = {name: struct.calcsize("<" + code) for name, code in TYP
 """Type of a field -> bytes."""
 
 
-@dataclass(frozen=True, slots=True)
-class FilePosition:
+class FilePosition(msgspec.Struct, frozen=True):
     """Where in a definition file something stands."""
 
     file: str
@@ -33,8 +32,7 @@ class FilePosition:
         return f"{self.file}:{self.line}"
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
+class Field(msgspec.Struct, frozen=True):
     """One field of a message."""
 
     name: str
@@ -61,8 +59,7 @@ class Field:
         return f"{self.length or ''}{TYPES[self.type]}"
 
 
-@dataclass(frozen=True, slots=True)
-class MessageDefinition:
+class MessageDefinition(msgspec.Struct, frozen=True):
     """One message. `fields` and `extensions` are in the order of the file."""
 
     id: int
@@ -100,8 +97,7 @@ class MessageDefinition:
                 yield bytes([each.length])
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(msgspec.Struct, frozen=True):
     """One value of an enum."""
 
     name: str
@@ -111,8 +107,7 @@ class Entry:
     place: FilePosition
 
 
-@dataclass(frozen=True, slots=True)
-class EnumDefinition:
+class EnumDefinition(msgspec.Struct, frozen=True):
     """An enum, or the part of it that one file defines."""
 
     name: str
@@ -121,8 +116,7 @@ class EnumDefinition:
     place: FilePosition
 
 
-@dataclass(frozen=True, slots=True)
-class DefinitionFile:
+class DefinitionFile(msgspec.Struct, frozen=True):
     """The content of one file."""
 
     includes: tuple[tuple[str, FilePosition], ...]

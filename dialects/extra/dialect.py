@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import msgspec
 import pymavlink
+from msgspec.structs import replace
 
 from dialects.extra.definition_file import read_definitions
 from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, FilePosition, MessageDefinition
@@ -20,8 +21,7 @@ FILES_MAX = 64
 """Files of one dialect; all.xml of pymavlink has 18."""
 
 
-@dataclass(frozen=True, slots=True)
-class Enum:
+class Enum(msgspec.Struct, frozen=True):
     """An enum of all files."""
 
     name: str
@@ -30,8 +30,7 @@ class Enum:
     """Value -> name of the entry."""
 
 
-@dataclass(frozen=True, slots=True)
-class Dialect:
+class Dialect(msgspec.Struct, frozen=True):
     """The messages and enums of a file and of those that it includes."""
 
     messages: tuple[MessageDefinition, ...]
@@ -51,14 +50,13 @@ def load(text: str) -> Dialect:
     return Dialect(_join_messages(parts), _join_enums(parts))
 
 
-@dataclass(slots=True)
-class _Files:
+class _Files(msgspec.Struct):
     """The files read so far. `home`: the folder of the user's file."""
 
     home: Path
-    parts: dict[Path, DefinitionFile] = field(default_factory=dict)
+    parts: dict[Path, DefinitionFile] = msgspec.field(default_factory=dict)
     """In the order in which they were found: a file goes before those that it includes."""
-    _open: list[Path] = field(default_factory=list)
+    _open: list[Path] = msgspec.field(default_factory=list)
     """The files that include each other, down to the one that is read."""
 
     def read(self, text: str, place: FilePosition | None) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
 from groundstation.verbs.mavproxy_words import describe_action
-from link.runtime import asyncio_without_ssl, stdio
+from link.runtime import asyncio_without_ssl, startup_gc, stdio
 
 FLAGS = ("--json", "-q", "--quiet")
 """Options of all verbs that may also stand before the verb."""
@@ -36,9 +36,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if verb in LOCAL_HELP:
         return _run_local(verb, arguments[1:])
     asyncio_without_ssl.load()
-    from groundstation.cli.console import run as run_console
+    with startup_gc.paused():
+        from groundstation.cli.console import run as run_console
 
-    return run_console(arguments)
+        return run_console(arguments)
 
 
 def _plain_verb(arguments: Sequence[str]) -> Sequence[str]:

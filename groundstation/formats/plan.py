@@ -6,8 +6,10 @@ Home is no item here, and DO_JUMP names its target by the index in `mission`, fr
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
+
+from msgspec.structs import replace
 
 from dialects.enums import Autopilot, Command, MissionType
 from link.services.mission.items import DEGREES_SCALE, Items, MissionItem, to_int32

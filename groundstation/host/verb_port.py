@@ -7,9 +7,9 @@ import contextlib
 import logging
 import socket
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import msgspec
+from msgspec.structs import replace
 
 from dialects import codec
 from dialects.messages import MESSAGES

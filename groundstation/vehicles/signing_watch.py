@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Sequence
-from dataclasses import astuple
+
+from msgspec.structs import astuple
 
 from groundstation.snapshot.signing import SigningState, SigningView
 from link.core import LinkReport, SigningCounts

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import asdict, dataclass
 from typing import Any
+
+import msgspec
 
 from link.protocol.frame import noise_hint
 from link.routing.route_report import RouteReport, TransportReport
@@ -12,8 +13,7 @@ from link.routing.router import Router
 from link.transport.transport import Transport
 
 
-@dataclass(frozen=True, slots=True)
-class LinkStatus:
+class LinkStatus(msgspec.Struct, frozen=True):
     """One link. Rates are those of the last second; `loss` is 0..1; counts are since the start."""
 
     endpoint: str
@@ -34,8 +34,7 @@ class LinkStatus:
     """Frames dropped because this link had no room."""
 
 
-@dataclass(frozen=True, slots=True)
-class RouteStatus:
+class RouteStatus(msgspec.Struct, frozen=True):
     """One system and component, and the peer behind which it was seen."""
 
     system: int
@@ -48,8 +47,7 @@ class RouteStatus:
     lost: int
 
 
-@dataclass(frozen=True, slots=True)
-class BridgeStatus:
+class BridgeStatus(msgspec.Struct, frozen=True):
     """The whole status."""
 
     links: tuple[LinkStatus, ...]
@@ -61,7 +59,8 @@ class BridgeStatus:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the status for JSON."""
-        return asdict(self)
+        status: dict[str, Any] = msgspec.to_builtins(self)
+        return status
 
 
 class StatusMeter:

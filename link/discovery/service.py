@@ -6,8 +6,9 @@ The types are those that other ground stations use. The TXT record (RFC 6763) ha
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
+
+import msgspec
 
 from dialects.messages import printable
 from link.endpoint import LISTENING, Endpoint, is_loopback
@@ -27,8 +28,7 @@ class ServiceRole(StrEnum):
     UNKNOWN = ""
 
 
-@dataclass(frozen=True, slots=True)
-class MavlinkService:
+class MavlinkService(msgspec.Struct, frozen=True):
     """One end that listens."""
 
     name: str

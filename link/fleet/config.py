@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import re
 import socket
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from link.endpoint import FLEET_NAME, Endpoint, Side
 from link.fleet.traffic import CLASSES
@@ -67,8 +68,7 @@ VEHICLE_ROLE = "vehicle"
 """`role` of a vehicle's file, where that of an operator is a word of link.signing.keys.ROLES."""
 
 
-@dataclass(frozen=True, slots=True)
-class FleetConfig:
+class FleetConfig(msgspec.Struct, frozen=True):
     """How to connect, and as whom."""
 
     zenoh: zenoh.Config

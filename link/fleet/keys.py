@@ -12,7 +12,7 @@ and a frame whose role, class or message is not that of its key is refused: no c
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from dialects.messages import MESSAGES
 from link.fleet.roles import needed_role
@@ -36,8 +36,7 @@ def read_frame(data: bytes) -> Frame | None:
     return frames[0] if len(frames) == 1 and frames[0][4] == data else None
 
 
-@dataclass(frozen=True, slots=True)
-class FleetKeys:
+class FleetKeys(msgspec.Struct, frozen=True):
     """The keys of one program. `vehicle`: the vehicle that it is or wants; empty for all."""
 
     fleet: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 MAX_PRESENT = 256
 """Programs at once; further ones are not told, and are heard all the same."""
@@ -11,14 +11,13 @@ GRACE = 3.0
 conversations go on."""
 
 
-@dataclass(slots=True)
-class Presence:
+class Presence(msgspec.Struct):
     """The programs at the other end of one endpoint."""
 
-    present: set[str] = field(default_factory=set)
+    present: set[str] = msgspec.field(default_factory=set)
     """Addresses with a token, or without one for less than GRACE."""
-    _missing: dict[str, float] = field(default_factory=dict)
-    _owners: dict[int, str] = field(default_factory=dict)
+    _missing: dict[str, float] = msgspec.field(default_factory=dict)
+    _owners: dict[int, str] = msgspec.field(default_factory=dict)
     """System id -> the vehicle that was the first to send with it."""
 
     def add(self, address: str) -> bool:

@@ -7,8 +7,9 @@ that drives the motors.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
+
+import msgspec
 
 from dialects.traits import ACKED, NEWEST_ONLY, URGENT
 
@@ -21,8 +22,7 @@ class TrafficPriority(Enum):
     DATA = "data"
 
 
-@dataclass(frozen=True, slots=True)
-class TrafficClass:
+class TrafficClass(msgspec.Struct, frozen=True):
     """One quality of service."""
 
     word: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from link.protocol.frame import FramerCounts, UnknownKey
 
@@ -10,8 +10,7 @@ MAX_MISMATCHES = 64
 """Message ids whose frames arrive complete but with the checksum of another definition, that are counted one by one."""
 
 
-@dataclass(slots=True)
-class _FailedFrame:
+class _FailedFrame(msgspec.Struct):
     end: int
     """Position where it claims to end."""
     size: int

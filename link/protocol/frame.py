@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import NamedTuple
+
+import msgspec
 
 from dialects.codec import CRC_SIZE, HEADER_V1, HEADER_V2, INCOMPAT_SIGNED, MAGIC_V1, MAGIC_V2, SIGNATURE_SIZE
 from dialects.messages import MESSAGES
@@ -60,8 +61,7 @@ UnknownKey = tuple[int, int, int]
 """System, component, message id; of a frame that could not be verified."""
 
 
-@dataclass(slots=True)
-class FramerCounts:
+class FramerCounts(msgspec.Struct):
     """What a framer has counted so far."""
 
     frames: int = 0
@@ -72,9 +72,9 @@ class FramerCounts:
     """Complete frames with an id outside the dialect."""
     refused: int = 0
     """Frames with unknown flags, or MAVLink 1 frames of the wrong length."""
-    mismatches: dict[int, int] = field(default_factory=dict)
+    mismatches: dict[int, int] = msgspec.field(default_factory=dict)
     """Known id -> how many complete frames had the checksum of another definition."""
-    unknown_ids: dict[UnknownKey, tuple[int, int]] = field(default_factory=dict)
+    unknown_ids: dict[UnknownKey, tuple[int, int]] = msgspec.field(default_factory=dict)
     """Of `unknown`, by source and id: frames, and bytes of the newest one. Frames that are returned are left out."""
 
     def add_unknown(self, key: UnknownKey, frames: int, size: int) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+
+import msgspec
 
 from link.core import Peer, SourceCount
 from link.protocol.frame import Frame
@@ -32,8 +33,7 @@ def _buckets() -> dict[str, TokenBucket]:
     }
 
 
-@dataclass(slots=True)
-class PeerState:
+class PeerState(msgspec.Struct):
     """State of one address."""
 
     peer: Peer
@@ -46,12 +46,12 @@ class PeerState:
     silent: bool = False
     """No frame yet in this conversation; such a peer is kept only if it is fixed or connected."""
     sequence: int = 0
-    systems: set[int] = field(default_factory=set)
+    systems: set[int] = msgspec.field(default_factory=set)
     """Systems whose HEARTBEAT came from this address."""
-    sources: dict[tuple[int, int], SequenceTracker] = field(default_factory=dict)
-    newest: dict[int, bytes] = field(default_factory=dict)
+    sources: dict[tuple[int, int], SequenceTracker] = msgspec.field(default_factory=dict)
+    newest: dict[int, bytes] = msgspec.field(default_factory=dict)
     """Newest frame of each system, as received."""
-    buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
+    buckets: dict[str, TokenBucket] = msgspec.field(default_factory=_buckets)
     key: SigningKey | None = None
     """The key of its newest signed frame, with which ours to it are signed."""
     lead: int = 0

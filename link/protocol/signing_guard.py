@@ -7,8 +7,9 @@ number of its sender. https://mavlink.io/en/guide/message_signing.html
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple
+
+import msgspec
 
 from dialects import codec
 from dialects.messages import Heartbeat, RadioStatus
@@ -32,8 +33,7 @@ LEAD_MAX = 50 * 365 * 86400 * TICKS
 """How far a receiver's clock may be ahead for us to follow it; beyond that its timestamps are nearly used up."""
 
 
-@dataclass(frozen=True, slots=True)
-class SigningPolicy:
+class SigningPolicy(msgspec.Struct, frozen=True):
     """What a program makes of frames that are not signed, or not well."""
 
     unsigned: Role | None
@@ -73,15 +73,14 @@ class Passed(NamedTuple):
     """None: it is not signed."""
 
 
-@dataclass(slots=True)
-class Judged:
+class Judged(msgspec.Struct):
     """Frames that arrived together, by what is done with them."""
 
-    passed: list[Passed] = field(default_factory=list)
-    refused: list[Frame] = field(default_factory=list)
-    late: list[Frame] = field(default_factory=list)
+    passed: list[Passed] = msgspec.field(default_factory=list)
+    refused: list[Frame] = msgspec.field(default_factory=list)
+    late: list[Frame] = msgspec.field(default_factory=list)
     """Genuine HEARTBEATs of systems whose clock is behind."""
-    radio: list[Frame] = field(default_factory=list)
+    radio: list[Frame] = msgspec.field(default_factory=list)
     """Unsigned RADIO_STATUS, for flow control only."""
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass, fields, replace
+
+import msgspec
+from msgspec.structs import replace
 
 
-@dataclass(frozen=True, slots=True)
-class RouteReport:
+class RouteReport(msgspec.Struct, frozen=True):
     """One row of the table of routes."""
 
     system: int
@@ -21,8 +22,7 @@ class RouteReport:
     lost: int
 
 
-@dataclass(slots=True)
-class TransportReport:
+class TransportReport(msgspec.Struct):
     """What one transport, or one peer on it, has carried since the start."""
 
     peers: int = 0
@@ -44,5 +44,5 @@ class TransportReport:
 
     def add(self, more: TransportReport) -> None:
         """Add the counts of another report."""
-        for each in fields(self):
-            setattr(self, each.name, getattr(self, each.name) + getattr(more, each.name))
+        for name in self.__struct_fields__:
+            setattr(self, name, getattr(self, name) + getattr(more, name))

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Generic, TypeVar
 
+import msgspec
+
 Facts = TypeVar("Facts")
 Found = TypeVar("Found")
 
@@ -32,8 +34,7 @@ MARKS = {Health.OK: "ok", Health.WARNING: "!", Health.FAULT: "X", Health.UNKNOWN
 ADVISED = (Health.WARNING, Health.FAULT, Health.UNKNOWN)
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(msgspec.Struct, frozen=True):
     """What one row found."""
 
     health: Health

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -25,6 +24,8 @@ BOUNDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
 def suggest(word: str, known: Iterable[str]) -> str:
     """Return "did you mean ...?", or the known words."""
     known = list(known)
+    import difflib  # when it is needed: it takes 1 ms of each start
+
     near = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
     return (
         f"did you mean {' or '.join(near)}?"

@@ -9,9 +9,10 @@ from __future__ import annotations
 import json
 import lzma
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
+
+import msgspec
 
 from dialects import messages as m
 from link.services.ftp.protocol import crc32
@@ -28,8 +29,7 @@ _CHOICE = re.compile(r"(?:^|: |, )(\d+):? ([^,;]+)")
 """A value with its name in a description."""
 
 
-@dataclass(frozen=True, slots=True)
-class Metadata:
+class Metadata(msgspec.Struct, frozen=True):
     """The files, as served in the root of MAVLink FTP."""
 
     general: bytes

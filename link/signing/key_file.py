@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Annotated
 
 import msgspec
-from platformdirs import user_config_path
 
 from link.runtime.core_dumps import forbid_core_dumps
 from link.runtime.toml_errors import explain_error
@@ -93,6 +92,8 @@ def change_keys(path: Path, change: Callable[[KeyRing], KeyRing]) -> KeyRing:
 
 def station_key_file() -> Path:
     """Return the file of this user's ground station: $XDG_CONFIG_HOME/mavhelm/keys.toml on Linux."""
+    from platformdirs import user_config_path  # when it is needed: it takes 3 ms of each start
+
     return user_config_path("mavhelm") / FILE
 
 

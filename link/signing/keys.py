@@ -9,9 +9,12 @@ import hashlib
 import re
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import NoReturn
+
+import msgspec
+from msgspec.structs import replace
 
 from link.signing.role import Role
 
@@ -91,8 +94,7 @@ _DERIVATIONS: Mapping[PassphraseKind, Callable[[bytes], bytes]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class KeyRing:
+class KeyRing(msgspec.Struct, frozen=True):
     """The keys of one program. Each method returns the ring that it leads to."""
 
     keys: tuple[SigningKey, ...] = ()

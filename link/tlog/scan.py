@@ -10,9 +10,9 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import msgspec
 from fastcrc.crc16 import mcrf4xx
 
 from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V1, HEADER_V2, MAGIC_V1, MAGIC_V2
@@ -69,12 +69,11 @@ class Gap(NamedTuple):
     size: int
 
 
-@dataclass(slots=True)
-class CarefulScan:
+class CarefulScan(msgspec.Struct):
     """Result of scan()."""
 
-    frames: list[LogFrame] = field(default_factory=list)
-    damage: list[Gap] = field(default_factory=list)
+    frames: list[LogFrame] = msgspec.field(default_factory=list)
+    damage: list[Gap] = msgspec.field(default_factory=list)
     end: int = 0
     """Offset at which the next block starts."""
     sure: bool = True
@@ -83,8 +82,7 @@ class CarefulScan:
     """Bytes at the end of the file that are no whole record: cut off, or still being written."""
 
 
-@dataclass(slots=True)
-class FastScan:
+class FastScan(msgspec.Struct):
     """Result of scan_fast()."""
 
     last: dict[SourceKey, int]

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import contextlib
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
 from serial.tools import list_ports
 
 from link.transport.processes import PROC, describe_process, open_files, other_processes, program_name
@@ -19,8 +19,7 @@ LOGINS = ("getty", "agetty")
 """Programs that wait for a login on a port: the arguments name it. They belong to root, who hides their descriptors."""
 
 
-@dataclass(frozen=True, slots=True)
-class SerialPort:
+class SerialPort(msgspec.Struct, frozen=True):
     """One port."""
 
     path: str

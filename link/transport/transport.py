@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
+
+import msgspec
 
 from link.endpoint import Endpoint
 from link.protocol.channel import Channel
@@ -67,8 +68,7 @@ class Transport(Protocol):
         """Free the socket or port. Called once."""
 
 
-@dataclass(slots=True)
-class Link:
+class Link(msgspec.Struct):
     """A transport and the channel on it."""
 
     transport: Transport

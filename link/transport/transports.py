@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from importlib import import_module
+
+from msgspec.structs import replace
 
 from link.endpoint import SCHEMES, Scheme, Side, parse_endpoints
 from link.transport.transport import LinkError, Transport, TransportFactory

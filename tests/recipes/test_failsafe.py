@@ -20,7 +20,7 @@ ROW = """    Failsafe.UPSIDE_DOWN: FailsafeRule(
         "upside down", _upside_down, (_HOLD, FailsafeStep(5, FailsafeAction.DISARM)), help="roll above 3 rad"),"""
 
 TURN_IT_OVER = """
-from dataclasses import replace
+from msgspec.structs import replace
 from dialects import messages as m
 from dialects.enums import Failsafe
 from dialects.modes import Mode

@@ -12,7 +12,7 @@ TOY = '''"""UDP under the name of a toy."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from msgspec.structs import replace
 
 from link.endpoint import Endpoint
 from link.transport.transport import Transport

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.axes import Axes
@@ -56,7 +56,7 @@ class Field(Bench):
 
     def cycle(self) -> None:
         if self.body is not None:
-            self.readings = replace(self.body.read(self.now), **self.blind)  # type: ignore[arg-type]
+            self.readings = replace(self.body.read(self.now), **self.blind)
             self.track.append(self.truth)
         super().cycle()
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
+
+import msgspec
 
 from vehicle.accessories import OFF, Accessory
 from vehicle.hardware.error_text import format_error
@@ -29,8 +30,7 @@ class PulseRange(NamedTuple):
     high: int
 
 
-@dataclass(frozen=True, slots=True)
-class AccessorySpec:
+class AccessorySpec(msgspec.Struct, frozen=True):
     """The specification of one accessory, built from its settings."""
 
     kind: Literal["relay", "servo"]
@@ -44,7 +44,7 @@ class AccessorySpec:
     pulses: PulseRange | None = None
     """None for a relay."""
     taken: Sequence[str] = ()
-    shared: Mapping[str, str] = field(default_factory=dict)
+    shared: Mapping[str, str] = msgspec.field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -58,8 +58,7 @@ class AccessorySpec:
         return f"{value} us" if value else "no pulses"
 
 
-@dataclass(slots=True)
-class RepeatState:
+class RepeatState(msgspec.Struct):
     """A running repetition (DO_REPEAT_RELAY, DO_REPEAT_SERVO): alternates between two values."""
 
     away: int

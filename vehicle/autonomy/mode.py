@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from vehicle.autonomy.trail import Trail
 from vehicle.navigation.estimate import Estimate
@@ -15,15 +16,13 @@ from vehicle.navigation.speed_control import DesiredMotion
 from vehicle.params import Params
 
 
-@dataclass(frozen=True, slots=True)
-class ModeFinished:
+class ModeFinished(msgspec.Struct, frozen=True):
     """Result of a step: the mode is done, and HOLD follows."""
 
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
-class ModeContext:
+class ModeContext(msgspec.Struct, frozen=True):
     """The parts of the vehicle that a mode may use."""
 
     params: Params

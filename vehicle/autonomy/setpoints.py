@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from dialects import messages as m
 from vehicle.navigation.estimate import Estimate
@@ -65,8 +66,7 @@ class PositionTarget(NamedTuple):
 Target = VelocityTarget | PositionTarget
 
 
-@dataclass(frozen=True, slots=True)
-class SetpointRejection:
+class SetpointRejection(msgspec.Struct, frozen=True):
     """Why a setpoint was rejected."""
 
     reason: str

@@ -7,9 +7,10 @@ import contextlib
 import errno
 import os
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from dialects.enums import DriveType
 from link.endpoint import Side
@@ -43,8 +44,7 @@ BUSY_ERRNOS = (errno.EADDRINUSE, errno.EBUSY, errno.EAGAIN)
 """Errors of the kernel for a port that another program has open."""
 
 
-@dataclass(frozen=True, slots=True)
-class CheckResult:
+class CheckResult(msgspec.Struct, frozen=True):
     """The result for one item."""
 
     item: str

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from link.runtime import asyncio_without_ssl, stdio
+from link.runtime import asyncio_without_ssl, startup_gc, stdio
 from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
 from vehicle.cli.options import (
@@ -41,7 +41,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser = build_parser()
         if unknown := find_unknown_option(arguments):
             parser.error(unknown)
-        return _run(parser.parse_intermixed_args(join_home_option(parser.reject_empty(arguments))), parser)
+        options = parser.parse_intermixed_args(join_home_option(parser.reject_empty(arguments)))
+        with startup_gc.paused():
+            return _run(options, parser)
     except KeyboardInterrupt:  # before the daemon handles signals; no motor is open yet
         return 0
 

@@ -7,8 +7,9 @@ import math
 import signal
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from dialects.enums import DriveType
 from vehicle.drive.gate import MOTOR_TEST_THROTTLE_MAX as LARGEST
@@ -28,8 +29,7 @@ class RefusedError(Exception):
     """The test is rejected; the text is one line."""
 
 
-@dataclass(frozen=True, slots=True)
-class MotorTestOptions:
+class MotorTestOptions(msgspec.Struct, frozen=True):
     """Throttle of each motor, and duration in s."""
 
     throttles: tuple[float, ...]

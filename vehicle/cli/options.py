@@ -6,7 +6,6 @@ To add an option, add a row to OPTIONS (or SIMULATION_OPTIONS) and use its value
 from __future__ import annotations
 
 import argparse
-import difflib
 import math
 import sys
 from collections.abc import Sequence
@@ -97,6 +96,8 @@ def find_unknown_option(arguments: Sequence[str]) -> str | None:
     for argument in arguments:
         name = argument.partition("=")[0]
         if name.startswith("--") and name not in known:
+            import difflib  # when it is needed: it takes 1 ms of each start
+
             near = difflib.get_close_matches(name, known, n=1)
             return f"unknown option {name}" + (f"; did you mean {near[0]}?" if near else "")
     return None
@@ -127,6 +128,8 @@ def _param(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     name = name.strip().upper()
     if name not in PARAMETERS:
+        import difflib
+
         near = difflib.get_close_matches(name, PARAMETERS, n=3)
         hint = f"did you mean {' or '.join(near)}?" if near else f"known: {', '.join(PARAMETERS)}"
         raise argparse.ArgumentTypeError(f"unknown parameter {name!r}; {hint}")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
 
 DONE, FAULT = 0, 1
 """Exit codes: success, and an error of the hardware. USAGE_ERROR is an error of the user."""
@@ -18,19 +19,18 @@ class SubcommandError(Exception):
     """The subcommand cannot be executed; the text is one line."""
 
 
-@dataclass(frozen=True, slots=True)
-class Subcommand:
+class Subcommand(msgspec.Struct, frozen=True):
     """One subcommand, or one of its actions."""
 
     help: str
     run: Callable[[argparse.Namespace], int] | None = None
     """Executes the subcommand and returns the exit code; None if it has actions."""
-    arguments: Arguments = field(default_factory=dict)
-    one_of: Arguments = field(default_factory=dict)
+    arguments: Arguments = msgspec.field(default_factory=dict)
+    one_of: Arguments = msgspec.field(default_factory=dict)
     """Arguments of which at most one may be given."""
     need_one: bool = False
     """One of `one_of` must be given."""
-    actions: Mapping[str, Subcommand] = field(default_factory=dict)
+    actions: Mapping[str, Subcommand] = msgspec.field(default_factory=dict)
     """Name -> action."""
 
     def add_to(self, parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,6 @@ To add a subcommand, add its function here and a row to SUBCOMMANDS, with its ar
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -94,6 +93,8 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _doctor(options: argparse.Namespace) -> int:
+    import json
+
     from link.runtime.diagnosis import STOPPED, find_faults, format_row, row_record
     from vehicle.cli.doctor.gather import gather_facts
     from vehicle.cli.doctor.table import examine

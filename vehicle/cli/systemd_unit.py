@@ -6,8 +6,9 @@ import contextlib
 import grp
 import shlex
 import sys
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from link.runtime.command_line import USAGE_ERROR
 from vehicle.commands.reboot import RebootRequest
@@ -119,8 +120,7 @@ ExecStart=/bin/sh -c 'test "$$MONITOR_EXIT_STATUS" != {code} || exec /usr/bin/sy
 """The unit for POWER, started by OnFailure= of the rover's unit: the daemon has no permission to reboot."""
 
 
-@dataclass(frozen=True, slots=True)
-class UnitOptions:
+class UnitOptions(msgspec.Struct, frozen=True):
     """What the unit depends on."""
 
     config: Path

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
+
+import msgspec
 
 from dialects.enums import Command, Result, Severity
 from link.core import Received
@@ -35,8 +36,7 @@ PERCENT_TOLERANCE = 1e-4
 """%; 0.3 as float32 is slightly more than 30 %."""
 
 
-@dataclass(frozen=True, slots=True)
-class ActuatorTestRequest:
+class ActuatorTestRequest(msgspec.Struct, frozen=True):
     """The parameters of either command."""
 
     motor: int
@@ -50,8 +50,7 @@ RequestKey = tuple[int, int, int, ActuatorTestRequest]
 """Identifies a repeated request: system, component, command, parameters."""
 
 
-@dataclass(slots=True)
-class ActiveTest:
+class ActiveTest(msgspec.Struct):
     """The test under way."""
 
     test: MotorTest

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.enums import Severity
 from dialects.messages import ManualControl
@@ -24,8 +25,7 @@ STATIONS_MAX = 8
 """Stations whose buttons are remembered; as many as a link has peers."""
 
 
-@dataclass(frozen=True, slots=True)
-class ButtonFunction:
+class ButtonFunction(msgspec.Struct, frozen=True):
     """One value of BTNn_FUNCTION."""
 
     label: str

@@ -7,7 +7,8 @@ the rules of DO_ items all come from these rows. A MAV_CMD without a row is answ
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.messages import CommandInt, CommandLong
 from link.services.command.request import CommandRequest
@@ -17,8 +18,7 @@ from vehicle.autonomy.mission.rules import DoItem
 from vehicle.commands.access import NEEDED_ROLES, Access, CommandAccess, CommandResult
 
 
-@dataclass(frozen=True, slots=True)
-class CommandSpec:
+class CommandSpec(msgspec.Struct, frozen=True):
     """One MAV_CMD that the vehicle answers."""
 
     command: int

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from link.services.pacing import BulkPacer
 from vehicle.autonomy.navigator import Navigator
@@ -21,8 +22,7 @@ COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1: QGroundControl shows a vehicle only for this component id."""
 
 
-@dataclass(frozen=True, slots=True)
-class Context:
+class Context(msgspec.Struct, frozen=True):
     """The parts of the vehicle that handlers read and call."""
 
     params: Params
@@ -46,8 +46,7 @@ class Context:
         return self.control.system, COMPONENT
 
 
-@dataclass(frozen=True, slots=True)
-class Reporting:
+class Reporting(msgspec.Struct, frozen=True):
     """What telemetry is built from and where it goes."""
 
     telemetry: Telemetry

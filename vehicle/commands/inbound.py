@@ -7,9 +7,10 @@ a message without a row is not even decoded. MAV_CMDs have rows of their own (co
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
+
+import msgspec
 
 from dialects.messages import Message
 from link.core import Outgoing, Received
@@ -28,8 +29,7 @@ class Effect(Enum):
     """Mode, motor outputs, and the telemetry that is due."""
 
 
-@dataclass(frozen=True, slots=True)
-class InboundMessage(Generic[M]):
+class InboundMessage(msgspec.Struct, Generic[M], frozen=True):
     """One message that the vehicle handles."""
 
     message: type[M]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from dialects.enums import Severity
 from dialects.messages import RadioStatus, SetupSigning
@@ -33,8 +34,7 @@ class KeyStore(Protocol):
         """Add a key; the vehicle obeys it soon after it is written. Never blocks."""
 
 
-@dataclass(frozen=True, slots=True)
-class Pairing:
+class Pairing(msgspec.Struct, frozen=True):
     """Where keys are kept, and the links over which one is accepted."""
 
     store: KeyStore

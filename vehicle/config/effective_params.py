@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from vehicle.config.config import Config
 from vehicle.config.merge import merge_params
@@ -18,8 +19,7 @@ SERVICE = Path("/var/lib/mavhelm")
 """State folder of the service: StateDirectory in vehicle/cli/systemd_unit.py."""
 
 
-@dataclass(frozen=True, slots=True)
-class EffectiveParams:
+class EffectiveParams(msgspec.Struct, frozen=True):
     """The parameters, and where they come from."""
 
     params: Params

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
+
+import msgspec
 
 from link.core import Peer, Received
 from link.signing.role import Role
@@ -90,8 +91,7 @@ class Conversation(NamedTuple):
         return True
 
 
-@dataclass(slots=True)
-class Newcomer:
+class Newcomer(msgspec.Struct):
     """Another conversation than the driver's."""
 
     frames: int = 0
@@ -99,7 +99,7 @@ class Newcomer:
     """It has only repeated frames of the driver, byte for byte."""
     reported_at: float = -math.inf
     """When the driver was told of it."""
-    digests: deque[int] = field(default_factory=lambda: deque(maxlen=FRAMES_BEFORE))
+    digests: deque[int] = msgspec.field(default_factory=lambda: deque(maxlen=FRAMES_BEFORE))
     """Its newest frames."""
 
     @property

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from dialects import axes
 from dialects.messages import ManualControl, RcChannelsOverride, RoverOperatorPresence
@@ -61,8 +62,7 @@ def from_manual_control(
     return Demand(throttle, steering, now, system, sequence, side)
 
 
-@dataclass(frozen=True, slots=True)
-class OverrideChannel:
+class OverrideChannel(msgspec.Struct, frozen=True):
     """One overridden channel."""
 
     pulse: int

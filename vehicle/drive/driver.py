@@ -7,7 +7,8 @@ with its ids succeeds it only when the driver is silent.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+import msgspec
 
 from vehicle.drive.conversation import Conversation, Sender
 from vehicle.drive.operator_session import DrivingSession
@@ -20,8 +21,7 @@ CLASH_PAUSE = 0.7
 """s after the last clash of two programs in one numbering for which no demand counts."""
 
 
-@dataclass(slots=True)
-class Driver:
+class Driver(msgspec.Struct):
     """The ground station in control."""
 
     conversation: Conversation

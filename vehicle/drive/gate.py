@@ -7,9 +7,10 @@ times every deceleration and every motor test itself.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
+
+import msgspec
 
 RAMP_TOLERANCE = 0.05
 """s that a deceleration may exceed its ramp: two cycles of 20 ms and a margin, because it begins within a cycle."""
@@ -48,8 +49,7 @@ NONE, RAMP_DOWN, DRIVE, TEST = Permit
 """Shortcuts for what runs with each demand: a lookup in the enum costs as much as three comparisons."""
 
 
-@dataclass(frozen=True, slots=True)
-class MotorTest:
+class MotorTest(msgspec.Struct, frozen=True):
     """A request to turn one motor."""
 
     number: int

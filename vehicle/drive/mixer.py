@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from dialects.enums import DriveType
 
@@ -29,8 +30,7 @@ class MixerLimits(NamedTuple):
     """Thrust of a motor forward in relation to its thrust backward, at least 1."""
 
 
-@dataclass(frozen=True, slots=True)
-class Mixer:
+class Mixer(msgspec.Struct, frozen=True):
     """How a wheel arrangement is driven."""
 
     mix: Callable[[float, float, float, MixerLimits], MixerOutput]

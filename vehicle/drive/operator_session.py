@@ -8,9 +8,10 @@ late frame of a second link and a frame of another program with the same system 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
+
+import msgspec
 
 from dialects.enums import OperatorFlag
 from dialects.messages import RoverOperatorPresence, boot_ms
@@ -68,14 +69,13 @@ class SessionLink(NamedTuple):
     """s: age of the newest proof on arrival, good or not."""
 
 
-@dataclass(slots=True)
-class DrivingSession:
+class DrivingSession(msgspec.Struct):
     """The session of the ground station in control."""
 
     id: int
     clock: int | None = None
     """`time_boot_ms` of its newest demand; None before the first."""
-    links: dict[Conversation, SessionLink] = field(default_factory=dict)
+    links: dict[Conversation, SessionLink] = msgspec.field(default_factory=dict)
     """The conversations that have brought proofs of this session: over several links, or from another address."""
 
     @classmethod

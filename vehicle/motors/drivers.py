@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from vehicle.motors import MotorError, Motors, MotorSettingsError, UnknownDriverError
 
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 # msgspec and the settings are imported when a driver is opened: --help reads only the table, and starts faster.
 
 
-@dataclass(frozen=True, slots=True)
-class DriverEntry:
+class DriverEntry(msgspec.Struct, frozen=True):
     """One driver: where its class is, and what help and `vehicle init` show."""
 
     path: str
@@ -26,11 +25,11 @@ class DriverEntry:
     where its hardware is."""
     title: str = ""
     """The hardware, for --help and the heading in the file of `vehicle init`."""
-    example: Mapping[str, Any] = field(default_factory=dict)
+    example: Mapping[str, Any] = msgspec.field(default_factory=dict)
     """Settings without a default, as `vehicle init` shows them."""
-    profile: Mapping[str, Any] = field(default_factory=dict)
+    profile: Mapping[str, Any] = msgspec.field(default_factory=dict)
     """Settings that a known car has already: such a driver needs no settings in the file."""
-    params: Mapping[str, float] = field(default_factory=dict)
+    params: Mapping[str, float] = msgspec.field(default_factory=dict)
     """Parameters of a known car that replace the defaults. Values set by the user take precedence."""
 
 
@@ -213,6 +212,8 @@ def _import(name: str, module: str, kind: str) -> Any:
 
 
 def _unknown(name: str, table: Mapping[str, DriverEntry], kind: str) -> str:
+    import difflib  # when it is needed: it takes 1 ms of each start
+
     near = difflib.get_close_matches(name, table, n=1)
     hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(table)}; or your own as module:Class"
     return f"unknown {kind} {name!r}; {hint}"

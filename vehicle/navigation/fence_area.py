@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from vehicle.navigation.geo import Point
 
 
-@dataclass(frozen=True, slots=True)
-class FenceArea:
+class FenceArea(msgspec.Struct, frozen=True):
     """A circle (one corner and a radius) or a polygon, to stay inside or outside of."""
 
     corners: tuple[Point, ...]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import gc
 import logging
 import time
 from collections.abc import Sequence
@@ -18,6 +17,7 @@ from dialects.enums import Severity
 from link.endpoint import SERIAL, EndpointError, Side, parse_endpoint
 from link.protocol.log_tap import LogTap
 from link.runner import Runner, open_links
+from link.runtime import startup_gc
 from link.runtime.command_line import USAGE_ERROR
 from link.runtime.event_loop import run_loop, running_loop
 from link.signing.key_file import FILE, KeyFileError
@@ -197,8 +197,7 @@ async def _drive(
     shutdown = Shutdown(control_loop, runner, notifier.stopping)
     cycles.shutdown = shutdown
     shutdown.install_handlers(asyncio.get_running_loop())
-    gc.collect()
-    gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
+    startup_gc.resume()
     log.info("ready, %s", status)
     notifier.ready(status)
     return await shutdown.wait()

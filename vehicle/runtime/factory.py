@@ -6,9 +6,9 @@ import contextlib
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import replace
 
 from msgspec import to_builtins
+from msgspec.structs import replace
 
 from dialects.enums import DriveType
 from vehicle.accessories.accessory_set import AccessorySet

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from vehicle.params import Params
 from vehicle.safety.states import SafetyState
 
 
-@dataclass(frozen=True, slots=True)
-class ArmingFacts:
+class ArmingFacts(msgspec.Struct, frozen=True):
     """The facts that the checks evaluate."""
 
     params: Params
@@ -31,8 +31,7 @@ class ArmingFacts:
     sticks_moving: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ArmingCheck:
+class ArmingCheck(msgspec.Struct, frozen=True):
     """`find` returns the problem in a form that an operator understands, or None."""
 
     find: Callable[[ArmingFacts], str | None]

@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import IntEnum
+
+import msgspec
 
 from dialects.enums import Failsafe
 from vehicle.params import Params
@@ -48,8 +49,7 @@ class FailsafeAction(IntEnum):
         return ("warning", "half speed", "stopping", "RTL", "HOLD", "disarmed")[self]
 
 
-@dataclass(frozen=True, slots=True)
-class FailsafeStep:
+class FailsafeStep(msgspec.Struct, frozen=True):
     """An action and the delay after which it is taken."""
 
     after: str | float
@@ -70,8 +70,7 @@ class FailsafeStep:
         return bool(setting) if self.value is None else setting == self.value
 
 
-@dataclass(frozen=True, slots=True)
-class FailsafeRule:
+class FailsafeRule(msgspec.Struct, frozen=True):
     """A condition and the steps that follow it."""
 
     label: str

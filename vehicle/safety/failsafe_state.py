@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.enums import Failsafe
 from vehicle.params import Params
@@ -12,16 +13,14 @@ from vehicle.safety.failsafe import RULES, FailsafeAction, FailsafeStep
 from vehicle.safety.failsafe_inputs import FailsafeInputs
 
 
-@dataclass(frozen=True, slots=True)
-class TriggeredStep:
+class TriggeredStep(msgspec.Struct, frozen=True):
     """A step that has just been reached."""
 
     cause: Failsafe
     action: FailsafeAction
 
 
-@dataclass(frozen=True, slots=True)
-class PendingStep:
+class PendingStep(msgspec.Struct, frozen=True):
     """The step that comes next."""
 
     delay: float

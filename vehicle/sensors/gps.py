@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
-from dataclasses import dataclass
 from typing import Annotated
 
 import msgspec
@@ -32,8 +31,7 @@ class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     port: Annotated[int, msgspec.Meta(ge=1, le=65535)] = 2947
 
 
-@dataclass(frozen=True, slots=True)
-class GpsReading:
+class GpsReading(msgspec.Struct, frozen=True):
     """The newest fix and the newest satellite data."""
 
     fix: GpsFix

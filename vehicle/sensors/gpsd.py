@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 MODE_FIX = {1: 1, 2: 2, 3: 3}
 """TPV mode -> GPS_FIX_TYPE: no fix, 2D, 3D."""
@@ -17,8 +18,7 @@ STATUS_FIX = {2: 4, 3: 6, 4: 5}
 """TPV status of a 3D fix -> GPS_FIX_TYPE: DGPS, RTK fixed, RTK float."""
 
 
-@dataclass(frozen=True, slots=True)
-class GpsFix:
+class GpsFix(msgspec.Struct, frozen=True):
     """One TPV report; degrees, m, m/s. None for values that it lacks."""
 
     fix_type: int
@@ -31,8 +31,7 @@ class GpsFix:
     velocity_east: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class GpsSky:
+class GpsSky(msgspec.Struct, frozen=True):
     """One SKY report: satellites and precision."""
 
     satellites: int | None = None

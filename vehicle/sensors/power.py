@@ -8,7 +8,6 @@ from the shunt voltage, so a chip that lost its power gives correct values again
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import msgspec
@@ -20,8 +19,7 @@ PERIOD, MAX_AGE = 0.2, 2.0
 """s between readings, and how long one is valid: less than the 5 s after which the battery sensor counts as failed."""
 
 
-@dataclass(frozen=True, slots=True)
-class PowerReading:
+class PowerReading(msgspec.Struct, frozen=True):
     """V and A; positive is out of the battery."""
 
     voltage: float
@@ -43,8 +41,7 @@ class PowerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return [chip_name(self.bus, self.address)]
 
 
-@dataclass(frozen=True, slots=True)
-class PowerChip:
+class PowerChip(msgspec.Struct, frozen=True):
     """Configuration and conversion of one type of chip."""
 
     configuration: int

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from dialects.enums import DriveType
 
@@ -13,8 +14,7 @@ AT_REST = 1e-3
 """m/s; a slower wheel without throttle is at rest, as with friction; otherwise a stopped rover would creep forever."""
 
 
-@dataclass(frozen=True, slots=True)
-class ChassisDimensions:
+class ChassisDimensions(msgspec.Struct, frozen=True):
     """Dimensions of a rover. The defaults are those of a 40 cm kit with geared 12 V motors."""
 
     top_speed: float = 1.5
@@ -34,8 +34,7 @@ class ChassisDimensions:
     """rad/s of a typical steering servo (0.2 s for 60 degrees)."""
 
 
-@dataclass(slots=True)
-class ChassisMotion:
+class ChassisMotion(msgspec.Struct):
     """Position and motion of the rover in SI units; angles clockwise from north."""
 
     north: float = 0.0

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
+import msgspec
 
-@dataclass(frozen=True, slots=True)
-class SensorNoise:
+
+class SensorNoise(msgspec.Struct, frozen=True):
     """Standard deviations. Biases are drawn once for a seed, as they differ between sensors."""
 
     angle: float = 0.003

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 
-@dataclass(slots=True)
-class HostInfo:
+class HostInfo(msgspec.Struct):
     """Facts about the host; the defaults mean unknown."""
 
     uid: bytes = b""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from dialects.codec import MAX_FRAME
 from dialects.enums import DataStream
@@ -45,8 +46,7 @@ class BandwidthShare(NamedTuple):
     """Bytes/s; None if the capacity of the link is unknown."""
 
 
-@dataclass(slots=True)
-class _Clock:
+class _Clock(msgspec.Struct):
     """When one stream is due. Without an interval it is sent on request, and on change while `on`."""
 
     stream: Stream

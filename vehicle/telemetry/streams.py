@@ -7,8 +7,9 @@ of MAVProxy shows packet loss. So each stream names a dialect level, and only th
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
 from enum import IntEnum
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Command, DataStream
@@ -32,8 +33,7 @@ class DialectLevel(IntEnum):
 COMMON, NEWER, ROVER = DialectLevel
 
 
-@dataclass(frozen=True, slots=True)
-class Stream:
+class Stream(msgspec.Struct, frozen=True):
     """One message, and when it is sent."""
 
     message: type[m.Message]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import gc
 import sys
 
+from link.runtime import startup_gc
+
 SWITCH_INTERVAL, PYTHONS_OWN = 0.0005, 0.005
 """s for which drawing may keep the interpreter from the input thread, while the operator drives and else.
 
@@ -31,7 +33,7 @@ def favour_input(wanted: bool) -> None:
 def freeze() -> None:
     """Exempt the objects that exist now from garbage collection: a pass over them took 28-61 ms."""
     gc.collect()
-    gc.freeze()
+    startup_gc.resume()
     gc.set_threshold(NEW_OBJECTS, OLDER_AFTER, OLDEST_AFTER)
 
 

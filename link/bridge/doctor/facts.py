@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from link.endpoint import Endpoint
 
 
-@dataclass(frozen=True, slots=True)
-class Source:
+class Source(msgspec.Struct, frozen=True):
     """One system and component that was heard on an endpoint."""
 
     system: int
@@ -22,8 +21,7 @@ class Source:
     """Its newest frame was signed."""
 
 
-@dataclass(frozen=True, slots=True)
-class Route:
+class Route(msgspec.Struct, frozen=True):
     """Where the frames of one source would go."""
 
     system: int
@@ -34,8 +32,7 @@ class Route:
     """Other endpoints on which the same system and component was heard."""
 
 
-@dataclass(frozen=True, slots=True)
-class Heard:
+class Heard(msgspec.Struct, frozen=True):
     """What arrived on one endpoint."""
 
     received: int = 0
@@ -55,8 +52,7 @@ class Heard:
     sources: tuple[Source, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class EndpointFacts:
+class EndpointFacts(msgspec.Struct, frozen=True):
     """One endpoint after listening."""
 
     endpoint: Endpoint

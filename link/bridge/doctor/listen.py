@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
+
+import msgspec
 
 from link.bridge.doctor.facts import EndpointFacts
 from link.bridge.doctor.listener import EndpointListener
@@ -19,8 +20,7 @@ TICK = 0.05
 """s between two checks for partial frames, as the bridge does."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Opened:
+class _Opened(msgspec.Struct, frozen=True):
     endpoint: Endpoint
     transport: Transport | None
     problem: str = ""

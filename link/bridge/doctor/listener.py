@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from dialects import codec
 from dialects.messages import MESSAGES, Heartbeat
@@ -19,13 +21,12 @@ MAX_SOURCES = 256
 """Systems and components per endpoint."""
 
 
-@dataclass(slots=True)
-class _Endpoint:
+class _Endpoint(msgspec.Struct):
     stream: bool
     received: int = 0
-    framers: dict[Hashable, Framer] = field(default_factory=dict)
-    sources: dict[tuple[int, int], Source] = field(default_factory=dict)
-    unknown_ids: set[int] = field(default_factory=set)
+    framers: dict[Hashable, Framer] = msgspec.field(default_factory=dict)
+    sources: dict[tuple[int, int], Source] = msgspec.field(default_factory=dict)
+    unknown_ids: set[int] = msgspec.field(default_factory=set)
 
 
 class EndpointListener:

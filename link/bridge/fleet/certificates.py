@@ -6,8 +6,9 @@ import ipaddress
 import subprocess
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 DAYS = 3650
 """Days that a certificate holds. A rover must not stop on a birthday; fleet.toml withdraws one at any time."""
@@ -18,8 +19,7 @@ class CertificateError(Exception):
     """A certificate could not be made; one line."""
 
 
-@dataclass(frozen=True, slots=True)
-class KeyPair:
+class KeyPair(msgspec.Struct, frozen=True):
     """A certificate and its private key, as PEM. The text form never contains the key."""
 
     certificate: bytes

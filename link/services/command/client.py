@@ -6,7 +6,7 @@ has none; IN_PROGRESS extends the timeout.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from dialects.enums import Result
 from dialects.messages import CommandAck, CommandInt, CommandLong, Message
@@ -20,8 +20,7 @@ TRIES = 6
 s."""
 
 
-@dataclass(frozen=True, slots=True)
-class CommandPlace:
+class CommandPlace(msgspec.Struct, frozen=True):
     """Frame and position of a COMMAND_INT."""
 
     frame: int
@@ -31,8 +30,7 @@ class CommandPlace:
     y: int
 
 
-@dataclass(frozen=True, slots=True)
-class CommandOutcome:
+class CommandOutcome(msgspec.Struct, frozen=True):
     """How a command ended."""
 
     command: int
@@ -44,8 +42,7 @@ class CommandOutcome:
     """MAV_RESULT as received, also one without a name here."""
 
 
-@dataclass(slots=True)
-class _Waiting:
+class _Waiting(msgspec.Struct):
     command: int
     params: Params
     target: tuple[int, int]

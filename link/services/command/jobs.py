@@ -17,8 +17,9 @@ a Result once the work has begun. The server does the rest:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from dialects.enums import Result
 from dialects.messages import CommandAck
@@ -51,16 +52,14 @@ class CommandJob(Protocol):
         """
 
 
-@dataclass(slots=True)
-class _Running:
+class _Running(msgspec.Struct):
     request: CommandRequest
     job: CommandJob
     started_at: float
     reported_at: float
 
 
-@dataclass(frozen=True, slots=True)
-class _EndedCommand:
+class _EndedCommand(msgspec.Struct, frozen=True):
     request: CommandRequest
     result: Result
     at: float

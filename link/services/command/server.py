@@ -9,8 +9,9 @@ jobs.py.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from dialects.enums import Result
 from dialects.messages import CommandCancel, CommandInt, CommandLong
@@ -30,8 +31,7 @@ RunCommand = Callable[[CommandRequest, float], Result | CommandReply | CommandJo
 """Runs a command; returns its result, a reply with messages, or a CommandJob if it takes a while."""
 
 
-@dataclass(frozen=True, slots=True)
-class CommandHandler:
+class CommandHandler(msgspec.Struct, frozen=True):
     """What a server does with one command."""
 
     run: RunCommand

@@ -6,8 +6,10 @@ open.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
+
+from msgspec.structs import replace
 
 from link.services.ftp.job import (
     MAX_SIZE,

@@ -7,8 +7,9 @@ name without any slash, so that no path can leave the tree, and there are no lin
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
+
+import msgspec
 
 from link.services.ftp.protocol import FtpError
 
@@ -62,8 +63,7 @@ class Folder(Protocol):
         """Remove a file; return an error or None."""
 
 
-@dataclass(frozen=True, slots=True)
-class BytesContent:
+class BytesContent(msgspec.Struct, frozen=True):
     """Content in memory."""
 
     data: bytes
@@ -112,11 +112,10 @@ class GeneratedFolder(ReadOnlyFolder):
         return None if data is None else BytesContent(data)
 
 
-@dataclass(slots=True)
-class MemoryFolder:
+class MemoryFolder(msgspec.Struct):
     """Files in memory: a simulated vehicle's disk, and small files of a real one (missions)."""
 
-    files: dict[str, bytes] = field(default_factory=dict)
+    files: dict[str, bytes] = msgspec.field(default_factory=dict)
     accept: Callable[[str, bytes], FtpError | None] | None = None
     """Returns why a file may not be written, or None. Without it the folder is read-only."""
     changed: Callable[[str, bytes | None], None] = lambda name, data: None

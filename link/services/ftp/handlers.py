@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from link.services.ftp.files import BytesContent, Content, Entry, FileTree, Location, NotReadyError
 from link.services.ftp.protocol import MAX_DATA, FtpError, FtpOpcode, FtpPacket, crc32
@@ -16,8 +17,7 @@ FtpReply = bytes | FtpError | None
 """Data of an ACK, the error of a NAK, or None: try again at the next tick."""
 
 
-@dataclass(slots=True)
-class FtpRequest:
+class FtpRequest(msgspec.Struct):
     """A request, with the state of a reply that takes more than one tick."""
 
     client: FtpClientId

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 from typing import Protocol
+
+import msgspec
 
 from link.core import Outgoing
 from link.services.ftp.files import Entry
@@ -28,8 +29,7 @@ class FtpOperation(Enum):
     CHECKSUM = "checksum"
 
 
-@dataclass(frozen=True, slots=True)
-class FtpOutcome:
+class FtpOutcome(msgspec.Struct, frozen=True):
     """How a job ended."""
 
     job: FtpOperation
@@ -48,14 +48,13 @@ class FtpOutcome:
     """Number of the job (FtpClient)."""
 
 
-@dataclass(slots=True)
-class FtpLine:
+class FtpLine(msgspec.Struct):
     """Numbers the packets of one job and queues them for sending."""
 
     target: tuple[int, int]
     session: int
     sequence: int
-    outbox: list[Outgoing] = field(default_factory=list)
+    outbox: list[Outgoing] = msgspec.field(default_factory=list)
 
     def packet(self, op: FtpOpcode, data: bytes = b"", offset: int = 0, size: int | None = None) -> FtpPacket:
         """Return a new packet."""
@@ -67,8 +66,7 @@ class FtpLine:
         self.outbox.append(Outgoing(packet.message(*self.target)))
 
 
-@dataclass(slots=True)
-class Exchange:
+class Exchange(msgspec.Struct):
     """One request that is repeated until its reply. `patience`: requests without a reply before it fails."""
 
     line: FtpLine

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass
 from enum import IntEnum
+
+import msgspec
 
 from dialects.messages import FileTransferProtocol
 
@@ -76,8 +77,7 @@ def ftp_error_text(error: int) -> str:
     return _ERROR_TEXTS.get(error, f"the vehicle reports FTP error {error}")
 
 
-@dataclass(frozen=True, slots=True)
-class FtpPacket:
+class FtpPacket(msgspec.Struct, frozen=True):
     """One request or reply."""
 
     sequence: int

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from link.core import Peer, Received
 from link.services.ftp.files import Content, Location
@@ -33,8 +34,7 @@ def client_id(received: Received) -> FtpClientId:
     return FtpClientId(received.peer, received.system, received.component)
 
 
-@dataclass(slots=True)
-class Burst:
+class Burst(msgspec.Struct):
     """A burst under way."""
 
     sequence: int
@@ -46,8 +46,7 @@ class Burst:
     """Messages until the client has to request more."""
 
 
-@dataclass(slots=True)
-class FtpSession:
+class FtpSession(msgspec.Struct):
     """An open file."""
 
     client: FtpClientId

@@ -6,7 +6,7 @@ full ends the log. Messages: https://mavlink.io/en/messages/common.html#LOG_REQU
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 from dialects import messages as m
 from link.core import Outgoing, Received
@@ -24,8 +24,7 @@ LAST = 0xFFFF
 """`end` of LOG_REQUEST_LIST: to the last log."""
 
 
-@dataclass(frozen=True, slots=True)
-class RemoteLog:
+class RemoteLog(msgspec.Struct, frozen=True):
     """One log, as LOG_ENTRY reports it."""
 
     number: int
@@ -35,8 +34,7 @@ class RemoteLog:
     """Bytes; an estimate while the vehicle writes it."""
 
 
-@dataclass(frozen=True, slots=True)
-class LogOutcome:
+class LogOutcome(msgspec.Struct, frozen=True):
     """How a job ended."""
 
     log: int | None
@@ -48,14 +46,12 @@ class LogOutcome:
     tries: int = 0
 
 
-@dataclass(slots=True)
-class _Listing:
-    logs: dict[int, RemoteLog] = field(default_factory=dict)
+class _Listing(msgspec.Struct):
+    logs: dict[int, RemoteLog] = msgspec.field(default_factory=dict)
     total: int | None = None
 
 
-@dataclass(slots=True)
-class _LogDownload:
+class _LogDownload(msgspec.Struct):
     log: RemoteLog
     file: FileReassembly
     proof: bytes = b""

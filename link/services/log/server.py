@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import NamedTuple
+
+import msgspec
 
 from dialects import messages as m
 from link.core import Outgoing, Peer, Received
@@ -37,8 +38,7 @@ class _DataRequest(NamedTuple):
     end: int
 
 
-@dataclass(slots=True)
-class _LogClient:
+class _LogClient(msgspec.Struct):
     """Transfers to one peer."""
 
     logs: list[Entry] | None = None
@@ -46,8 +46,8 @@ class _LogClient:
     list_from: int | None = None
     """First entry of the requested list; `list_to` is the last."""
     list_to: int = 0
-    listing: deque[m.LogEntry] = field(default_factory=deque)
-    requests: deque[_DataRequest] = field(default_factory=deque)
+    listing: deque[m.LogEntry] = msgspec.field(default_factory=deque)
+    requests: deque[_DataRequest] = msgspec.field(default_factory=deque)
     content: Content | None = None
     at: int = 0
     """Next byte of the first request."""

@@ -7,8 +7,9 @@ https://mavlink.io/en/services/mission.html.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import Enum
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
@@ -43,8 +44,7 @@ class MissionOperation(Enum):
     CLEAR = "clear"
 
 
-@dataclass(frozen=True, slots=True)
-class MissionOutcome:
+class MissionOutcome(msgspec.Struct, frozen=True):
     """How a job ended."""
 
     job: MissionOperation
@@ -70,8 +70,7 @@ class MissionOutcome:
         return self.result == MissionResult.ACCEPTED
 
 
-@dataclass(slots=True)
-class _MissionTransfer:
+class _MissionTransfer(msgspec.Struct):
     """The job under way."""
 
     job: MissionOperation

@@ -8,8 +8,9 @@ changed, and the reply says so.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Protocol
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
@@ -47,8 +48,7 @@ class PlanBackend(Protocol):
         """Keep the old plan: `items` stay in force, and must be on disk as well. `reason`: of a disk error."""
 
 
-@dataclass(slots=True)
-class PlanChange:
+class PlanChange(msgspec.Struct):
     """New plans that take effect together: one of an upload, or all that are cleared at once."""
 
     plans: Mapping[MissionType, Items]
@@ -62,7 +62,7 @@ class PlanChange:
     verdict: MissionResult | None = None
     """None: under way."""
     began: float = 0.0
-    writes: list[PendingPlanWrite] = field(default_factory=list)
+    writes: list[PendingPlanWrite] = msgspec.field(default_factory=list)
 
     def is_repeat(self, message: m.MissionCount | m.MissionClearAll | m.MissionWritePartialList) -> bool:
         """Return whether `message` repeats the cause, because no reply has arrived yet."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from enum import Enum, IntEnum
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
@@ -30,8 +31,7 @@ _FAULTS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class MissionItem:
+class MissionItem(msgspec.Struct, frozen=True):
     """One item, from either message. Its number is its index in the plan."""
 
     command: int
@@ -85,18 +85,16 @@ class PositionRule(Enum):
     """Required; 0/0 is not a position."""
 
 
-@dataclass(frozen=True, slots=True)
-class ItemRule:
+class ItemRule(msgspec.Struct, frozen=True):
     """What an item of one command must be."""
 
     place: PositionRule = PositionRule.NONE
-    ranges: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    ranges: Mapping[int, tuple[float, float]] = msgspec.field(default_factory=dict)
     """Parameter 1..4 or 7 -> smallest and largest value. A parameter in the table must be a number, others may be
     NaN."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlanRules:
+class PlanRules(msgspec.Struct, frozen=True):
     """What one type of plan may contain."""
 
     commands: Mapping[int, ItemRule]

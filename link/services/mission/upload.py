@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
@@ -40,8 +41,7 @@ def ack(sender: Sender, kind: int, verdict: MissionResult, plan_id: int = 0) -> 
     return Outgoing(m.MissionAck(sender.system, sender.component, verdict, kind, plan_id), sender.peer)
 
 
-@dataclass(frozen=True, slots=True)
-class EndedUpload:
+class EndedUpload(msgspec.Struct, frozen=True):
     """The end of an upload, to be acknowledged again when the MISSION_ACK got lost."""
 
     sender: Sender

@@ -7,7 +7,9 @@ Source: https://mavlink.io/en/services/parameter.html.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.enums import ParamErrorCode
@@ -30,8 +32,7 @@ HASH_CHECK = "_HASH_CHECK"
 """PX4 sends a hash of all values under this name. It is no parameter."""
 
 
-@dataclass(frozen=True, slots=True)
-class Param:
+class Param(msgspec.Struct, frozen=True):
     """A parameter as the vehicle reported it."""
 
     name: str
@@ -44,8 +45,7 @@ class Param:
     """None: not known."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParamOutcome:
+class ParamOutcome(msgspec.Struct, frozen=True):
     """How a set or read ended."""
 
     name: str
@@ -66,8 +66,7 @@ class ParamOutcome:
         return self.wanted is None or same_float32(self.value, self.wanted)
 
 
-@dataclass(slots=True)
-class _ParamRequest:
+class _ParamRequest(msgspec.Struct):
     """A set (`wanted`) or read under way."""
 
     raw: bytes

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import ParamErrorCode
@@ -79,8 +80,7 @@ class ParamValues(Protocol):
         """Set a checked value. Raises ValueError, one line, if it contradicts another parameter."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParamRejection:
+class ParamRejection(msgspec.Struct, frozen=True):
     """Why a value was rejected."""
 
     fault: ParamErrorCode
@@ -88,8 +88,7 @@ class ParamRejection:
     """One line for the operator."""
 
 
-@dataclass(slots=True)
-class _Run:
+class _Run(msgspec.Struct):
     """A list under way to one peer."""
 
     start: float

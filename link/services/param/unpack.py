@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+
+import msgspec
 
 from link.services.param.client import MAX_PARAMS, Param
 from link.services.param.float32 import shortest_float32
@@ -22,8 +23,7 @@ _TYPES: dict[int, tuple[struct.Struct, int]] = {
 """ArduPilot's ap_var_type -> its bytes, and MAV_PARAM_TYPE."""
 
 
-@dataclass(slots=True)
-class _Reader:
+class _Reader(msgspec.Struct):
     """A position in the file."""
 
     data: bytes

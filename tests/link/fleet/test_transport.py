@@ -6,10 +6,10 @@ import asyncio
 import json
 import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
-from dataclasses import replace
 
 import pytest
 import zenoh
+from msgspec.structs import replace
 
 from dialects import messages as m
 from link.endpoint import Side, parse_endpoint

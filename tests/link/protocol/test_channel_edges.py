@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from itertools import count
 
 import pytest
+from msgspec.structs import fields
 
 from dialects.messages import FileTransferProtocol, Ping, RadioStatus
 from link.core import LinkReport, Outgoing, Received

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.enums import Command, Result
@@ -67,7 +67,7 @@ def test_what_comes_between_ends_it_and_changes_nothing(change: dict[str, float 
     rest = bench.readings
     assert bench.command(CALIBRATE, 1) is Result.IN_PROGRESS
     bench.wait(1.0)
-    bench.readings = replace(rest, **change)  # type: ignore[arg-type]
+    bench.readings = replace(rest, **change)
     bench.wait(0.1)
     assert verdicts(bench)[-1].result == Result.FAILED
     assert said(bench, f"Gyro calibration failed: {words}")

@@ -6,8 +6,10 @@ stranger that has sent no HEARTBEAT. Every step ends with the checks of the orac
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
+
+from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.axes import Axes, build_manual_control

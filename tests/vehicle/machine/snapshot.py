@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable
+from copy import copy
 from enum import Enum
 from typing import Any
 
@@ -31,7 +32,8 @@ def is_value(item: object) -> bool:
     """Return whether an object never changes."""
     if item is None or isinstance(item, int | float | str | bytes | Enum | type | tuple | frozenset) or callable(item):
         return True
-    return bool(getattr(getattr(item, "__dataclass_params__", None), "frozen", False))
+    kind = getattr(item, "__struct_config__", None) or getattr(item, "__dataclass_params__", None)
+    return bool(getattr(kind, "frozen", False))
 
 
 Saved = list[tuple[dict[str, Any], list[tuple[str, Any]]]]
@@ -101,7 +103,7 @@ class Snapshots:
 
     def _copy_object(self, item: Any) -> Any:
         """Copy an object that is younger than the rover, such as the driver."""
-        twin = object.__new__(type(item))
+        twin = copy(item)
         for name in attributes(item):
-            object.__setattr__(twin, name, self._copy(getattr(item, name)))
+            setattr(twin, name, self._copy(getattr(item, name)))
         return twin

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.enums import EstimatorFlag
@@ -50,7 +50,7 @@ class Ride:
     def run(self, seconds: float) -> None:
         for _ in range(round(seconds * 50)):
             self.cycle += 1
-            readings = replace(self.body.read(self.cycle / 50), **self.missing)  # type: ignore[arg-type]
+            readings = replace(self.body.read(self.cycle / 50), **self.missing)
             self.estimator.update(readings, self.cycle / 50)
             if self.estimate.origin is not None:
                 self.errors.append(self.believed.distance(self.truth))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from tests.vehicle.storage.test_param_store import kept
 from vehicle.config.run_settings import RunSettings, Simulation

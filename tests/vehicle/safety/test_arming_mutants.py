@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
+from msgspec.structs import replace
 
 from dialects.enums import Command, Result
 from tests.vehicle.bench import Bench, said
@@ -40,7 +39,7 @@ def test_nothing_is_wrong_with_a_vehicle_that_is_ready() -> None:
     ],
 )
 def test_each_fact_alone_forbids_arming_and_the_soft_ones_not_by_force(wrong: dict[str, object], hard: bool) -> None:
-    facts = replace(READY, **wrong)  # type: ignore[arg-type]
+    facts = replace(READY, **wrong)
     found = find_problems(facts)
     assert len(found) == 1
     assert all(word in found[0] for word in wrong.values() if isinstance(word, str))
@@ -62,7 +61,7 @@ def test_the_pi_is_no_reason_where_its_failsafe_is_off() -> None:
 
 def test_the_worst_of_several_is_named() -> None:
     def only(**wrong: object) -> str:
-        (problem,) = find_problems(replace(READY, **wrong))  # type: ignore[arg-type]
+        (problem,) = find_problems(replace(READY, **wrong))
         return problem
 
     stopped = {"terminated": True, "estop_reason": "pressed", "state": SafetyState.ESTOP}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.enums import Command, DriveLimit, Result

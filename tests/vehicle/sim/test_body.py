@@ -31,7 +31,7 @@ def test_a_rover_at_rest_measures_rest() -> None:
 
 def test_nothing_it_could_measure_is_missing() -> None:
     readings = SimulatedBody(lambda: (0.0, 0.0)).read(0.0)
-    assert all(getattr(readings, name) is not None for name in Readings.__dataclass_fields__)
+    assert all(getattr(readings, name) is not None for name in Readings.__struct_fields__)
 
 
 def test_it_follows_the_motors_only_while_they_have_power() -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point, wrap_angle
@@ -23,8 +24,7 @@ class NavTask(Protocol):
         """Return the motion of this cycle; None when the item is done."""
 
 
-@dataclass(slots=True)
-class NavWaypoint:
+class NavWaypoint(msgspec.Struct):
     """NAV_WAYPOINT and NAV_LOITER_TIME: follow a leg, and stay at its end for `stay` s."""
 
     leg: Leg
@@ -47,8 +47,7 @@ class NavWaypoint:
         return STATIONARY if now - self._there < self.stay else None
 
 
-@dataclass(slots=True)
-class NavLoiterTurns:
+class NavLoiterTurns(msgspec.Struct):
     """NAV_LOITER_TURNS: circle a point `turns` times; clockwise with a positive radius."""
 
     centre: Point
@@ -74,8 +73,7 @@ class NavLoiterTurns:
         return guide.orbit(self.centre, self.radius, estimate, speed)
 
 
-@dataclass(slots=True)
-class NavDelay:
+class NavDelay(msgspec.Struct):
     """NAV_DELAY: stand for `seconds`."""
 
     seconds: float
@@ -88,8 +86,7 @@ class NavDelay:
         return STATIONARY if now - self._began < self.seconds else None
 
 
-@dataclass(slots=True)
-class ConditionYaw:
+class ConditionYaw(msgspec.Struct):
     """CONDITION_YAW: turn on the spot to a heading, rad."""
 
     heading: float

@@ -7,8 +7,9 @@ has its row beside its MAV_CMD handler in vehicle/commands (`DoItem`), because i
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
+
+import msgspec
 
 from dialects.enums import Command, FenceItem, MissionResult, MissionType
 from link.services.mission.items import ItemRule, Items, MissionItem, PlanRules, PositionRule
@@ -20,8 +21,7 @@ CORNERS_MIN = 3
 RADIUS_MAX = 1e5
 
 
-@dataclass(frozen=True, slots=True)
-class DoItem:
+class DoItem(msgspec.Struct, frozen=True):
     """A MAV_CMD as a DO item of a mission. It runs beside the drive to the next NAV item."""
 
     rule: ItemRule

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from vehicle.cli.check import CheckResult
 from vehicle.config.signing import SigningSettings
 from vehicle.readings import ComputerReadings
 
 
-@dataclass(frozen=True, slots=True)
-class Device:
+class Device(msgspec.Struct, frozen=True):
     """One device file that the configuration needs."""
 
     path: str
@@ -26,8 +26,7 @@ class Device:
     """The kernel writes its messages there."""
 
 
-@dataclass(frozen=True, slots=True)
-class Clock:
+class Clock(msgspec.Struct, frozen=True):
     """The wall clock."""
 
     year: int
@@ -35,8 +34,7 @@ class Clock:
     """By a time server, GPS or a clock chip; None if the kernel does not tell."""
 
 
-@dataclass(frozen=True, slots=True)
-class Space:
+class Space(msgspec.Struct, frozen=True):
     """Free space of the file system of a folder."""
 
     folder: str
@@ -44,8 +42,7 @@ class Space:
     """Bytes that this user may use."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DoctorFacts:
+class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     """All facts. Those of the configuration are empty if the file has errors."""
 
     path: str
@@ -63,14 +60,14 @@ class DoctorFacts:
     """I2C buses in use."""
     serial: tuple[Device, ...] = ()
     """Serial ports in use."""
-    signing: SigningSettings = field(default_factory=SigningSettings)
+    signing: SigningSettings = msgspec.field(default_factory=SigningSettings)
     open_links: tuple[str, ...] = ()
     """Endpoints that a whole network reaches."""
     keys: tuple[str, ...] = ()
     """Keys for signing: name, role, fingerprint."""
     key_problem: str = ""
     """Why the key file cannot be used."""
-    params: Mapping[str, float] = field(default_factory=dict)
+    params: Mapping[str, float] = msgspec.field(default_factory=dict)
     health: ComputerReadings
     clock: Clock
     spaces: tuple[Space, ...] = ()

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from dialects import messages as m
 from link.services.ftp.protocol import FtpPacket, parse_packet
@@ -26,4 +25,4 @@ from tests.link.ftp_vehicle import MAX_OFFSET
 )
 def test_a_packet_comes_out_as_it_went_in(packet: FtpPacket) -> None:
     again = parse_packet(m.FileTransferProtocol(0, 1, 1, packet.payload()))
-    assert again == dataclasses.replace(packet, size=len(packet.data))
+    assert again == replace(packet, size=len(packet.data))

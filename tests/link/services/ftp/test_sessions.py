@@ -187,7 +187,7 @@ def test_a_file_is_either_read_or_written() -> None:
 class SlowMissions(MemoryFolder):
     """Written by a disk that is asked `waits` times before it says how that went."""
 
-    waits = 2
+    waits: int = 2
 
     def store(self, name: str, data: bytes) -> FtpError | None:
         if self.waits:
