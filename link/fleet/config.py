@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 MISSING = "fleets need the package eclipse-zenoh: pip install 'mavhelm[fleet]'"
 LEASE = 3000
 """ms of silence after which a session ends; Zenoh's own 10 s would hide a dead router for too long."""
+OPEN_TIMEOUT = 2000
+"""ms for a router to answer before the next one is tried: the kernel of a frozen one still accepts. Zenoh: 10 s."""
 RETRY = {"period_init_ms": 200, "period_max_ms": 500, "period_increase_factor": 1.5}
 """Zenoh's own retries slow down to 4 s."""
 SEND_BUFFER = 32768
@@ -33,6 +35,7 @@ MAX_WAIT_FOR_ROOM = 200
 SETTINGS: dict[str, Any] = {
     "transport/shared_memory/enabled": False,  # its counters end at 349 sessions of one computer
     "transport/link/tx/lease": LEASE,
+    "transport/unicast/open_timeout": OPEN_TIMEOUT,
     "transport/link/tx/batch_size": BATCH_SIZE,
     "transport/link/tx/queue/congestion_control/drop/wait_before_drop": MAX_WAIT_FOR_ROOM,
     "transport/link/tx/queue/size/real_time": 16,  # batches, of one frame each where frames are express

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import signal
 import subprocess
 import sys
@@ -25,9 +26,14 @@ from tests.ports import free_port
 STEP = 0.02
 
 
-def make_fleet(folder: Path, **roles: str) -> Path:
-    """Make a fleet with its members, name=role; return its folder."""
-    path = new_fleet(folder / "farm", "farm", ["127.0.0.1"], free_port())
+LOCALHOST = ("127.0.0.1",)
+
+
+def make_fleet(folder: Path, hosts: Sequence[str] = LOCALHOST, *, quic: bool = False, **roles: str) -> Path:
+    """Make a fleet with its members, name=role; return its folder. `hosts`: addresses of its routers."""
+    path = new_fleet(folder / "farm", "farm", hosts, free_port())
+    if quic:
+        path.write_text(re.sub(r'"tls/([^"]*)"', r'"quic/\1?mixed_rel=1"', path.read_text()))
     for name, role in roles.items():
         add_member(path, name, role)
     return path.parent
@@ -36,16 +42,19 @@ def make_fleet(folder: Path, **roles: str) -> Path:
 class RouterProcess:
     """`bridge router`, which can be frozen, killed and started again."""
 
-    def __init__(self, fleet: Path, stack: ExitStack) -> None:
+    def __init__(self, fleet: Path, stack: ExitStack, *, within: Sequence[str] = (), link: str = "") -> None:
+        """`within`: the command that runs it in a network namespace; `link`: the locator of another router."""
         self._fleet = fleet
-        self.log = fleet / "router.log"
+        self._within, self._link = within, ("--link", link) if link else ()
+        self.log = fleet / f"{'-'.join(within) or 'router'}.log"
         self.start()
         stack.callback(self.kill)
 
     def start(self) -> None:
         """Start it, and wait until it listens."""
         with self.log.open("wb") as log:
-            command = [sys.executable, "-m", "link.bridge", "router", str(self._fleet / "fleet.toml")]
+            python = (*self._within, sys.executable)
+            command = [*python, "-m", "link.bridge", "router", str(self._fleet / "fleet.toml"), *self._link]
             self.process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
         deadline = time.monotonic() + PATIENCE
         while "ready" not in self.log.read_text():
@@ -67,15 +76,20 @@ class RouterProcess:
 class FleetWires:
     """A vehicle process in a fleet, and a transport for each operator, as tests/vehicle/wires.py has addresses."""
 
-    def __init__(self, folder: Path, fleet: Path, stack: ExitStack, vehicle: str = "rover1") -> None:
+    def __init__(
+        self, folder: Path, fleet: Path, stack: ExitStack, vehicle: str = "rover1", *, within: Sequence[str] = ()
+    ) -> None:
         self._fleet, self._name = fleet, vehicle
         endpoint = f"zenoh:{fleet}/{vehicle}.json5/farm/{vehicle}"
-        self.vehicle = Vehicle(folder, endpoint, "--param", PATIENT_LOOP)
+        self.vehicle = Vehicle(folder, endpoint, "--param", PATIENT_LOOP, within=within)
         stack.callback(self.vehicle.end)
         self.sent: list[tuple[Hashable, m.Message]] = []
         """Operator -> what the vehicle has sent there."""
         self.boot_ms: tuple[float, int] | None = None
         """Newest time of the vehicle, and when it came."""
+        self.longest_silence = 0.0
+        """s between two frames of the vehicle, to any operator; set it to 0 to measure from then on."""
+        self._heard_at = time.monotonic()
         self._loop = asyncio.new_event_loop()
         stack.callback(self._loop.close)
         self._stack = stack
@@ -117,6 +131,8 @@ class FleetWires:
         return self._transports[operator]
 
     def _take(self, operator: Hashable, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
+        self.longest_silence = max(self.longest_silence, self.now - self._heard_at)
+        self._heard_at = self.now
         for data, _ in pieces:
             for number, _, _, _, raw in self._framer.feed(data, self.now):
                 message = codec.decode(number, payload_of(raw))

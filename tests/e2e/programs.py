@@ -13,7 +13,7 @@ import subprocess
 import sys
 import termios
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -48,11 +48,12 @@ class Output(NamedTuple):
 class Vehicle:
     """`python -m vehicle --sim` with a motor log, on a UDP port of this machine or any other endpoint."""
 
-    def __init__(self, folder: Path, port: int | str, *options: str) -> None:
+    def __init__(self, folder: Path, port: int | str, *options: str, within: Sequence[str] = ()) -> None:
+        """`within`: the command that runs it in a network namespace."""
         self.motor_log = folder / "motors.log"
         self.errors = folder / "vehicle.err"
         endpoint = port if isinstance(port, str) else f"udpout:127.0.0.1:{port}"
-        command = [sys.executable, "-m", "vehicle", "--sim", endpoint, "--param", PATIENT_LOOP, *options]
+        command = [*within, sys.executable, "-m", "vehicle", "--sim", endpoint, "--param", PATIENT_LOOP, *options]
         with self.errors.open("wb") as errors:
             self.process = subprocess.Popen(
                 [*command, "--motor-log", str(self.motor_log)], stdout=errors, stderr=errors, stdin=subprocess.DEVNULL

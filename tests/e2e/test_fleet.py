@@ -7,96 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack
-from pathlib import Path
 
 import pytest
-import zenoh
 
 from dialects import messages as m
-from dialects.axes import Axes, build_manual_control
+from dialects.axes import build_manual_control
 from dialects.enums import Command
-from dialects.modes import Mode
-from link.endpoint import parse_endpoint
-from link.fleet.config import load_config
-from tests.e2e.fleet_programs import FleetWires, RouterProcess, make_fleet
+from tests.e2e.fleet_driver import AHEAD, FALL, MAN_TIMEOUT, NEUTRAL, Driver, Fleet
 from tests.link.frames import frame
-from tests.vehicle.wires import SessionProgram
 from tests.waits import Waits
 
 pytestmark = [pytest.mark.slow, pytest.mark.e2e, pytest.mark.xdist_group("fleet")]  # one fleet for all tests
-
-AHEAD, NEUTRAL = Axes(throttle=1.0), Axes()
-MAN_TIMEOUT = 0.45
-FALL = 0.55
-"""s from the end of the demand to wheels at rest: docs/safety.md allows 1 s from the last demand."""
 
 RECONNECTED_WITHIN = 1.0
 """s from a router that listens to the next frame; programs try again every 0.5 s (RETRY in link/fleet/config.py)."""
 BACK_WITHIN = 1.0
 """s from the next frame to a command that is obeyed."""
-
-
-class Driver(SessionProgram):
-    """An operator of the fleet with a session, who echoes the time of the vehicle."""
-
-    def build(self, axes: Axes | None, *, age: float = 0.02) -> m.RoverOperatorPresence:
-        proof = super().build(axes)
-        proof.echo_time_boot_ms = self.wires.boot_ms[1] if self.wires.boot_ms else 0  # type: ignore[attr-defined]
-        return proof
-
-
-class Fleet:
-    """One vehicle that alice drives."""
-
-    def __init__(self, folder: Path, stack: ExitStack) -> None:
-        self.folder = make_fleet(folder, rover1="vehicle", rover2="vehicle", alice="drive", bob="watch")
-        self.router = RouterProcess(self.folder, stack)
-        self.wires = FleetWires(folder, self.folder, stack)
-        self.driver = Driver(self.wires, "alice")  # type: ignore[arg-type]
-        self.wires.transport("alice")
-        self.wires.until(lambda: self.wires.boot_ms is not None, lambda now: self.driver.step(None))
-
-    def drive(self) -> None:
-        """Begin a test: armed, at full throttle."""
-        self.rest()
-        while not self.armed():
-            self.driver.arm()
-            self.wires.wait(0.3, lambda now: self.driver.step(NEUTRAL))
-        self.regain()
-        self.wires.until(self.wires.vehicle.at_full, lambda now: self.driver.step(AHEAD))
-
-    def rest(self) -> None:
-        self.wires.wait(0.6, lambda now: self.driver.step(NEUTRAL))
-
-    def regain(self) -> float:
-        """Choose MANUAL, as a person does after a stop; return when the vehicle obeyed."""
-        before, due = len(self.wires.sent), 0.0
-        while not any(_accepts(each) for who, each in self.wires.sent[before:] if who == "alice"):
-            if self.wires.now >= due:
-                due = self.wires.now + 0.1
-                self.driver.set_mode(Mode.MANUAL)
-            self.wires.wait(0.02, lambda now: self.driver.step(NEUTRAL))
-        return self.wires.now
-
-    def armed(self) -> bool:
-        beats = [each for who, each in self.wires.sent[-2000:] if isinstance(each, m.Heartbeat)]
-        return bool(beats) and bool(beats[-1].base_mode & 128)
-
-    def next_frame(self) -> float:
-        """Wait for the next frame of the vehicle; return when it came: the link is back."""
-        before = len(self.wires.sent)
-        self.wires.until(lambda: len(self.wires.sent) > before, lambda now: self.driver.step(NEUTRAL))
-        return self.wires.now
-
-    def session(self, name: str) -> zenoh.Session:
-        """Return a session with the certificate of a member, and no manners."""
-        is_vehicle = "rover" in name
-        endpoint = parse_endpoint(f"zenoh:{self.folder}/{name}.json5/farm{f'/{name}' if is_vehicle else ''}")
-        return zenoh.open(load_config(endpoint).zenoh)
-
-
-def _accepts(message: m.Message) -> bool:
-    return isinstance(message, m.CommandAck) and (message.command, message.result) == (Command.DO_SET_MODE, 0)
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ import json
 import lzma
 import socket
 import time
+from collections import deque
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -57,6 +58,8 @@ class QGroundControl:
         self._vehicle: tuple[str, int] | None = None
         self._sequence = 0
         self._beat_due = 0.0
+        self._unread: deque[m.Message] = deque()
+        """A datagram may hold several frames; those behind what was waited for."""
         self.watch: Callable[[m.Message], object] = lambda message: None
         """Called with every message that arrives."""
         self.repeats = 0
@@ -86,17 +89,19 @@ class QGroundControl:
         """Return the next message of a kind that is `wanted`; None if there is none."""
         deadline = time.monotonic() + within
         while (left := deadline - time.monotonic()) > 0:
+            while self._unread:
+                message = self._unread.popleft()
+                self.watch(message)
+                if isinstance(message, kind) and wanted(message):
+                    return message
             self._beat()
             self._socket.settimeout(min(left, 0.2))
             try:
                 data, self._vehicle = self._socket.recvfrom(65536)
             except TimeoutError:
                 continue
-            for message_id, *_, raw in self._framer.feed(data, time.monotonic()):
-                message = codec.decode_frame(message_id, raw)
-                self.watch(message)
-                if isinstance(message, kind) and wanted(message):
-                    return message
+            frames = self._framer.feed(data, time.monotonic())
+            self._unread.extend(codec.decode_frame(message_id, raw) for message_id, *_, raw in frames)
         return None
 
     def listen(self, seconds: float) -> None:

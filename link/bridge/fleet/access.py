@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from link.bridge.fleet.fleet_file import FleetFile
+from link.bridge.fleet.fleet_file import ROUTER_NAME, FleetFile
 from link.signing.role import ROLES
 
 _PUBLISH = ("put",)
@@ -38,10 +38,16 @@ def build_access(fleet: FleetFile) -> dict[str, Any]:
         subjects.append({"id": certificate, "cert_common_names": [certificate]})
         policies.append({"subjects": [certificate], "rules": ids})
     found: dict[str, Any] = {"enabled": True, "default_permission": "deny"}
-    return found | ({"rules": rules, "subjects": subjects, "policies": policies} if rules else {})
+    return found | {"rules": rules, "subjects": subjects, "policies": policies}
+
+
+_ALL = (*_GET, "liveliness_query")
+"""What linked routers pass on to each other: each has checked it when it came from a member."""
 
 
 def _members(fleet: FleetFile) -> Iterator[tuple[str, list[_Rule]]]:
+    everything = [f"fleet/{fleet.fleet}/**"]
+    yield ROUTER_NAME, [(IN, _ALL, everything), (OUT, _ALL, everything)]
     for name, vehicle in fleet.vehicles.items():
         yield vehicle.certificate, _vehicle_rules(f"fleet/{fleet.fleet}/{name}")
     for name, operator in fleet.operators.items():

@@ -76,7 +76,8 @@ def _new_key(name: str) -> tuple[str, ...]:
 
 def _extensions(hosts: Sequence[str]) -> str:
     lines = ["basicConstraints=critical,CA:FALSE", "keyUsage=critical,digitalSignature"]
-    lines.append(f"extendedKeyUsage={'serverAuth' if hosts else 'clientAuth'}")
+    usage = "serverAuth,clientAuth" if hosts else "clientAuth"  # a router also connects to other routers
+    lines.append(f"extendedKeyUsage={usage}")
     if hosts:
         lines.append("subjectAltName=" + ",".join(f"{'IP' if _is_address(each) else 'DNS'}:{each}" for each in hosts))
     return "\n".join(lines) + "\n"

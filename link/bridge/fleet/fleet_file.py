@@ -17,6 +17,8 @@ FILE = "fleet.toml"
 AUTHORITY, AUTHORITY_KEY = "authority.pem", "authority.key"
 """Signs all certificates. Its key is needed to add members only, not by the router."""
 ROUTER, ROUTER_KEY = "router.pem", "router.key"
+ROUTER_NAME = "router"
+"""Common name of its certificate; those of members end with a random number."""
 
 TEMPLATE = """\
 # Who belongs to the fleet {fleet}. `bridge router {file}` reads this at its start.

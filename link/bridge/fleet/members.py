@@ -16,6 +16,7 @@ from link.bridge.fleet.fleet_file import (
     FILE,
     ROUTER,
     ROUTER_KEY,
+    ROUTER_NAME,
     TEMPLATE,
     FleetFile,
     add_row,
@@ -45,7 +46,7 @@ def new_fleet(folder: Path, fleet: str, hosts: Sequence[str], port: int = PORT) 
     if path.exists():
         raise FleetError(f"{path} exists already; add to it with `bridge fleet add`, or name another folder")
     authority = make_authority(fleet)
-    router = make_member("router", authority, hosts)
+    router = make_member(ROUTER_NAME, authority, hosts)
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     _write_pair(folder, AUTHORITY, AUTHORITY_KEY, authority)
     _write_pair(folder, ROUTER, ROUTER_KEY, router)

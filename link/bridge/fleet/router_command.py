@@ -13,7 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from link.bridge.fleet.access import build_access
-from link.bridge.fleet.fleet_file import AUTHORITY, ROUTER, ROUTER_KEY, FleetFile, read_fleet_file
+from link.bridge.fleet.fleet_file import (
+    AUTHORITY,
+    ROUTER,
+    ROUTER_KEY,
+    ROUTER_NAME,
+    FleetFile,
+    locator_problem,
+    read_fleet_file,
+)
 from link.bridge.fleet.members import read_encoded
 from link.fleet.config import SETTINGS, apply_settings, load_zenoh
 from link.runtime.command_line import CommandLineParser
@@ -24,6 +32,8 @@ log = logging.getLogger(__name__)
 
 ROUTER_SETTINGS: dict[str, Any] = {
     "mode": "router",
+    "connect/timeout_ms": -1,  # the other router may start later, or again
+    "connect/exit_on_failure": False,
     "transport/unicast/max_sessions": 10_000,  # Zenoh's own limit is 1000
     "transport/unicast/accept_pending": 1_000,  # after a restart all come at once
     "transport/link/protocols": ["tls", "quic"],
@@ -43,7 +53,7 @@ def run(arguments: Sequence[str]) -> int:
     options = parser.parse_args(parser.reject_empty(arguments))
     logging.basicConfig(level=logging.INFO, format="bridge router: %(message)s", stream=sys.stderr)
     try:
-        _run(read_fleet_file(options.file), options.file.parent)
+        _run(read_fleet_file(options.file), options.file.parent, _read_links(options.link))
     except (TomlError, LinkError) as error:
         parser.exit(2, f"{parser.prog}: {error}\n")
     except OSError as error:
@@ -51,12 +61,12 @@ def run(arguments: Sequence[str]) -> int:
     return 0
 
 
-def _run(fleet: FleetFile, folder: Path) -> None:
+def _run(fleet: FleetFile, folder: Path, links: Sequence[str]) -> None:
     before = signal.pthread_sigmask(
         signal.SIG_BLOCK, SIGNALS
     )  # Zenoh's threads inherit it, so that sigwait() gets them
     try:
-        session = _open(fleet, folder)
+        session = _open(fleet, folder, links)
         watching = session.info.declare_link_events_listener(_log_link(fleet), history=True)
         members = f"{len(fleet.vehicles)} vehicles, {len(fleet.operators)} operators"
         log.info("ready, fleet %s, %s, %s", fleet.fleet, " + ".join(fleet.listen), members)
@@ -68,22 +78,33 @@ def _run(fleet: FleetFile, folder: Path) -> None:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _open(fleet: FleetFile, folder: Path) -> Any:
+def _open(fleet: FleetFile, folder: Path, links: Sequence[str]) -> Any:
     zenoh = load_zenoh()
     config = zenoh.Config()
     tls = {
         "root_ca_certificate_base64": read_encoded(folder / AUTHORITY),
         "listen_certificate_base64": read_encoded(folder / ROUTER),
         "listen_private_key_base64": read_encoded(folder / ROUTER_KEY),
+        "connect_certificate_base64": read_encoded(folder / ROUTER),
+        "connect_private_key_base64": read_encoded(folder / ROUTER_KEY),
         "enable_mtls": True,
     }
-    apply_settings(config, SETTINGS | ROUTER_SETTINGS | {"listen/endpoints": fleet.listen})
+    places = {"listen/endpoints": fleet.listen, "connect/endpoints": list(links)}
+    apply_settings(config, SETTINGS | ROUTER_SETTINGS | places)
     apply_settings(config, {f"transport/link/tls/{key}": value for key, value in tls.items()})
     config.insert_json5("access_control", json.dumps(build_access(fleet)))
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
         raise LinkError(_explain(fleet, str(error))) from None
+
+
+def _read_links(locators: Sequence[str]) -> Sequence[str]:
+    """Return the other routers. Raises LinkError."""
+    for each in locators:
+        if problem := locator_problem(each):
+            raise LinkError(f"--link: {problem}")
+    return locators
 
 
 def _explain(fleet: FleetFile, error: str) -> str:
@@ -109,7 +130,8 @@ def _is_free(locator: str) -> bool:
 
 def _log_link(fleet: FleetFile) -> Any:
     """Return a callback that logs who connects and disconnects, by the names of fleet.toml."""
-    owners = {each.certificate: f"vehicle {name}" for name, each in fleet.vehicles.items()}
+    owners = {ROUTER_NAME: "router"}
+    owners |= {each.certificate: f"vehicle {name}" for name, each in fleet.vehicles.items()}
     owners |= {each.certificate: f"operator {name} ({each.role})" for name, each in fleet.operators.items()}
 
     def note(event: Any) -> None:
@@ -130,4 +152,11 @@ def build_parser() -> CommandLineParser:
         allow_abbrev=False,
     )
     parser.add_argument("file", metavar="FILE", type=Path, help="fleet.toml")
+    parser.add_argument(
+        "--link",
+        metavar="LOCATOR",
+        action="append",
+        default=[],
+        help="another router of the same fleet, as tls/b.example.org:7447; may be given again",
+    )
     return parser

@@ -130,6 +130,16 @@ def test_who_may_publish_and_hear_what(tmp_path: Path) -> None:
     assert allowed["rover1-1", "put"] == ["fleet/farm/rover1/up/**"]
     assert allowed["rover1-1", "declare_subscriber"] == ["fleet/farm/rover1/down/**"]
     assert not any("declare_queryable" in rule["messages"] for rule in access["rules"])
+    assert allowed["router", "put"] == ["fleet/farm/**"], "a linked router has checked it"
+
+
+def test_a_link_to_another_router_has_certificates(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text(FILE)
+    with pytest.raises(SystemExit) as ended:
+        run_router([str(path), "--link", "tcp/10.0.0.2:7447"])
+    assert ended.value.code == 2
+    assert "--link: 'tcp/10.0.0.2:7447' has no certificates" in capfd.readouterr().err
 
 
 def test_the_commands_say_what_to_do_next(

@@ -1,0 +1,173 @@
+"""100 and 500 vehicles of a fleet at 50 messages/s: CPU and memory of router, ground station and vehicle.
+
+One vehicle is a real one, the others are sessions that send telemetry (fleet_members.py). The ground station shows its
+Links screen. Beside it, in the same run, the same ground station with 100 vehicles on plain UDP.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from link.bridge.fleet.members import add_member
+from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table
+from tests.benchmarks.fleet_sender import RATE
+from tests.benchmarks.procfs import cpu_seconds, family, memory
+from tests.benchmarks.programs import Program, free_port, on_pipe, on_terminal, python, scratch
+from tests.benchmarks.watch import Watch
+from tests.e2e.fleet_programs import RouterProcess, make_fleet
+
+SIZES = (100, 500)
+"""Vehicles; a ground station shows MAX_VEHICLES of them, so behind the larger number a counter listens."""
+SHOWN = SIZES[0]
+SECONDS, QUICK_SECONDS = 15.0, 4.0
+READY_WITHIN = 120.0
+SETTLE = 8.0
+LINKS_SCREEN = b"\x1b[18~"
+COLUMNS, LINES = 140, 45
+CPU_LIMIT = 40.0
+"""% of a core for a screen with 100 vehicles."""
+PRESENT_WITHIN = 2.0
+"""s until a vehicle is known to a ground station."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Use:
+    """What a program takes."""
+
+    cpu: float
+    """% of a core."""
+    rss: float
+    """MiB."""
+
+
+def run(options: Options) -> Report:
+    """Measure each size, and the reference."""
+    seconds = QUICK_SECONDS if options.quick else SECONDS
+    rows: list[Row] = []
+    watch = Watch()
+    with scratch() as folder, ExitStack() as stack:
+        options.say(f"fleet_load: certificates of {SIZES[-1]} vehicles")
+        fleet = make_fleet(folder, rover="vehicle", alice="drive", bob="watch")
+        for number in range(1, SIZES[-1] + 1):
+            add_member(fleet / "fleet.toml", f"v{number}", "vehicle")
+        router = RouterProcess(fleet, stack)
+        options.say(f"fleet_load: {SHOWN} vehicles, a ground station")
+        row, present = _with_station(watch, router, fleet, seconds)
+        rows += [row, _with_counter(watch, router, fleet, seconds)]
+    options.say(f"fleet_load: {SHOWN} vehicles on UDP")
+    reference = _on_udp(watch, seconds)
+    goals = [
+        Goal(f"CPU of the ground station, {SHOWN} vehicles of a fleet", row["station CPU %"], CPU_LIMIT, "%"),
+        Goal("a vehicle is present within", present, PRESENT_WITHIN, "s"),
+    ]
+    note = f"{RATE} messages/s of each vehicle. TLS, certificates and access rules for {SIZES[-1] + 3} members."
+    return Report([Table("Many vehicles of one fleet", [*rows, reference], note)], goals)
+
+
+def _with_station(watch: Watch, router: RouterProcess, fleet: Path, seconds: float) -> tuple[Row, float]:
+    """Measure with a real ground station and one real vehicle; return also the s until that one was present."""
+    with (
+        _members(watch, fleet, 1, SHOWN - 1),
+        _ended(
+            on_terminal(watch, python("groundstation", f"zenoh:{fleet}/alice.json5/farm"), COLUMNS, LINES)
+        ) as station,
+    ):
+        _show_links(watch, station)
+        _heard(watch, station, SHOWN - 1)
+        rover = f"zenoh:{fleet}/rover.json5/farm/rover"
+        with _ended(on_pipe(watch, python("vehicle", "--sim", rover, "--param", "MAV_SYSID=251"))) as vehicle:
+            vehicle.wait_for("connected", READY_WITHIN)
+            connected = time.monotonic()
+            _heard(watch, station, SHOWN)
+            present = time.monotonic() - connected
+            uses = _measure(
+                watch, {"router": router.process.pid, "station": station.pid, "vehicle": vehicle.pid}, seconds
+            )
+    return _row("fleet", SHOWN, uses, None), present
+
+
+def _with_counter(watch: Watch, router: RouterProcess, fleet: Path, seconds: float) -> Row:
+    """Measure the router with all vehicles."""
+    count = SIZES[-1]
+    with (
+        _members(watch, fleet, 1, count),
+        _ended(on_pipe(watch, python("tests.benchmarks.fleet_members", str(fleet), "listen"))) as counter,
+    ):
+        counter.wait_for(f"heard {count} vehicles", READY_WITHIN)
+        watch.pause(2.0)
+        before, begun = _count(counter), time.monotonic()
+        uses = _measure(watch, {"router": router.process.pid}, seconds)
+        watch.pause(1.5)
+        arrived = (_count(counter) - before) / (time.monotonic() - begun)
+    return _row("fleet", count, uses, 100 * arrived / (count * RATE))
+
+
+def _on_udp(watch: Watch, seconds: float) -> Row:
+    port = free_port()
+    with (
+        _ended(on_terminal(watch, python("groundstation", f"udpin:127.0.0.1:{port}"), COLUMNS, LINES)) as station,
+        _ended(on_pipe(watch, python("tests.benchmarks.fleet_sender", str(SHOWN), str(port)))),
+    ):
+        _show_links(watch, station)
+        return _row("plain UDP", SHOWN, _measure(watch, {"station": station.pid}, seconds), None)
+
+
+def _show_links(watch: Watch, station: Program) -> None:
+    """Open the Links screen, once the station draws, and let it hear all vehicles."""
+    deadline = time.monotonic() + READY_WITHIN
+    while not re.search(r"\d heard", station.text):
+        if time.monotonic() > deadline:
+            raise BenchmarkError(f"the Links screen does not open: {station.text[-300:]!r}")
+        watch.pause(2.0)
+        station.type(LINKS_SCREEN)
+    watch.pause(SETTLE)
+
+
+def _heard(watch: Watch, station: Program, vehicles: int) -> None:
+    """Wait until the screen says that so many vehicles are heard."""
+    if not watch.until(lambda: f"{vehicles} heard" in station.text, READY_WITHIN):
+        raise BenchmarkError(f"{vehicles} vehicles are not on the screen: {station.text[-300:]!r}")
+
+
+def _measure(watch: Watch, programs: dict[str, int], seconds: float) -> dict[str, _Use]:
+    families = {name: family(pid) for name, pid in programs.items()}
+    before, begun = {name: cpu_seconds(pids) for name, pids in families.items()}, time.monotonic()
+    watch.pause(seconds)
+    took = time.monotonic() - begun
+    return {
+        name: _Use(100 * (cpu_seconds(pids) - before[name]) / took, memory(pids).rss) for name, pids in families.items()
+    }
+
+
+def _row(way: str, vehicles: int, uses: dict[str, _Use], delivered: float | None) -> Row:
+    row: Row = {"way": way, "vehicles": vehicles, "messages/s": vehicles * RATE}
+    for name in ("router", "station", "vehicle"):
+        use = uses.get(name)
+        row |= {f"{name} CPU %": use.cpu if use else None, f"{name} MiB": use.rss if use else None}
+    return row | {"delivered %": delivered}
+
+
+def _count(counter: Program) -> int:
+    return int(re.findall(r"(\d+) messages", counter.text)[-1])
+
+
+@contextmanager
+def _members(watch: Watch, fleet: Path, first: int, count: int) -> Iterator[None]:
+    """Run the process of so many vehicles."""
+    words = (str(fleet), str(first), str(count), str(RATE))
+    with _ended(on_pipe(watch, python("tests.benchmarks.fleet_members", *words))) as members:
+        members.wait_for("members ready", READY_WITHIN)
+        yield
+
+
+@contextmanager
+def _ended(program: Program) -> Iterator[Program]:
+    try:
+        yield program
+    finally:
+        program.end()
