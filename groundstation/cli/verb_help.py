@@ -36,6 +36,7 @@ VERB_HELP = {
     "ftp": "ls, get, put, rm or crc files on the vehicle",
     "log": "list, get or erase the logs on the vehicle",
     "sign": "new, show, install, setup, list, use or forget: keys for MAVLink signing",
+    "ros1": "be a node of ROS 1: /command and /cmd_vel drive, telemetry is published",
     "ros2": "be a node of ROS 2: /cmd_vel drives, telemetry is published",
     "export": "write a telemetry log as MCAP, CSV, GPX, KML, JSON lines, or a part of it",
 }

@@ -83,6 +83,7 @@ EXAMPLES: tuple[tuple[str, str], ...] = (
         "groundstation export f.tlog --mcap out.mcap --from 0:31 --to 0:44",
         "a part of a log, for Foxglove and ROS 2; no vehicle needed",
     ),
+    ("groundstation ros1 --arm", "a node of ROS 1: /command and /cmd_vel drive; docs/ros.md"),
     ("groundstation ros2 --arm --max-speed 0.5", "a node of ROS 2: /cmd_vel drives; docs/ros.md"),
     ("groundstation sign new rover", "a key for MAVLink signing; docs/keys.md pairs in a minute"),
     ("groundstation sign setup rover -e serial:/dev/ttyACM0:115200", "give it to a disarmed vehicle over a cable"),

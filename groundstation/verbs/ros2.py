@@ -13,14 +13,14 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from dialects import messages as m
-from dialects.enums import Command
 from groundstation.ros.diagnostics import diagnostics, log_line
 from groundstation.ros.rmw.names import name_fault, namespace_fault
 from groundstation.ros.vehicle import ODOMETRY, RosVehicle, transforms
-from groundstation.verbs.arguments import Argument, rate
+from groundstation.verbs.arguments import Argument
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.ros_driver import RosDriver
+from groundstation.verbs.ros_rates import RATE, request_rates
 from groundstation.verbs.ros_scale import ARGUMENTS as SCALE_ARGUMENTS
 from groundstation.verbs.ros_scale import learn_scale
 from groundstation.verbs.session import VerbSession
@@ -47,14 +47,6 @@ PUBLISHED = {
 }
 """Topic -> its type. One without a slash is in the namespace of the node."""
 TRANSFORMS, TRANSFORM_TYPE = "/tf", "tf2_msgs/msg/TFMessage"
-REQUESTED: dict[type[m.Message], float] = {
-    m.Attitude: 1.0,
-    m.LocalPositionNed: 1.0,
-    m.HighresImu: 1.0,
-    m.GpsRawInt: 0.2,
-    m.BatteryStatus: 0.1,
-}
-"""Message -> its share of --rate."""
 DIAGNOSTICS_PERIOD = 1.0
 """s"""
 
@@ -108,7 +100,7 @@ ARGUMENTS: tuple[Argument, ...] = (
     ("--domain", {"type": domain, "metavar": "N", "help": f"ROS domain (default: {DOMAIN_VARIABLE}, else 0)"}),
     ("--namespace", {"default": "/", "metavar": "/NAME", "help": "before all its topics and services"}),
     ("--node", {"metavar": "NAME", "help": "name of the node (default: mavhelm_ and the system id)"}),
-    ("--rate", {"type": rate, "default": 5.0, "metavar": "HZ", "help": "of odom and imu (default: 5)"}),
+    RATE,
     ("--tf", {"action": "store_true", "help": "publish the transform from odom to base_link, too"}),
 )  # fmt: skip
 
@@ -175,7 +167,7 @@ def _build(session: VerbSession, driver: RosDriver, options: argparse.Namespace)
 async def _publish(session: VerbSession, driver: RosDriver, node: Ros2Node, options: argparse.Namespace) -> None:
     """Publish what the vehicle reports, and its diagnostics."""
     session.core.taps.append(_tap(session, node, tf=options.tf))
-    await _request_rates(session, options.rate)
+    await request_rates(session, options.rate)
     while True:
         view = session.vehicle.build_view(session.now)
         node.publish("/diagnostics", diagnostics(view, driver.engaged, _unix_time()))
@@ -201,18 +193,6 @@ def _tap(session: VerbSession, node: Ros2Node, *, tf: bool) -> Any:
                 node.publish(TRANSFORMS, transforms(values))
 
     return take
-
-
-async def _request_rates(session: VerbSession, hertz: float) -> None:
-    """Request the messages that are published; a vehicle that refuses sends what it sends anyway."""
-    commands = session.services.commands
-    for kind, share in REQUESTED.items():
-        params = (float(kind.id), round(1e6 / (hertz * share)))
-        await session.request(
-            lambda number, now, p=params, k=kind: commands.send(  # type: ignore[misc]
-                number, Command.SET_MESSAGE_INTERVAL, p, f"rate of {k.msgname}", now
-            )
-        )
 
 
 def _unix_time() -> int:

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         plan,
         reboot,
         record,
+        ros1,
         ros2,
         send,
         sign,
@@ -79,6 +80,7 @@ else:
     plan = LaterModule("plan")
     reboot = LaterModule("reboot")
     record = LaterModule("record")
+    ros1 = LaterModule("ros1")
     ros2 = LaterModule("ros2")
     send = LaterModule("send")
     sign = LaterModule("sign")
@@ -365,6 +367,9 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "use": VerbAction("sign with this key from now on", sign.use, (_WHICH_KEY,), offline=True),
         "forget": VerbAction("remove a key here; the vehicle still has it", sign.forget, (_WHICH_KEY,), offline=True),
     },
+    "ros1": {ONLY: VerbAction(
+        "be a node of ROS 1: /command and /cmd_vel drive, telemetry is published; until Ctrl-C", ros1.run,
+        ros1.ARGUMENTS, takes_part=True, guarded=lambda _: True)},
     "ros2": {ONLY: VerbAction(
         "be a node of ROS 2 over rmw_zenoh: /cmd_vel and /command drive, telemetry is published; until Ctrl-C",
         ros2.run, ros2.ARGUMENTS, takes_part=True, check=ros2.check, guarded=lambda _: True)},

@@ -89,7 +89,7 @@ LINES: dict[str, tuple[Line, ...]] = {
     "log erase": line("log erase --yes"),
 }  # fmt: skip
 """Verb and action -> what is run, in an order in which each finds what it needs."""
-ELSEWHERE = {"export": "test_export.py", "ros2": "test_ros2.py", "sign": "test_sign.py"}
+ELSEWHERE = {"export": "test_export.py", "ros1": "test_ros1.py", "ros2": "test_ros2.py", "sign": "test_sign.py"}
 """Verb without a vehicle, with one on a cable, or that needs another program -> its test."""
 ALL, SECOND_PART = slice(None), [*LINES].index("mission put")
 """What of LINES is run; what comes from SECOND_PART on needs nothing of what is before it."""

@@ -1,0 +1,47 @@
+"""A node that publishes words for keys to /command, as the one of the Circuit Cellar article: a script for rospy.
+
+It publishes its last word again in each round, which takes up to 0.7 s without a key.
+"""
+
+from __future__ import annotations
+
+import select
+import sys
+import termios
+import tty
+from typing import Any
+
+import rospy
+from std_msgs.msg import String
+
+WORDS = {"i": "forward", "j": "left", "k": "stop", "l": "right", ",": "backward"}
+CTRL_C = "\x03"
+
+
+def read_key(settings: list[Any]) -> str:
+    """Return the key that is pressed within 0.6 s, or ''."""
+    tty.setraw(sys.stdin.fileno())
+    ready, _, _ = select.select([sys.stdin], [], [], 0.6)
+    key = sys.stdin.read(1) if ready else ""
+    termios.tcsetattr(sys.stdin, termios.TCSADRAIN, settings)
+    return key
+
+
+def main() -> None:
+    """Publish until Ctrl-C."""
+    settings = termios.tcgetattr(sys.stdin)
+    publisher = rospy.Publisher("command", String, queue_size=10)
+    rospy.init_node("command_node")
+    rate = rospy.Rate(10)
+    command = "stop"
+    while not rospy.is_shutdown():
+        key = read_key(settings)
+        if key == CTRL_C:
+            break
+        command = WORDS.get(key, command)
+        publisher.publish(command)
+        rate.sleep()
+
+
+if __name__ == "__main__":
+    main()
