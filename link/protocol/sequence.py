@@ -74,10 +74,8 @@ class Numbering:
     def distance(self, sequence: int, now: float) -> int | None:
         """Return how far a number is from the newest, negative for behind; None if it is of another numbering."""
         ahead = (sequence - self.newest) & 0xFF
-        if 0 < ahead <= CLOSE:
-            return ahead
-        if ahead == 0 or ahead > 0xFF - LATE_WINDOW:
-            return -(-ahead & 0xFF)
+        if ahead > 0xFF - LATE_WINDOW:
+            return ahead - 0x100
         rate = max(self._rate, self._window_count)
         return ahead if ahead <= min(REACH_MAX, CLOSE + 2 * rate * (now - self.heard_at)) else None
 

@@ -6,10 +6,8 @@ that come out are the same.
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
-from types import FrameType
 
 import pytest
 from fastcrc.crc16 import mcrf4xx
@@ -18,6 +16,7 @@ from dialects.codec import CRC_EXTRA
 from link.protocol.checksum import START
 from link.protocol.frame import Frame
 from link.protocol.framer import PARTIAL_DEADLINE, Framer
+from tests.link.calls import called
 from tests.link.frames import demand
 
 LARGE_ID = 0x012345
@@ -36,27 +35,6 @@ def build(
     header = bytes([magic, length if claimed is None else claimed, flags, 0, 7, 1, 2]) + number.to_bytes(3, "little")
     body = header + bytes(range(1, length + 1))
     return body + mcrf4xx(body + CRC_EXTRA[number], START).to_bytes(2, "little") + tail
-
-
-def called(run: Callable[[], object]) -> list[str]:
-    """Names of the functions of link/protocol that `run` calls, in order."""
-    names: list[str] = []
-
-    def note(frame: FrameType, event: str, _: object) -> None:
-        if (
-            event == "call"
-            and "/link/protocol/" in frame.f_code.co_filename
-            and "/tests/" not in frame.f_code.co_filename
-        ):
-            names.append(frame.f_code.co_name)
-
-    before = sys.getprofile()
-    sys.setprofile(note)
-    try:
-        run()
-    finally:
-        sys.setprofile(before)
-    return names
 
 
 def found(framer: Framer, data: bytes, calls: Sequence[str]) -> list[Frame]:

@@ -231,6 +231,14 @@ def test_mismatches_and_unknown_ids_are_summed() -> None:
     assert total.unknown_ids == {(1, 1, 900): (6, 20)}
 
 
+def test_a_claim_inside_which_a_header_was_given_up_is_no_unknown_frame() -> None:
+    """Also if a frame begins one byte behind its end, where the end would be if the byte given up were not counted."""
+    framer = Framer(stream=True)
+    assert sequences(framer, unknown(FORGED + b"xx") + b"z" + demand(1)) == []
+    assert [each[3] for each in framer.expire(PARTIAL_DEADLINE)] == [1]
+    assert (framer.counts.unknown, framer.counts.resync_bytes) == (0, len(unknown(FORGED + b"xx")) + 1)
+
+
 # ---- for routers ----
 
 

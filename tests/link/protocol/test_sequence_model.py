@@ -5,11 +5,13 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import pytest
 
 from link.protocol.sequence import LATE_WINDOW, FrameOrder, SequenceTracker
+from tests.link.calls import called
 
 NEW, LATE, DUPLICATE = FrameOrder.NEW, FrameOrder.LATE, FrameOrder.DUPLICATE
 
@@ -151,6 +153,16 @@ def test_numbers_count_as_in_the_model(seed: int) -> None:
                 order = tracker.accept(*frame)
             state = (order, tracker.numbering.index, tracker.clash, tracker.received, tracker.lost)
             assert state == (expected, model.index, model.clash, model.received, model.lost), frame
+
+
+@pytest.mark.parametrize("ahead", range(1, 9))
+@pytest.mark.parametrize("wait", [0.0, 0.5, 5.0])
+def test_the_next_frame_of_the_only_sender_takes_one_call(ahead: int, wait: float) -> None:
+    for start in (0, 250):
+        tracker = SequenceTracker(start, 30, 1, 0.0)
+        calls = called(partial(tracker.accept, (start + ahead) % 256, 30, 2, wait))
+        assert [each for each in calls if each != "_begin_window"] == ["accept", "advance"]
+        assert (tracker.received, tracker.lost) == (2, ahead - 1)
 
 
 def test_a_numbering_remembers_a_bounded_number_of_frames() -> None:
