@@ -32,6 +32,8 @@ MASTER_PERIOD = 0.25
 """s between two questions to the master."""
 END_WITHIN = 0.5
 """s to sign off at the master."""
+PUBLISHED = ("nav_msgs/Odometry", "sensor_msgs/Imu")
+"""Types that its stdin may name, one of each package: what is missing is told at the start."""
 BUFFER = 1 << 20
 """Bytes that are read at once: with a queue of 1 only the newest message of them counts."""
 
@@ -171,7 +173,7 @@ def main() -> int:
         import rosgraph
         import rospy
 
-        for _, kind in topics:
+        for kind in [*PUBLISHED, *[kind for _, kind in topics]]:
             find_class(kind)
     except ImportError as error:
         pipe.write(missing=str(error))

@@ -19,6 +19,8 @@ from tests.groundstation.ros1.stand_in import StandIn
 from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb, wait_until
 
 Capture = pytest.CaptureFixture[str]
+GIVEN = ("-v", "1", "--max-speed", "1", "--max-turn", "1")
+"""What the verb would else wait for, or ask the vehicle for."""
 
 
 class Verb:
@@ -27,7 +29,7 @@ class Verb:
     def __init__(self, folder: Path, vehicle: ForeignVehicle, *options: str) -> None:
         self.vehicle = vehicle
         self.node = StandIn(folder)
-        words = ["ros1", "--python", str(self.node.python), "-e", vehicle.endpoint, "-v", "1", *options]
+        words = ["ros1", "--python", str(self.node.python), "-e", vehicle.endpoint, *GIVEN, *options]
         self._errors = folder / "errors"
         with self._errors.open("wb") as errors:
             command = [sys.executable, "-m", "groundstation", *words]
@@ -150,7 +152,7 @@ def test_it_arms_only_with_a_master_and_disarms(tmp_path: Path) -> None:
 
 def test_without_rospy_it_says_what_to_install(capsys: Capture) -> None:
     with ForeignVehicle() as vehicle:
-        words = ("-e", vehicle.endpoint, "-v", "1")
+        words = ("-e", vehicle.endpoint, *GIVEN)
         missing = run_verb(capsys, "ros1", "--python", sys.executable, *words)
         assert missing.code == ExitCode.USAGE
         assert "has no rospy (No module named 'rosgraph'): apt install python3-rospy" in missing.err
