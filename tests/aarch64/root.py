@@ -16,7 +16,7 @@ PACKAGE = "python3.11"
 PLATFORMS = ("manylinux_2_28_aarch64", "manylinux_2_17_aarch64", "manylinux2014_aarch64")
 WHEELS = (
     "pymavlink", "fastcrc", "pyserial", "textual", "platformdirs", "msgspec",
-    "pytest", "pytest-asyncio", "pytest-timeout", "hypothesis",
+    "pytest", "pytest-asyncio", "pytest-timeout", "hypothesis", "gpiozero", "smbus2",
 )  # fmt: skip
 
 

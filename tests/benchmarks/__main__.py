@@ -29,6 +29,7 @@ from tests.benchmarks import (
     link_loss,
     loop_lateness,
     machine,
+    message_rates,
     mission,
     receive_path,
     recording,
@@ -43,6 +44,7 @@ from tests.benchmarks import (
     verb,
 )
 from tests.benchmarks.figures import BenchmarkError, Options, Report
+from tests.benchmarks.pictures import write_pictures
 from tests.benchmarks.tables import markdown
 
 BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
@@ -60,6 +62,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "foreign_params": (foreign_params.run, "1200 parameters of an ArduPilot-like vehicle, as a file and as a list"),
     "stations": (stations.run, "what 1, 4, 16 and 64 ground stations cost the vehicle"),
     "screens": (screens.run, "how long a screen takes to open, and key to motor with each pane of Drive"),
+    "message_rates": (message_rates.run, "CPU of the ground station at 100 to 2000 messages/s"),
     "fleet": (fleet.run, "one driven rover among 15 and 99 further vehicles: key to motor and CPU"),
     "fleet_load": (fleet_load.run, "100 and 500 vehicles of a fleet: CPU and memory of router, station and vehicle"),
     "fleet_outages": (fleet_outages.run, "a driven rover of a fleet while networks are cut and routers fail; root"),
@@ -101,7 +104,11 @@ def _write(
     asked: argparse.Namespace, facts: dict[str, Any], reports: dict[str, Report], failures: dict[str, str]
 ) -> None:
     results = {name: report.plain() for name, report in reports.items()}
-    text = json.dumps({"quick": asked.quick, "machine": facts, "results": results, "failed": failures}, indent=1)
+    run = {"quick": asked.quick, "machine": facts, "results": results, "failed": failures}
+    text = json.dumps(run, indent=1)
+    if asked.pictures:
+        for file in write_pictures(run, asked.pictures):
+            _say(f"{file} written")
     if asked.out:
         asked.out.write_text(text + "\n")
     print(markdown(facts, reports, quick=asked.quick) if asked.markdown else text)
@@ -129,6 +136,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--only", metavar="NAME", action="append", choices=BENCHMARKS, help="this one; repeatable")
     parser.add_argument("--quick", action="store_true", help="a short run, to see that they work")
     parser.add_argument("--out", metavar="FILE", type=Path, help="write the JSON to FILE too")
+    parser.add_argument("--pictures", metavar="FOLDER", type=Path, help="write pictures of how cost grows to FOLDER")
     parser.add_argument("--markdown", action="store_true", help="print tables for docs/performance.md instead of JSON")
     parser.add_argument(
         "--seed",

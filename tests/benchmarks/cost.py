@@ -247,17 +247,18 @@ def _flood(ledger: Ledger, name: str, *keys: bytes) -> None:
 class Flood:
     """A vehicle that sends too much."""
 
-    def __init__(self, sock: socket.socket) -> None:
+    def __init__(self, sock: socket.socket, rate: int = FLOOD) -> None:
         self._socket = sock
+        self._rate = rate
         self._frames = mix(2560)  # a multiple of the sequence numbers, so that there is no gap at the restart
         self._next = 0
 
     def send(self, watch: Watch, seconds: float) -> None:
-        """Send FLOOD frames a second, one per datagram, a few at a time."""
+        """Send frames at the rate, one per datagram, a few at a time."""
         start = time.monotonic()
         for step in range(round(seconds / FLOOD_STEP)):
             watch.pause(start + step * FLOOD_STEP - time.monotonic())
-            for _ in range(round(FLOOD * FLOOD_STEP)):
+            for _ in range(round(self._rate * FLOOD_STEP)):
                 self._socket.send(self._frames[self._next % len(self._frames)])
                 self._next += 1
 
