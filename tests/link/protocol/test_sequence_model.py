@@ -173,6 +173,19 @@ def test_a_numbering_remembers_a_bounded_number_of_frames() -> None:
     assert len(tracker.numbering._digests) >= 33
 
 
+@pytest.mark.parametrize("overtaken", [False, True])
+@pytest.mark.parametrize(("gap", "numbering"), [(40, 1), (41, 2)])
+def test_the_rate_is_that_of_exactly_one_second(overtaken: bool, gap: int, numbering: int) -> None:
+    tracker = SequenceTracker(0, 30, 1, 0.0)
+    for number in range(1, 31):
+        tracker.accept(number, 30, number, number / 32)
+    order = ((32, 30), (31, 69)) if overtaken else ((31, 30), (32, 30))
+    for at, (number, kind) in zip((31 / 32, 1.0), order, strict=True):
+        assert tracker.accept(number, kind, number, at) is NEW
+    tracker.accept(32 + gap, 30, 99, 1.5)  # 8 + 2 * 32 / s * 0.5 s = 40
+    assert tracker.numbering.index == numbering
+
+
 def test_all_of_the_newest_frames_are_known_again_wherever_the_numbers_wrap() -> None:
     tracker = SequenceTracker(0, 30, 1000, 0.0)
     for number in range(1, 600):
