@@ -42,6 +42,8 @@ def run(options: Options) -> Report:
         report.tables.append(Table(f"Vehicle's receive path, {name}: us a frame", rows))
         if pace is _at_once:
             report.goals.append(Goal("vehicle's receive path a demand, p50", measured[MANUAL].p50, 30, "us"))
+        times_as_long = measured[MANUAL].p50 / measured[REFERENCE].p50
+        report.goals.append(Goal(f"{MANUAL} / pymavlink's decode, {name}, p50", times_as_long, LIMITS[pace], "x"))
     return report
 
 
@@ -69,6 +71,10 @@ def _cold(count: int) -> Iterator[int]:
     for number in range(count):
         select.select([], [], [], max(0.0, start + number * CYCLE - time.monotonic()))
         yield number
+
+
+LIMITS: dict[Pace, float] = {_at_once: 1.5, _cold: 2.0}
+"""Times as long as pymavlink's decode of that frame alone."""
 
 
 def _rounds(count: int, pace: Pace) -> dict[str, Spread]:

@@ -27,6 +27,8 @@ from tests.benchmarks.traffic import framed
 from tests.benchmarks.watch import Watch
 
 COUNTS = (1, 4, 16, 64)
+CPU, MEMORY = ((1, 2.0), (16, 2.5), (64, 4.0)), 34.0
+"""Stations and % of a core; MiB."""
 WINDOW, QUICK_WINDOW = 10.0, 2.0
 """s over which CPU time is counted."""
 WARM_UP = 2.0
@@ -155,6 +157,8 @@ def run(options: Options) -> Report:
         for count in COUNTS
         if count <= MAX_PEERS
     ]
+    goals += [Goal(f"vehicle with {count} stations, CPU", median(seen[count].cpu), most, "%") for count, most in CPU]
+    goals.append(Goal("vehicle, memory with the most stations", median(seen[COUNTS[-1]].rss), MEMORY, "MiB"))
     return Report([table], goals)
 
 
