@@ -6,9 +6,9 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.core import Core, EarlyActor, Outgoing, SendListener
+from link.core import Core, EarlyActor, Outgoing, RestingCore, SendListener
 from link.protocol.channel import Channel
-from link.runner import REPORT_PERIOD
+from link.runner import REPORT_PERIOD, REST_PERIOD
 from link.transport.memory import LossyPipe
 
 
@@ -30,10 +30,13 @@ class Host:
     """The core, if it wants to know what was sent. Checked once, because isinstance() of a protocol is slow."""
     early: EarlyActor | None = field(init=False)
     """The core, if it may have something to do between two ticks."""
+    resting: RestingCore | None = field(init=False)
+    """The core, if it may need fewer ticks."""
 
     def __post_init__(self) -> None:
         self.listener = self.core if isinstance(self.core, SendListener) else None
         self.early = self.core if isinstance(self.core, EarlyActor) else None
+        self.resting = self.core if isinstance(self.core, RestingCore) else None
 
     def advance(self, now: float) -> None:
         """Do what the runner does when time passes."""
@@ -43,12 +46,13 @@ class Host:
             if self.early is not None and (due := self.early.due_at) is not None and now >= due:
                 self.early.act(now)
             return
-        self.tick_due = max(self.tick_due + self.period, now)
         if now >= self.report_due:
             self.report_due = now + REPORT_PERIOD
             self.channel.expire_peers(now)
             self.core.observe([self.channel.report()], now)
         self.core.tick(now)
+        rests = self.resting is not None and self.resting.may_rest
+        self.tick_due = max(self.tick_due + (REST_PERIOD if rests else self.period), now)
 
     def receive(self, data: bytes, address: Hashable, now: float) -> None:
         """Do what the runner does when data arrives."""

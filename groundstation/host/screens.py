@@ -80,6 +80,8 @@ class ScreenSet:
         self._host = host
         self._lifetime = lifetime
         self._attached: dict[ScreenPort, _Attached] = {}
+        self._renewed_only = True
+        """What was read just now has renewed the lease in time and done nothing else."""
 
     # ---- screens come and go ----
 
@@ -105,6 +107,7 @@ class ScreenSet:
     def handle_screen_end(self, port: ScreenPort, now: float) -> None:
         """Go neutral if this screen drove."""
         attached = self._attached.get(port)
+        self._renewed_only = False
         if attached is not None:
             if attached.owner:
                 self._host.note_screen(quits=False, now=now)
@@ -127,6 +130,9 @@ class ScreenSet:
         """Carry out the intents of one packet, but for those that are too old, or not for this screen to make."""
         attached = self._attached[port]
         for intent in batch.intents:
+            if self._renews(attached, batch, intent, now):
+                continue
+            self._renewed_only = False
             if now - batch.time > MAX_INTENT_AGE and not intent.valid_when_late:
                 self._log_late(intent, now - batch.time, now)
             elif isinstance(intent, Quit | Detach):
@@ -136,8 +142,18 @@ class ScreenSet:
             elif (allowed := self.lease.filter(attached.screen, intent, now)) is not None:
                 self._host.handle(allowed, now, batch.time)
 
+    def _renews(self, attached: _Attached, batch: IntentBatch, intent: AnyIntent, now: float) -> bool:
+        """Renew the lease in time, ten times a second: no message and no view follows from that."""
+        if not isinstance(intent, RenewLease) or now - batch.time > MAX_INTENT_AGE:
+            return False
+        holds = self.lease.filter(attached.screen, intent, now) is not None
+        return not holds or self._station.renew_lease(now)
+
     def finish_read(self, port: ScreenPort, now: float) -> None:
         """Send the messages of the intents, and the views that they have changed."""
+        renewed_only, self._renewed_only = self._renewed_only, True
+        if renewed_only:
+            return
         self._host.flush()
         if (attached := self._attached.get(port)) is not None:
             attached.views.send_due(port.send, now, time.time())
@@ -165,16 +181,15 @@ class ScreenSet:
 
     # ---- what they see ----
 
-    def send_snapshot(self, snapshot: Snapshot, now: float) -> None:
-        """Send the snapshot and the views that are due to all."""
+    def send_views(self, now: float) -> None:
+        """Send the views that are due to all, and end what waits for too long."""
         self.lease.tick(now)
-        self.show(snapshot, now)
         for attached in list(self._attached.values()):
             attached.views.send_due(attached.port.send, now, time.time())
             if attached.leaving and self._station.departure.finished:
                 self._remove(attached, now)
 
     def show(self, snapshot: Snapshot, now: float) -> None:
-        """Send the snapshot alone to all."""
+        """Send the snapshot to all."""
         for attached in self._attached.values():
             attached.port.send(msgspec.structs.replace(snapshot, lease=self.lease.view(attached.screen, now)))

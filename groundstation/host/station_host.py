@@ -19,6 +19,7 @@ from groundstation.disk.desk import DiskDesk
 from groundstation.host.listener import Caller, ProgramListener
 from groundstation.host.names import answer_names
 from groundstation.host.screens import Lifetime, ScreenSet
+from groundstation.host.snapshot_pace import SNAPSHOT_PERIOD, SnapshotPace
 from groundstation.host.verbs import VerbSet
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import Stop
@@ -44,9 +45,6 @@ log = logging.getLogger(__name__)
 
 TICK = 0.025
 """s within which the end of a key hold and a due demand are noticed: half of the demands' period, which it keeps."""
-
-SNAPSHOT_PERIOD = 0.1
-"""s: as fast as a person can read; the screen draws no faster."""
 
 END_WITHIN = 1.0
 """s for the final neutral frames (0.25 s are needed); then the process exits in any case."""
@@ -96,6 +94,7 @@ class StationHost:
         self.handlers: list[Callable[[Intent, float], None]] = []
         """Parts beside the station and its links that take intents, and the time."""
         self._last_snapshot = Snapshot()
+        self._pace = SnapshotPace()
         self._addresses = LocalAddresses()
         self._lasting_alerts = LastingAlerts()
         self._broken = self._ending = False
@@ -131,6 +130,7 @@ class StationHost:
 
     def handle(self, intent: AnyIntent, now: float, read_at: float) -> None:
         """Carry out an intent of a screen."""
+        self._pace.note(now)
         self._station.handle_intent(intent, now, read_at=read_at)
         self.connect.handle(intent, now)
         for handle in self.handlers:
@@ -175,7 +175,7 @@ class StationHost:
         due = loop.time()
         while not self._broken:
             try:
-                self._send_snapshot(loop.time())
+                self._keep_up(loop.time())
             except Exception as error:  # nothing awaits this task, so the exception would be lost
                 self._handle_crash(error)
             due = max(due + SNAPSHOT_PERIOD, loop.time())
@@ -186,18 +186,24 @@ class StationHost:
         if not self._watchdog.report(self._station.report_to_watchdog(now), now):
             self.add_to_log(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
 
-    def _send_snapshot(self, now: float) -> None:
+    def _keep_up(self, now: float) -> None:
+        """Do what is due for the links, report to the watchdog, and send what the screens do not have yet."""
         self._poll_keys(now)
         self._report(now)
         self.connect.tick(now)
         if self._recording:
             self._recording.tick(now)
         self._disk.run()
+        if self._pace.is_due(now, rests=self._station.may_rest, log_state=self._station.log.state):
+            self._send_snapshot(now)
+        self.screens.send_views(now)
+
+    def _send_snapshot(self, now: float) -> None:
         self._station.surroundings.addresses = self._addresses.find(now)
         self._last_snapshot = self._station.snapshot(now, time.time())
         for text in self._lasting_alerts.new_in(self._last_snapshot):
             log.warning(text)
-        self.screens.send_snapshot(self._last_snapshot, now)
+        self.screens.show(self._last_snapshot, now)
 
     def _poll_keys(self, now: float) -> None:
         """Take over keys that have changed: for all links, and for the watchdog, which goes on in our place."""

@@ -124,6 +124,11 @@ class Commander:
         """Return whether the vehicle is being armed; neutral demands then go out although it is disarmed."""
         return self._arming is not None and self._arming.vehicle.system == system
 
+    @property
+    def busy(self) -> bool:
+        """Whether a command is under way or is to be repeated."""
+        return self._arming is not None or bool(self._disarms or self._locks) or self._client.busy
+
     def is_pending(self, command: Command, vehicle: VehicleState) -> bool:
         """Return whether this vehicle has not acknowledged a command of this kind yet."""
         return self._client.is_waiting(command, vehicle.system)

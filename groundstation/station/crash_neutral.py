@@ -45,8 +45,8 @@ class CrashNeutral:
 
     @property
     def may_rest(self) -> bool:
-        """No vehicle was heard yet, so that there is nobody to send anything to."""
-        return not self._active and not self._station.fleet.system_ids
+        """The station may, and it still runs."""
+        return not self._active and self._station.may_rest
 
     # ---- Core ----
 

@@ -142,6 +142,11 @@ class Handover:
         if self._asked is not None:
             self._follow_request(self._asked, now)
 
+    @property
+    def busy(self) -> bool:
+        """Whether a request for control, ours or another station's, is under way."""
+        return self._notice is not None or self._asked is not None or bool(self._releases)
+
     def notice(self, now: float) -> HandoverNotice | None:
         """Return the request that waits for the operator's answer."""
         notice = self._notice

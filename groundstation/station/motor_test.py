@@ -84,6 +84,11 @@ class MotorTester:
         """System id -> numbers of the motors whose test was acknowledged."""
 
     @property
+    def busy(self) -> bool:
+        """A motor turns, or is being stopped."""
+        return self._run is not None or bool(self._stops)
+
+    @property
     def view(self) -> MotorTestView | None:
         """What the screen shows of the test."""
         if self._run is not None:

@@ -115,6 +115,11 @@ class ServiceDesk:
                 contact.services.tick(now, may_query=not pending, alive=alive, held=held)
         self.collect(now)
 
+    @property
+    def busy(self) -> bool:
+        """Whether a request to any vehicle is under way."""
+        return any(contact.services is not None and contact.services.book.running for contact in self._fleet)
+
     def is_querying(self, contact: Contact) -> bool:
         """Return whether a REQUEST_MESSAGE to this vehicle is under way: another would be taken for it."""
         return contact.services is not None and contact.services.commands.is_waiting(Command.REQUEST_MESSAGE)

@@ -196,6 +196,19 @@ class Station:
         self._detail.tick(now)
 
     @property
+    def may_rest(self) -> bool:
+        """Whether ticks every 0.1 s are enough: no vehicle is armed, and nothing is under way."""
+        return not (
+            any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
+            or self._commander.busy
+            or self.services.busy
+            or self.relay.busy
+            or self._handover.busy
+            or self._doctor.tester.busy
+            or self.driving.ending
+        )
+
+    @property
     def due_at(self) -> float | None:
         """When a demand is due before the next tick; None: none is."""
         return self.driving.due_at
@@ -253,6 +266,16 @@ class Station:
         self._expire_lease(now)
         self.operator.stall.record_report(now)
         return self.driving.driven_vehicles(now)
+
+    def renew_lease(self, now: float) -> bool:
+        """Extend the lease of a screen that renews it in time, which changes nothing else.
+
+        Returns False, without a renewal, if the lease had run out: then RenewLease is an intent like any other.
+        """
+        self._expire_lease(now)
+        if self.operator.live:
+            self.operator.renew_lease(now)
+        return self.operator.live
 
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""

@@ -189,6 +189,11 @@ class VerbRelay:
         return outbox
 
     @property
+    def busy(self) -> bool:
+        """Whether a verb is connected, or what one demanded is being ended."""
+        return bool(self._verbs or self._endings)
+
+    @property
     def finished(self) -> bool:
         """No neutral is left to send in the place of a verb."""
         return not self._endings

@@ -52,9 +52,9 @@ from groundstation.views.line import LineView
 TICK = 0.1
 """s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""
 
-WITHOUT_SNAPSHOT = 0.15
+WITHOUT_SNAPSHOT, AT_REST = 0.15, 0.6
 """s without a drawing after which a tick draws: snapshots come every 0.1 s, and one that is a little late is no reason
-to draw twice."""
+to draw twice; and while no vehicle is armed and nothing on this side has changed: then they come every 0.5 s."""
 
 MIN_FRAME_TIME = 0.06
 """Least time between two drawings, s. Snapshots in between are skipped: only the newest counts."""
@@ -96,6 +96,7 @@ class ConsoleApp(App[int]):
         self._pressed = PressedKeys()
         self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
+        self._shown_state = DisplayState(self._snapshot, keymap)
         self._own_loop: asyncio.AbstractEventLoop | None = None
         self._tmux = TmuxSession.from_environment()
         self._gamepad = PadInput(gamepad, self.gate, client.send, self.post_message) if gamepad else None
@@ -227,7 +228,7 @@ class ConsoleApp(App[int]):
     def _show(self) -> None:
         self._shown_at = self._clock()
         self._key_hint.note_split(self.gate.split_keys, self._shown_at)
-        now = self._display_state()
+        now = self._shown_state = self._display_state()
         shown = self._navigator.shown
         if shown is not self.drive:
             self.drive.keep_state(now)
@@ -269,8 +270,22 @@ class ConsoleApp(App[int]):
         if self._tmux.pop_release(now):
             self._send(ReleaseControl(all=True))
         self._pressed.expire(now)
-        if now - self._shown_at >= WITHOUT_SNAPSHOT:
+        if now - self._shown_at >= (AT_REST if self._rests else WITHOUT_SNAPSHOT):
             self._show()
+
+    @property
+    def _rests(self) -> bool:
+        """Nothing has changed but what a snapshot brings, and no vehicle is armed that might be driven."""
+        shown, vehicle = self._shown_state, self._snapshot.vehicle
+        return (
+            (vehicle is None or not vehicle.armed)
+            and self._gamepad is None
+            and self.gate.hold is None is shown.hold
+            and self.gate.closure == shown.closure
+            and self._pressed.names == shown.pressed
+            and self._client.alive == shown.station_alive
+            and self._outage.text == shown.outage
+        )
 
     def _ping(self) -> None:
         lent = self._log_child.running  # a ping would go unanswered

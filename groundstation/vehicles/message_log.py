@@ -87,6 +87,11 @@ class MessageLog:
         self._number = 0
         self._state = 0
 
+    @property
+    def state(self) -> int:
+        """Changes with each line that is added or counted again."""
+        return self._state
+
     def add(
         self, now: float, label: str, text: str, severity: int = Severity.INFO, *, origin: LogOrigin | None = None
     ) -> None:

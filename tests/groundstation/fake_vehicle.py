@@ -169,7 +169,8 @@ class Cockpit:
     def _renew(self, now: float) -> None:
         if self.leasing and now >= self._lease_due:
             self._lease_due = now + 0.1
-            self.station.handle_intent(RenewLease(), now)
+            if not self.station.renew_lease(now):
+                self.station.handle_intent(RenewLease(), now)
 
     @property
     def snapshot(self) -> Snapshot:

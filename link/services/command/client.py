@@ -89,6 +89,11 @@ class CommandClient:
         """Stop repeating a command to any target."""
         self._waiting = {key: each for key, each in self._waiting.items() if each.command != command}
 
+    @property
+    def busy(self) -> bool:
+        """Whether any command still waits for its COMMAND_ACK."""
+        return bool(self._waiting)
+
     def is_waiting(self, command: int, target_system: int) -> bool:
         """Return whether a command of this kind to this system still waits for its COMMAND_ACK."""
         return (target_system, int(command)) in self._waiting

@@ -41,8 +41,10 @@ class HeldKey:
         assert self.moves() or self.throttle > 0
 
     def do(self, *intents: AnyIntent) -> None:
+        """Carry out intents as the process does, which takes a renewal of a lease that holds for no more than that."""
         for intent in intents:
-            self.station.handle_intent(intent, self.now)
+            if not (isinstance(intent, RenewLease) and self.station.renew_lease(self.now)):
+                self.station.handle_intent(intent, self.now)
 
     def beat(self) -> None:
         flags = base_mode(Mode.MANUAL, armed=True)

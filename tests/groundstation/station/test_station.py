@@ -5,6 +5,9 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
+from groundstation.intents.driving import HOLD_TIME
+from groundstation.intents.session import LEASE_TIMEOUT, RenewLease
+from groundstation.intents.vehicle import Arm, Disarm
 from tests.groundstation.fake_vehicle import Cockpit
 
 
@@ -41,3 +44,40 @@ def test_round_trip_and_loss_are_shown() -> None:
     assert link.round_trip == pytest.approx(0.06, abs=0.011)
     assert link.loss == 0.0
     assert link.rate > 0
+
+
+def test_it_rests_only_while_no_vehicle_is_armed_and_nothing_is_under_way() -> None:
+    cockpit = Cockpit()
+    cockpit.run(5.0)
+    assert cockpit.station.may_rest
+    cockpit.do(Arm(held=HOLD_TIME))
+    assert not cockpit.station.may_rest, "commands are repeated and neutral demands sent"
+    cockpit.run(3.0)
+    assert cockpit.vehicle.armed
+    assert not cockpit.station.may_rest
+    cockpit.do(Disarm())
+    cockpit.run(3.0)
+    assert not cockpit.vehicle.armed
+    assert cockpit.station.may_rest
+
+
+def test_a_crashed_station_does_not_rest() -> None:
+    cockpit = Cockpit()
+    cockpit.run(5.0)
+    assert cockpit.core.may_rest
+    cockpit.core.activate(cockpit.now)
+    assert not cockpit.core.may_rest
+
+
+def test_a_renewal_in_time_extends_the_lease_and_a_late_one_is_an_intent() -> None:
+    cockpit = Cockpit()
+    cockpit.leasing = False
+    for _ in range(10):
+        cockpit.run(0.25)
+        assert cockpit.station.renew_lease(cockpit.now)
+    assert cockpit.station.operator.live
+    cockpit.run(LEASE_TIMEOUT + 0.05)
+    assert not cockpit.station.renew_lease(cockpit.now)
+    assert not cockpit.station.operator.live
+    cockpit.do(RenewLease())
+    assert cockpit.station.operator.live

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import time
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -75,10 +76,11 @@ async def console(
     folder: Path = Path(),
     *,
     look: Look = PLAIN,
+    clock: Callable[[], float] = time.monotonic,
 ) -> AsyncIterator[Console]:
     """The app at work: a picture is shown and, where the size allows, keys drive."""
     station = Recorder()
-    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, look=look)
+    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, look=look, clock=clock)
     try:
         async with app.run_test(size=size) as pilot:
             await until(lambda: app.gate.closure != STARTING)

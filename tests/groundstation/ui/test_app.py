@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 from textual import events
 
@@ -10,9 +12,11 @@ from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.session import Quit, RenewLease, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.snapshot import StationOutage
+from groundstation.ui.app import AT_REST, WITHOUT_SNAPSHOT
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from tests.groundstation.ui.examples import snapshot, vehicle
-from tests.groundstation.ui.pilots import console, helps_pushed, type_in
+from tests.groundstation.ui.pilots import Console, console, helps_pushed, type_in
 from tests.groundstation.ui.ptys import until
 
 DISARMED = snapshot(vehicle=vehicle(armed=False))
@@ -35,8 +39,6 @@ async def test_the_lease_is_renewed_by_the_loop_and_not_without_it() -> None:
 
 
 def _busy_for(seconds: float) -> None:
-    import time
-
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         pass
@@ -100,6 +102,57 @@ async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tupl
         await screen.press(*first, key)
         assert screen.app.return_value == 0
         assert screen.station.of(SetKeyGate)[-1].reason == "quitting"
+
+
+class Beats:
+    """An app whose time stands still from `count` on, and how often it has drawn the Drive screen since then."""
+
+    def __init__(self) -> None:
+        self._stands_at: float | None = None
+        self.drawn = 0
+
+    def clock(self) -> float:
+        return time.monotonic() if self._stands_at is None else self._stands_at
+
+    def count(self, screen: Console, monkeypatch: pytest.MonkeyPatch) -> None:
+        show = screen.app.drive.show_state
+        self._stands_at = time.monotonic()
+
+        def counted(now: DisplayState) -> None:
+            self.drawn += 1
+            show(now)
+
+        monkeypatch.setattr(screen.app.drive, "show_state", counted)
+
+    async def after(self, seconds: float, screen: Console) -> int:
+        """Return how often it has drawn after this time and two renewals of the lease."""
+        assert self._stands_at is not None
+        self._stands_at += seconds
+        renewals = len(screen.station.of(RenewLease))
+        await until(lambda: len(screen.station.of(RenewLease)) > renewals + 2)
+        return self.drawn
+
+
+async def test_without_a_snapshot_an_armed_vehicle_is_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    beats = Beats()
+    async with console(clock=beats.clock) as screen:
+        beats.count(screen, monkeypatch)
+        assert await beats.after(1.0, screen) == 1
+        assert await beats.after(WITHOUT_SNAPSHOT / 2, screen) == 1
+        assert await beats.after(WITHOUT_SNAPSHOT, screen) == 2
+
+
+async def test_at_rest_it_draws_seldom_but_what_changes_here_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    beats = Beats()
+    async with console(picture=DISARMED, clock=beats.clock) as screen:
+        beats.count(screen, monkeypatch)
+        assert await beats.after(1.0, screen) == 1
+        assert await beats.after(AT_REST / 2, screen) == 1
+        assert await beats.after(AT_REST, screen) == 2
+        screen.app.post_message(events.AppBlur())
+        await until(lambda: screen.app.gate.closure is not None)
+        assert await beats.after(WITHOUT_SNAPSHOT + 0.01, screen) == 3
+        assert "focus" in screen.text
 
 
 async def test_a_dead_station_is_said() -> None:
