@@ -21,7 +21,8 @@ CACHE = Path("/var/tmp/mavhelm-aarch64")
 CORE = ("tests/vehicle/drive", "tests/vehicle/safety", "tests/link/protocol", "tests/dialects/test_axes.py")
 """Without I/O: what turns bytes into motor outputs, and what stops them."""
 PYTEST = (
-    "-m", "pytest", "-p", "no:cacheprovider", "-q", "--color=no", "--tb=short", "--timeout=1200", "-m", "not slow and not e2e",
+    "-m", "pytest", "-p", "no:cacheprovider", "-q", "--color=no", "--tb=short", "--timeout=1200",
+    "-m", "not slow and not e2e",
 )  # fmt: skip
 NICENESS = 19
 FACTS = "import platform; print(platform.machine(), platform.python_version(), platform.libc_ver())"
