@@ -159,8 +159,8 @@ def test_numbers_count_as_in_the_model(seed: int) -> None:
 @pytest.mark.parametrize("wait", [0.0, 0.5, 5.0])
 def test_the_next_frame_of_the_only_sender_takes_one_call(ahead: int, wait: float) -> None:
     for start in (0, 250):
-        tracker = SequenceTracker(start, 30, 1, 0.0)
-        calls = called(partial(tracker.accept, (start + ahead) % 256, 30, 2, wait))
+        tracker = SequenceTracker(start, 30, 1, 100.0)
+        calls = called(partial(tracker.accept, (start + ahead) % 256, 30, 2, 100.0 + wait))
         assert [each for each in calls if each != "_begin_window"] == ["accept", "advance"]
         assert (tracker.received, tracker.lost) == (2, ahead - 1)
 
@@ -184,6 +184,22 @@ def test_the_rate_is_that_of_exactly_one_second(overtaken: bool, gap: int, numbe
         assert tracker.accept(number, kind, number, at) is NEW
     tracker.accept(32 + gap, 30, 99, 1.5)  # 8 + 2 * 32 / s * 0.5 s = 40
     assert tracker.numbering.index == numbering
+
+
+def test_an_overtaken_frame_ends_no_window_early() -> None:
+    tracker = SequenceTracker(0, 30, 1, 0.0)
+    for number in (*range(1, 20), 21):
+        tracker.accept(number, 30, number, number / 40)
+    assert tracker.accept(20, 69, 20, 0.6) is NEW
+    tracker.accept(21 + 25, 30, 99, 0.9)  # 8 + 2 * 22 / s * 0.3 s = 21
+    assert tracker.numbering.index == 2
+
+
+def test_a_rare_message_that_was_overtaken_is_not_late() -> None:
+    tracker = SequenceTracker(0, 69, 1, 0.0)
+    for number in (*range(1, 223), 224):
+        tracker.accept(number, 30, number, number / 100)
+    assert tracker.accept(223, 69, 223, 2.25) is NEW
 
 
 def test_all_of_the_newest_frames_are_known_again_wherever_the_numbers_wrap() -> None:
