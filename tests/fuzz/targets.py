@@ -24,14 +24,19 @@ from groundstation.station_socket.relay import decode_from_verb
 from link.core import Core, Outgoing
 from link.protocol.channel import Channel
 from link.protocol.framer import Framer
+from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.routing.router import Router
+from link.signing.clock import TICKS
+from link.signing.role import Role
+from link.signing.signature import STAMP_MAX
 from link.tlog.tlog import read_records
 from tests.fuzz.files import as_file
+from tests.link.signing.signed import DAY, DRIVER, NOW, STRANGER, keep, signed
 from vehicle.config.config import ConfigError as VehicleConfigError
 from vehicle.config.config import parse_config
 from vehicle.params import Params
 from vehicle.rover import Rover
-from vehicle.storage.checksummed_file import CorruptFileError
+from vehicle.storage.checksummed_file import CorruptFileError, add_checksum
 from vehicle.storage.param_file import decode as decode_params
 
 IDS = sorted(m.MESSAGES)
@@ -146,8 +151,31 @@ def parser(parse: Callable[[str], object], *errors: type[Exception]) -> Callable
 
 
 def saved_params(data: bytes) -> None:
-    with contextlib.suppress(CorruptFileError):
-        decode_params(data)
+    for content in (data, add_checksum(data)):
+        with contextlib.suppress(CorruptFileError):
+            decode_params(content)
+
+
+UNITS = (1, TICKS, 60 * TICKS, DAY, 365 * DAY)
+
+
+def signing(data: bytes) -> None:
+    """Six bytes a frame: the driver's, a stranger's or unsigned, from any system and link id, at any time."""
+    guard = SigningGuard(keep(DRIVER), SigningPolicy(unsigned=Role.WATCH), 0)
+    link, newest = Channel("fuzz", 0, system=1, component=1, guard=guard), dict[tuple[int, int], int]()
+    for at in range(0, len(data) - 5, 6):
+        who, link_id, system, unit = data[at : at + 4]
+        away = int.from_bytes(data[at + 4 : at + 6], "little", signed=True) * UNITS[unit % len(UNITS)]
+        stamp, key = min(max(0, NOW + away), STAMP_MAX), (DRIVER, STRANGER, None)[who % 3]
+        beat = codec.encode_payload(m.Heartbeat(6, 8, 0, 0, 4, 3))
+        unsigned = codec.frame(m.Heartbeat.id, beat, at // 6 % 256, system, 190)
+        ours = {"link_id": link_id, "sequence": at // 6 % 256, "ids": (system, 190)}
+        frame = signed(key=key, stamp=stamp, **ours) if key else unsigned  # type: ignore[arg-type]
+        for received in link.receive(frame, "x", at / 100):
+            if received.role > Role.WATCH:
+                assert key is DRIVER
+                assert stamp > newest.get((system, link_id), -1), "a replay"
+                newest[system, link_id] = stamp
 
 
 TARGETS: dict[str, Callable[[bytes], None]] = {
@@ -169,4 +197,5 @@ TARGETS: dict[str, Callable[[bytes], None]] = {
     "waypoints": parser(lambda text: parse_waypoints(text, "x.waypoints"), FileFormatError),
     "param-file": parser(lambda text: parse_params(text, "x.param"), FileFormatError),
     "saved-params": saved_params,
+    "signing": signing,
 }
