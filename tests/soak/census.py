@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from bisect import bisect_left
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -11,8 +12,9 @@ from statistics import linear_regression, median
 
 from tests.benchmarks.procfs import cpu_seconds, memory
 
-WARM_UP = 180.0
-"""s of the life of a process that no slope counts: what it fills once, it fills at its start."""
+WARM_UPS = (180.0, 600.0, 1200.0)
+"""s of the life of a process that a slope does not count: histories fill up to their bound at the start. All slopes are
+reported; the last one that has LEAST is judged, and what goes on growing grows there, too."""
 LEAST = 300.0
 """s behind the warm-up that a slope needs."""
 MAX_GROWTH = 1.0
@@ -50,21 +52,22 @@ class Life:
             self.descriptors.append(descriptors)
             self.threads.append(threads)
 
-    @property
-    def settled(self) -> slice:
-        """Return which samples are behind the warm-up."""
-        return slice(next((at for at, seconds in enumerate(self.times) if seconds >= WARM_UP), len(self.times)), None)
+    def behind(self, warm_up: float) -> slice:
+        """Return which samples are behind a warm-up."""
+        return slice(bisect_left(self.times, warm_up), None)
 
-    def growth(self, of: Sequence[float]) -> float | None:
-        """Return the slope behind the warm-up, MB/h; None if it was too short."""
-        times = self.times[self.settled]
-        if not times or times[-1] - times[0] < LEAST:
-            return None
-        return linear_regression(times, of[self.settled]).slope * HOUR
+    def growth(self, of: Sequence[float]) -> list[float]:
+        """Return the slopes behind the warm-ups, MB/h, without those that are too short."""
+        found = []
+        for kept in map(self.behind, WARM_UPS):
+            times = self.times[kept]
+            if times and times[-1] - times[0] >= LEAST:
+                found.append(linear_regression(times, of[kept]).slope * HOUR)
+        return found
 
     def report(self) -> dict[str, object]:
         """Return its figures for the report."""
-        kept = self.settled if self.growth(self.rss) is not None else slice(None)
+        kept = self.behind(WARM_UPS[0]) if self.growth(self.rss) else slice(None)
         return {
             "role": self.role,
             "seconds": round(self.times[-1], 1),
@@ -80,11 +83,11 @@ class Life:
     def faults(self) -> list[str]:
         """Return what grows, of a life that is long enough to tell."""
         growth = self.growth(self.rss)
-        if growth is None:
+        if not growth:
             return []
-        found = [f"{self.role} grows by {growth:.2f} MB/h"] if growth > MAX_GROWTH else []
+        found = [f"{self.role} grows by {growth[-1]:.2f} MB/h"] if growth[-1] > MAX_GROWTH else []
         for name, values in (("descriptors", self.descriptors), ("threads", self.threads)):
-            kept = values[self.settled]
+            kept = values[self.behind(WARM_UPS[0])]
             half = len(kept) // 2  # one that is open for a moment is no leak
             if median(kept[half:]) > median(kept[:half]):
                 found.append(f"{self.role}: {name} grew from {kept[0]} to {kept[-1]}")
@@ -123,5 +126,5 @@ class Census:
         return sum(life.cpu for life in self.lives.values())
 
 
-def _rounded(value: float | None) -> float | None:
-    return None if value is None else round(value, 3)
+def _rounded(values: list[float]) -> list[float]:
+    return [round(each, 3) for each in values]

@@ -9,7 +9,7 @@ from dialects import messages as m
 from dialects.axes import Axes, build_manual_control
 from tests.e2e.programs import Output
 from tests.link.signing.signed import signed
-from tests.soak.census import LEAST, WARM_UP, Life
+from tests.soak.census import LEAST, WARM_UPS, Life
 from tests.soak.rules import NOISE, Stretch, Witness, judge, stretches
 
 DRIVEN = [10.0 + number * 0.05 for number in range(21)]
@@ -86,7 +86,7 @@ def test_the_witness_counts_what_is_not_signed() -> None:
 
 def test_a_process_that_grows_is_named() -> None:
     life = Life("station one", 1, 0.0)
-    for second in range(0, int(WARM_UP + LEAST) + 60, 10):
+    for second in range(0, int(WARM_UPS[0] + LEAST) + 60, 10):
         life.times.append(float(second))
         life.rss.append(40.0 + 3.0 * second / 3600)
         life.pss.append(30.0)
@@ -96,3 +96,18 @@ def test_a_process_that_grows_is_named() -> None:
     life.descriptors = [9] * len(life.times)
     life.descriptors[-2] = 10
     assert life.faults() == ["station one grows by 3.00 MB/h"], "open for a moment"
+
+
+def test_what_fills_up_in_ten_minutes_does_not_grow_and_what_goes_on_does() -> None:
+    for forever, judged in ((0.0, 0.0), (2.0, 2.0)):
+        life = Life("station one", 1, 0.0)
+        for second in range(0, 1800, 10):
+            life.times.append(float(second))
+            life.rss.append(40.0 + min(second, 600) / 200 + forever * second / 3600)
+            life.pss.append(30.0)
+            life.descriptors.append(9)
+            life.threads.append(1)
+        first, _, last = life.growth(life.rss)
+        assert first > 1.0 + forever
+        assert last == pytest.approx(judged)
+        assert bool(life.faults()) is (forever > 0.0)
