@@ -46,8 +46,7 @@ class Control:
     def take(self, conversation: Conversation, now: float) -> None:
         """Give control to a conversation; of another driver nothing is left."""
         if self.ownership.take(conversation, now):
-            self.presence = OperatorPresence()
-            self.reset()
+            self._begin(now)
 
     def release(self, why: str, now: float) -> None:
         """Release control; `why` completes the STATUSTEXT."""
@@ -59,7 +58,7 @@ class Control:
         if not received.introduced or received.role < Role.DRIVE:
             return
         if self.ownership.hear(received, now):
-            self._begin_succession()
+            self._begin_succession(now)
         driver = self.ownership.driver
         if driver is not None and driver.is_barred(now):
             self.reset()
@@ -69,10 +68,14 @@ class Control:
         succeeded, self._succeeded = self._succeeded, False
         return succeeded
 
-    def _begin_succession(self) -> None:
-        self.presence = OperatorPresence()
-        self.reset()
+    def _begin_succession(self, now: float) -> None:
+        self._begin(now)
         self._succeeded = True
+
+    def _begin(self, now: float) -> None:
+        """Forget the last driver; the next one must send another proof before its demands count, if it sends any."""
+        self.presence = OperatorPresence(echoes=self.ownership.driver_proves(now))
+        self.reset()
 
     # Demand
 
@@ -129,7 +132,7 @@ class Control:
         if message.x == message.r == INVALID_AXIS:
             return
         if self.ownership.succeed(conversation, DrivingSession.begin(conversation, proof, now), now):
-            self._begin_succession()
+            self._begin_succession(now)
         else:
             self.ownership.report_other_session(conversation, now)
 

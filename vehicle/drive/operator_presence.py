@@ -12,11 +12,12 @@ from vehicle.drive.operator_session import echo_age
 class OperatorPresence:
     """The newest ROVER_OPERATOR_PRESENCE of the ground station in control."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, echoes: bool = False) -> None:
+        """`echoes`: it has echoed the vehicle's time before, so that nothing is fresh until it does again."""
         self.known = False
         """The ground station sends ROVER_OPERATOR_PRESENCE."""
-        self._has_echoed = False
-        self._echoed_at = math.inf
+        self._has_echoed = echoes
+        self._echoed_at = -math.inf if echoes else math.inf
         """Time of the newest vehicle data that the operator has seen; no demand with it is older.
 
         Infinite before the first echo; -infinite for a ground station that sends none any more."""

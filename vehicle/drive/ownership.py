@@ -5,6 +5,8 @@ The rules of identity are in driver.py and conversation.py. Demands and the neut
 
 from __future__ import annotations
 
+import math
+
 from dialects import messages as m
 from dialects.enums import Severity
 from dialects.traits import COMMANDS, DEMANDS, only_asks
@@ -12,7 +14,7 @@ from link.core import Received
 from link.signing.role import Role
 from vehicle.drive.conversation import Conversation, FrameMemory, Newcomer, Sender
 from vehicle.drive.driver import CLASH_PAUSE, Driver
-from vehicle.drive.operator_session import DrivingSession, Proof, RecentProofs
+from vehicle.drive.operator_session import PROOF_VALID, SENDERS_MAX, DrivingSession, Proof, RecentProofs
 from vehicle.drive.roles import role_denial
 from vehicle.params import Params
 from vehicle.statustext import StatusTextQueue
@@ -40,6 +42,8 @@ class Ownership:
         self._texts = texts
         self._boot = boot
         self._proofs = RecentProofs()
+        self._proof_at: dict[Conversation, float] = {}
+        """Sender -> when its newest proof came, good or not; the newest last."""
         self._memory = FrameMemory()
 
     # ---- questions ----
@@ -53,6 +57,11 @@ class Ownership:
     def session(self) -> DrivingSession | None:
         """The session of the driver; None for a ground station whose demands carry no proof of their age."""
         return self.driver.session if self.driver else None
+
+    def driver_proves(self, now: float) -> bool:
+        """Return whether the driver has sent a proof of the age of its demands, good or not, within PROOF_VALID."""
+        at = -math.inf if self.driver is None else self._proof_at.get(self.driver.conversation, -math.inf)
+        return now - at <= PROOF_VALID
 
     def is_driver(self, sender: Sender, now: float) -> bool:
         """Return whether a message or command is from the driver, with a key that may drive."""
@@ -157,6 +166,10 @@ class Ownership:
         """Note a proof of an introduced ground station; that of the driver's session has the driver's ids."""
         if good:
             self._proofs.add(conversation, proof, now)
+        self._proof_at.pop(conversation, None)
+        self._proof_at[conversation] = now
+        if len(self._proof_at) > SENDERS_MAX:
+            del self._proof_at[next(iter(self._proof_at))]
         driver = self.driver
         if driver is None or driver.session is None or not self.has_driver_ids(conversation):
             return

@@ -38,8 +38,8 @@ def test_datagrams_that_are_kept_lie_close_together() -> None:
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as far,
     ):
         far.connect(transport._socket.getsockname())
-        for _ in range(20_000):
+        for _ in range(50_000):
             far.send(bytes(chance.randint(20, 280)))
             transport._readable(keep)
     assert len(kept) > 1500
-    assert len({id(data) >> 12 for data in kept.values()}) < 220, "pages; their bytes need 80"
+    assert len({id(data) >> 12 for data in kept.values()}) < 350, "pages; their bytes need 80"

@@ -17,7 +17,7 @@ from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, Bench, said
 from tests.vehicle.field import Field
 from vehicle.drive.driver import SUCCESSION_TIME
-from vehicle.drive.operator_session import PROOF_VALID
+from vehicle.drive.operator_session import PROOF_VALID, SENDERS_MAX
 
 BOOT = 100.0
 FAST, SLOW = "fast link", "slow link"
@@ -169,6 +169,31 @@ def test_armed_over_a_late_link_its_demands_have_the_same_bound() -> None:
     assert bench.throttles[0] == full, "0.40 s after what it had seen"
     bench.wait(0.07)
     assert bench.throttles[0] < full, "0.47 s after what it had seen"
+
+
+def test_armed_over_a_late_link_it_drives_only_once_a_proof_has_come() -> None:
+    """MANUAL_CONTROL alone, its proofs lost, says nothing of its age."""
+    bench = Bench()
+    bench.wait(2.0)
+    station = Station(bench)
+    station.hold(1.0, NEUTRAL, echo_age=0.6)
+    bench.arm()
+    for axes in (NEUTRAL, AHEAD):
+        for _ in range(10):
+            station.manual(axes)
+            bench.wait(0.05)
+    assert not bench.turning
+    station.hold(0.2, NEUTRAL)
+    station.hold(1.0, AHEAD)
+    assert bench.turning
+
+
+def test_of_many_senders_of_proofs_the_newest_are_remembered() -> None:
+    bench = Bench()
+    bench.wait(2.0)
+    for number in range(SENDERS_MAX + 3):
+        Station(bench, session=number, address=f"gcs {number}").send(None)
+    assert len(bench.rover._control.ownership._proof_at) == SENDERS_MAX
 
 
 # ---- old proofs ----
