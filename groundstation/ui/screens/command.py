@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from textual import events
 from textual.app import ComposeResult
+from textual.containers import Horizontal
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
@@ -32,7 +33,9 @@ class CommandLine(ModalScreen[str]):
     DEFAULT_CSS = """
     CommandLine { align: left bottom; background: transparent; }
     CommandLine #words { width: 100%; height: auto; max-height: 4; padding: 0 1; background: $panel; color: $dim; }
-    CommandLine LineField { dock: none; margin: 0 0 1 0; }
+    CommandLine #line { height: 1; margin: 0 0 1 0; background: $panel; }
+    CommandLine #colon { width: 2; padding: 0 0 0 1; background: $panel; color: $primary; }
+    CommandLine LineField { dock: none; width: 1fr; padding: 0 1 0 0; }
     """
 
     def __init__(self, context: ScreenContext) -> None:
@@ -48,7 +51,7 @@ class CommandLine(ModalScreen[str]):
     def compose(self) -> ComposeResult:
         """Lay out the proposed words and the field."""
         yield self._proposed
-        yield self.field
+        yield Horizontal(Static(":", id="colon"), self.field, id="line")
 
     def on_mount(self) -> None:
         """Open the field."""
@@ -119,7 +122,7 @@ class CommandLine(ModalScreen[str]):
         self._line = ""
         self._history.begin()
         use = FieldUse(self._submit, self._change, cancel=self._close, key=self._take_key)
-        self.field.open(use, text=text, placeholder=":")
+        self.field.open(use, text=text)
 
     def _close(self) -> None:
         self.dismiss("")

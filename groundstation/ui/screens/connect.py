@@ -103,8 +103,8 @@ class ConnectScreen(ConsoleScreen):
         if self._model.opening:
             return f"opening {self._model.opening}"
         does = self._model.choice.text
-        first = f"ENTER {does} · " if does else ""
-        return f"{first}: types an endpoint · nothing is sent before you choose"
+        first = f"ENTER {does}" if does else ": types an endpoint"
+        return f"{first} · nothing is sent before you choose"
 
     # ---- keys ----
 

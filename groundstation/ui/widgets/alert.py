@@ -19,6 +19,10 @@ LOOKS: dict[AlertLevel, Callable[[], Style]] = {
     AlertLevel.DANGER: partial(badge, DEEP_RED),
     AlertLevel.QUESTION: partial(badge, YELLOW),
 }
+SEPARATOR = " · "
+"""Between the parts of a hint."""
+BACK = "ESC goes back"
+"""The part of a hint that every screen but Drive has; the first to be left out."""
 MARKS = {AlertLevel.WARNING: "!", AlertLevel.DANGER: "■", AlertLevel.QUESTION: "?"}
 
 
@@ -55,6 +59,21 @@ class HintLine(Instrument[str]):
     """What to do next: one line over the full width."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Draw the hint, cut at the right edge."""
+        """Draw the hint."""
         look = style(TEXT, PANEL)
-        return [strip((f" › {self.value}".ljust(width), look)).crop(0, width)]
+        return [strip((f" › {fit_hint(self.value, width - 3)}".ljust(width), look)).crop(0, width)]
+
+
+def fit_hint(text: str, width: int) -> str:
+    """Return a hint that is at most so wide: what it says first stays, and what to press, which is its last part."""
+    if len(text) <= width:
+        return text
+    first, *parts = text.split(SEPARATOR)
+    if parts and parts[-1].startswith(BACK):
+        parts.pop()
+    last = f"{SEPARATOR}{parts.pop().partition(', ')[0]}" if parts else ""
+    while parts and len(SEPARATOR.join([first, *parts])) + len(last) > width:
+        parts.pop()
+    kept = SEPARATOR.join([first, *parts])
+    room = max(0, width - len(last))
+    return f"{kept if len(kept) <= room else kept[: max(0, room - 1)] + '…'}{last}"[:width]

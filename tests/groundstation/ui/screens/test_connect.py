@@ -170,7 +170,7 @@ async def test_a_link_is_closed_after_a_question() -> None:
         await screen.press("x")
         assert "TAB to the links first" in screen.text
         await screen.press("tab", "x")
-        assert "close udpin:0.0.0.0:14550; what is driven over it gets neutral first" in screen.text
+        assert "close udpin:0.0.0.0:14550; what is driven over it gets neutral f… · y does it" in screen.text
         await screen.press("n", "x", "y")
         assert screen.station.of(CloseLink) == [CloseLink(link=0)]
         await screen.press("a")
