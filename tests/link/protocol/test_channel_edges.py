@@ -28,6 +28,7 @@ from tests.link.signing.signed import (
     SIGNED_ONLY,
     STRANGER,
     THERE,
+    WATCHER,
     keep,
     send,
     signed,
@@ -216,3 +217,28 @@ def test_a_message_for_nobody_in_particular_goes_to_all_and_one_for_another_syst
     channel = vehicle()
     channel.receive(heartbeat(0), HERE, 0.0)
     assert [len(list(channel.send(Outgoing(each)))) for each in (HEARTBEAT, ARM)] == [1, 0]
+
+
+def test_a_forged_or_replayed_heartbeat_is_not_greeted() -> None:
+    channel = guarded(keep(DRIVER), GREETS)
+    channel.receive(signed(key=STRANGER), HERE, 0.0)
+    assert send(channel) == []
+    channel.receive(signed(), HERE, 0.0)
+    channel.receive(signed(), THERE, 0.0)
+    assert [address for _, address, _ in channel.send(Outgoing(HEARTBEAT), now=0.0)] == [HERE]
+
+
+def test_a_place_is_given_away_after_more_than_ten_seconds() -> None:
+    for age, found in ((10.0, 0), (10.001, 1)):
+        channel = vehicle(places=1)
+        channel.receive(heartbeat(0), HERE, 0.0)
+        assert len(channel.receive(heartbeat(0, system=9), THERE, age)) == found
+
+
+def test_a_system_whose_key_was_withdrawn_is_not_verified() -> None:
+    signing = keep(DRIVER)
+    channel = guarded(signing)
+    channel.receive(signed(), HERE, 0.0)
+    assert channel.report().verified == {255}
+    signing.set_ring(keep(WATCHER).ring)
+    assert channel.report().verified == frozenset()

@@ -62,8 +62,9 @@ def test_a_datagram_of_one_signed_frame_is_not_searched(length: int, number: int
     assert framer.counts.frames == 2
 
 
-def test_a_datagram_of_an_unknown_id_is_not_searched() -> None:
-    data = bytearray(build(9, LARGE_ID))
+@pytest.mark.parametrize("length", [0, 9])
+def test_a_datagram_of_an_unknown_id_is_not_searched(length: int) -> None:
+    data = bytearray(build(length, LARGE_ID))
     data[9] = 0xEE
     framer = Framer(stream=False)
     for times in (1, 2):
@@ -95,9 +96,9 @@ def test_a_stream_is_searched_when_the_length_of_a_frame_is_known_and_when_the_f
 
 def test_a_frame_whose_length_is_known_waits_for_its_last_byte_behind_others() -> None:
     framer = Framer(stream=True)
-    assert len(framer.feed(demand(1) + demand(2)[:12], 0.0)) == 1
-    assert called(lambda: framer.feed(demand(2)[12:22], 0.0)) == ["feed", "_feed_stream"]
-    assert len(framer.feed(demand(2)[22:], PARTIAL_DEADLINE / 2)) == 1
+    assert len(framer.feed(demand(1) + demand(2)[:12], 50.0)) == 1
+    assert called(lambda: framer.feed(demand(2)[12:22], 50.0)) == ["feed", "_feed_stream"]
+    assert len(framer.feed(demand(2)[22:], 50.0 + PARTIAL_DEADLINE / 2)) == 1
 
 
 WRONG = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects.codec import CRC_EXTRA
-from dialects.messages import Heartbeat, MissionRequestList
+from dialects.messages import Heartbeat, MissionCount, MissionRequestList
 from link.protocol.frame import FramerCounts, sum_counts
 from link.protocol.framer import PARTIAL_DEADLINE, Framer
 from tests.link.frames import demand, frame, version_1
@@ -51,7 +51,9 @@ def test_a_frame_that_is_cut_anywhere_is_none_and_harms_none(whole: bytes, strea
             assert framer.counts.frames == 1 + bool(before)
 
 
-@pytest.mark.parametrize("whole", [SHORT_OLD, version_1(Heartbeat(6, 8, 0, 0, 4, 3), 5)])
+@pytest.mark.parametrize(
+    "whole", [SHORT_OLD, version_1(MissionCount(1, 1, 9), 5), version_1(Heartbeat(6, 8, 0, 0, 4, 3), 5)]
+)
 def test_a_short_frame_of_mavlink_1_is_found_when_its_last_byte_is_there(whole: bytes) -> None:
     framer = Framer(stream=True)
     assert sequences(framer, whole) == [5]
@@ -126,6 +128,8 @@ def test_bytes_that_arrive_at_the_deadline_come_behind_those_that_waited() -> No
     framer = Framer(stream=True)
     assert framer.feed(FORGED + demand(7), 0.0) == []
     assert sequences(framer, demand(8) + demand(9), now=PARTIAL_DEADLINE) == [7, 8, 9]
+    assert framer.feed(FORGED + demand(7) + demand(8)[:12], 1.0) == []
+    assert sequences(framer, demand(8)[12:], now=1.2) == [7, 8]
 
 
 def test_bytes_that_arrive_before_the_deadline_wait_with_the_others() -> None:
@@ -163,6 +167,8 @@ def test_a_partial_frame_waits_for_100_ms() -> None:
     assert framer.counts.resync_bytes == 0
     framer.expire(0.1)
     assert framer.counts.resync_bytes == 12
+    assert framer.feed(demand(1)[:12], 1.0) == framer.expire(1.2) == []
+    assert framer.counts.resync_bytes == 24
 
 
 # ---- what damage is counted ----
@@ -272,6 +278,14 @@ def test_for_a_router_no_unknown_frame_begins_inside_one_that_was_given_up() -> 
     assert [each[3] for each in framer.expire(PARTIAL_DEADLINE)] == [1]
 
 
+@BOTH
+@pytest.mark.parametrize("flags", [0, 1])
+def test_a_router_gets_a_lone_unknown_frame(flags: int, stream: bool) -> None:
+    framer = Framer(stream=stream, unknown=True)
+    assert [raw for *_, raw in framer.feed(unknown(flags=flags), 0.0)] == [unknown(flags=flags)]
+    assert (framer.counts.frames, framer.counts.unknown) == (0, 1)
+
+
 @pytest.mark.parametrize("size", range(1, 25))
 def test_a_router_gets_the_same_frames_in_pieces_of_any_size(size: int) -> None:
     train = b"".join(
@@ -282,3 +296,11 @@ def test_a_router_gets_the_same_frames_in_pieces_of_any_size(size: int) -> None:
     assert b"".join(raw for *_, raw in found) == train
     assert (framer.counts.frames, framer.counts.unknown, framer.counts.resync_bytes) == (4, 4, 0)
     assert framer.counts.unknown_ids == {}
+
+
+@BOTH
+def test_damage_of_mavlink_1_is_counted(stream: bool) -> None:
+    framer = Framer(stream=stream)
+    old = version_1(Heartbeat(6, 8, 0, 0, 4, 3))
+    assert sequences(framer, (damaged(old) + demand(1)) * 2) == [1, 1]
+    assert (framer.counts.crc_errors, framer.counts.mismatches) == (2, {Heartbeat.id: 2})
