@@ -242,3 +242,9 @@ def test_a_system_whose_key_was_withdrawn_is_not_verified() -> None:
     assert channel.report().verified == {255}
     signing.set_ring(keep(WATCHER).ring)
     assert channel.report().verified == frozenset()
+
+
+def test_a_wanted_stop_without_a_place_is_handed_on() -> None:
+    channel = vehicle(places=1, wanted=frozenset({type(ARM).id, type(HEARTBEAT).id}))
+    channel.receive(heartbeat(0), HERE, 0.0)
+    assert len(channel.receive(frame(DISARM), THERE, 0.0)) == 1

@@ -100,3 +100,10 @@ def test_frames_that_are_refused_are_told_with_what_helps(counts: SigningCounts,
     assert advice in (link_problem(report(9, refused=counts)) or "")
     assert link_problem(report(9, refused=counts, verified=frozenset({1}))) is None
     assert bool(advice) is (link_problem(report(9, refused=counts)) is not None)
+
+
+def test_a_link_that_comes_back_with_a_problem_is_back_first() -> None:
+    troubles = LinkEvents()
+    told = [troubles.update(each) for each in (report(0, down="lost"), report(1, own_id=True), report(1, own_id=True))]
+    assert [each and each.text for each in told[:2]] == ["lost", "connected"]
+    assert "--system" in (told[2].text if told[2] else "")

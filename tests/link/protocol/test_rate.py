@@ -29,3 +29,13 @@ def test_a_bucket_of_another_rate_keeps_what_it_has_as_far_as_it_fits() -> None:
     bucket.set_rate(1, 2)
     assert [bucket.consume(0.0) for _ in range(3)] == [True, True, False]
     assert [bucket.consume(1.0), bucket.consume(1.0)] == [True, False]
+
+
+def test_a_change_of_the_rate_gives_no_tokens_and_takes_those_beyond_the_burst() -> None:
+    empty = TokenBucket(rate=10, burst=5)
+    assert [empty.consume(0.0) for _ in range(6)] == [True] * 5 + [False]
+    empty.set_rate(10, 10)
+    assert not empty.consume(0.0)
+    full = TokenBucket(rate=10, burst=5)
+    full.set_rate(1, 2)
+    assert [full.consume(0.0) for _ in range(3)] == [True, True, False]

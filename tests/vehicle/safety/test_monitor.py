@@ -53,3 +53,11 @@ class TestIdle:
         bench.wait(6.0, NEUTRAL, period=0.2)
         assert not bench.armed
         assert said(bench, "Disarmed: no demand for 20 s")
+
+
+def test_a_cycle_that_is_left_out_makes_the_next_one_no_later() -> None:
+    monitor = Bench().rover._monitor
+    for step in range(50):
+        monitor.skip_cycle(100.0 + step)
+        assert not monitor.is_late(100.02 + step)
+    assert monitor.is_late(150.0)
