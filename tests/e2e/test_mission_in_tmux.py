@@ -18,7 +18,7 @@ def type_a_mode(terminal: Tmux) -> None:
     terminal.press(":")
     terminal.until(lambda screen: "TAB completes" in screen, PATIENCE)
     terminal.press(*"mode", "Space", *"HO")
-    terminal.until(lambda screen: re.search(r"^ HOLD *\n mode HO *$", screen, re.MULTILINE) is not None, PATIENCE)
+    terminal.until(lambda screen: re.search(r"^ HOLD *\n :mode HO *$", screen, re.MULTILINE) is not None, PATIENCE)
     terminal.press("Tab")
     terminal.until(lambda screen: "mode HOLD" in screen, PATIENCE)
     terminal.press("Enter")
