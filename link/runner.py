@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 
@@ -40,6 +41,10 @@ REST_PERIOD = 0.1
 """s between two ticks of a core that rests."""
 REPORT_PERIOD = 1.0
 """s between two calls of core.observe()."""
+SEQUENCES_PER_SECOND = 40
+"""By how much the first packet sequence of a ground station grows each second. A program that counts from 0 again soon
+after it, or a verb before it, has sent a few frames would seem to repeat old ones (link/protocol/sequence.py): its
+numbers would be late, and the vehicle would not hear its proofs."""
 
 
 SentCallback = Callable[[Link, Hashable, Message, int, float], None]
@@ -67,6 +72,7 @@ def open_links(
         wanted=wanted,
         sent=sent or SentFrames(),
         places=places,
+        first_sequence=int(time.monotonic() * SEQUENCES_PER_SECOND) & 0xFF if side is Side.GROUND_STATION else 0,
         downloads=side is Side.GROUND_STATION,
     )
     return [build(transport, index) for index, transport in enumerate(open_transports(endpoints, side))]
@@ -82,6 +88,7 @@ def build_link(
     sent: SentFrames | None = None,
     watch_only: bool = False,
     places: int = MAX_PEERS,
+    first_sequence: int = 0,
     downloads: bool = False,
 ) -> Link:
     """Return a link over an open transport. `index` is unique among the links of a runner."""
@@ -96,6 +103,7 @@ def build_link(
         capacity=transport.capacity,
         sent=sent,
         places=places,
+        first_sequence=first_sequence,
         downloads=downloads,
     )
     return Link(transport, channel, watch_only)

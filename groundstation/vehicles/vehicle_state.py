@@ -58,6 +58,7 @@ class VehicleState:
         self.control = ControlReport()
         self.drive_info: m.RoverDriveInfo | None = None
         self.boot_time: int | None = None  # newest time_boot_ms of the vehicle
+        self.boot_time_at = -math.inf  # when it arrived
         self.ready_at: float | None = None
         """When the pre-arm checks were passed; None while they are not, or it is not known."""
         self._times: dict[type[m.Message], float] = {}
@@ -77,7 +78,8 @@ class VehicleState:
         message = received.message
         if received.component != self.component:
             return
-        self.boot_time = getattr(message, "time_boot_ms", self.boot_time)
+        if (boot_time := getattr(message, "time_boot_ms", None)) is not None:
+            self.boot_time, self.boot_time_at = boot_time, now
         method = _HANDLERS.get(type(message))
         if method is not None:
             method(self, message, now)

@@ -20,8 +20,11 @@ from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Outgoing
 from link.services.command.client import CommandClient, CommandOutcome
 
-PROOFS_FIRST, FIRST_PERIOD = 3, 0.008
-"""Proofs before the first command, and s between them: two of three may get lost."""
+PROOFS_FIRST, FIRST_PERIOD = 5, 0.008
+"""Proofs before the first command, and s between them: four of five may get lost."""
+FRESH_TIME = 0.3
+"""s since a time of the vehicle has arrived with which these proofs are sent: one that is older than OPR_ECHO_MAX when
+it is back proves nothing, and where frames get lost the newest may be that old. Our vehicle sends four a second."""
 
 
 class VerbOperator:
@@ -117,9 +120,10 @@ class VerbOperator:
 
     def _prove(self, now: float) -> None:
         """Prove the session once a time of the vehicle is known: without it a proof proves nothing."""
-        period = FIRST_PERIOD if self._proofs < PROOFS_FIRST else IDLE_PROOF_PERIOD
+        first = self._proofs < PROOFS_FIRST
+        period, age = (FIRST_PERIOD, FRESH_TIME) if first else (IDLE_PROOF_PERIOD, math.inf)
         known = self._state.has_rover_dialect and self._state.boot_time is not None
-        if known and now - self._proven_at >= period and self.may_prove(now):
+        if known and now - self._state.boot_time_at <= age and now - self._proven_at >= period and self.may_prove(now):
             self._add_proof(None, now)
 
     def _add_proof(self, demand: m.ManualControl | None, now: float) -> None:

@@ -23,9 +23,12 @@ PEER_SILENCE = 10.0
 
 
 class PeerTable:
-    """The peers of link `index` by address, at most `places`. `stream`: bytes have no datagram boundaries."""
+    """The peers of link `index` by address, at most `places`. `stream`: bytes have no datagram boundaries.
 
-    def __init__(self, index: int, *, stream: bool, places: int = MAX_PEERS) -> None:
+    `first_sequence` is the packet sequence, 0..255, of the first frame to each peer.
+    """
+
+    def __init__(self, index: int, *, stream: bool, places: int = MAX_PEERS, first_sequence: int = 0) -> None:
         self.past_counts = FramerCounts()
         """Of the peers that have gone."""
         self.refused = 0
@@ -37,6 +40,7 @@ class PeerTable:
         self._index = index
         self._stream = stream
         self._places = places
+        self._first_sequence = first_sequence
         self._states: dict[Hashable, PeerState] = {}
         self._conversations = count()
 
@@ -131,7 +135,8 @@ class PeerTable:
         return not state.systems or now - state.last_seen > PEER_SILENCE
 
     def _new(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
-        return PeerState(self._new_conversation(address), Framer(stream=self._stream), now, fixed, silent=fixed)
+        peer, framer = self._new_conversation(address), Framer(stream=self._stream)
+        return PeerState(peer, framer, now, fixed, silent=fixed, sequence=self._first_sequence)
 
     def _new_conversation(self, address: Hashable) -> Peer:
         return Peer(self._index, address, next(self._conversations))
