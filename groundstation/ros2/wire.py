@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import logging
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -20,13 +19,8 @@ import zenoh
 from groundstation.ros.rmw.attachment import Attachment, decode, gid_of
 from groundstation.ros.rmw.names import Endpoint, Kind, publisher_tokens
 from groundstation.ros2.router import Router
-from link.fleet.probe import explain_failure
-from link.transport.backoff import Backoff
+from link.fleet.router_session import RouterSession
 
-log = logging.getLogger(__name__)
-
-FIRST_RETRY, LONGEST_RETRY = 0.2, 1.0
-"""s between attempts to open the session; then Zenoh reconnects by itself."""
 CLOSE_WITHIN = 2.0
 MAX_WAITING = 64
 """Messages and requests that wait for the event loop."""
@@ -71,25 +65,22 @@ class Wire:
 
     def __init__(self, router: Router, events: WireEvents) -> None:
         self._events = events
-        self._router = router
         self._loop = asyncio.get_running_loop()
-        self._session: zenoh.Session | None = None
         self._held: list[Any] = []
         """Declarations live as long as they are held."""
         self._lock = threading.Lock()
         self._waiting: dict[object, Arrived | Request] = {}
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._open, name="ros2", daemon=True)
+        self._router = RouterSession("ros2", router.locator, router.config, self._opened, self._failed)
 
     def start(self) -> None:
         """Connect, and try again until it succeeds."""
-        self._thread.start()
+        self._router.start()
 
     def declare(self, domain: int, tokens: Sequence[str], endpoints: Sequence[Endpoint]) -> None:
         """Show the tokens; take the messages and requests of the endpoints."""
-        session = self._session
+        session = self._router.session
         assert session is not None
-        with self._quiet("declare"):
+        with self._router.quiet("declare"):
             for each in endpoints:
                 if each.kind is Kind.SUBSCRIPTION:
                     self._subscribe(session, domain, each)
@@ -100,32 +91,22 @@ class Wire:
 
     def publish(self, key: str, data: bytes, attachment: Attachment) -> None:
         """Send a message now or never."""
-        if self._session is not None:
-            with self._quiet("publish"):
-                self._session.put(key, data, attachment=attachment.encode())
+        session = self._router.session
+        if session is not None:
+            with self._router.quiet("publish"):
+                session.put(key, data, attachment=attachment.encode())
 
     def close(self) -> None:
         """Leave, in a thread that is not waited for longer than CLOSE_WITHIN."""
-        self._closing.set()
-        closer = threading.Thread(target=self._close, name="ros2 end", daemon=True)
-        closer.start()
-        closer.join(CLOSE_WITHIN)
+        self._router.close(CLOSE_WITHIN)
 
     # ---- in threads ----
 
-    def _open(self) -> None:
-        delays = Backoff(FIRST_RETRY, LONGEST_RETRY)
-        while not self._closing.is_set():
-            try:
-                session = zenoh.open(self._router.config)
-            except zenoh.ZError as error:
-                log.debug("no session: %s", error)
-                self._call(self._events.problem, explain_failure(self._router.locator, self._router.config))
-                self._closing.wait(delays.next_delay())
-            else:
-                self._session = session
-                self._call(self._events.opened, str(session.info.zid()))
-                return
+    def _opened(self, session: zenoh.Session) -> None:
+        self._call(self._events.opened, str(session.info.zid()))
+
+    def _failed(self, problem: str) -> None:
+        self._call(self._events.problem, problem)
 
     def _subscribe(self, session: zenoh.Session, domain: int, endpoint: Endpoint) -> None:
         def take(sample: zenoh.Sample) -> None:
@@ -155,7 +136,7 @@ class Wire:
 
             def reply(response: bytes) -> None:
                 answer = Attachment(attachment.number, time.time_ns(), attachment.gid)
-                with self._quiet("reply"), query:
+                with self._router.quiet("reply"), query:
                     query.reply(endpoint.key, response, attachment=answer.encode())
 
             if not self._put(object(), Request(endpoint, data, attachment, reply)):
@@ -178,13 +159,6 @@ class Wire:
         with contextlib.suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(function, *arguments)
 
-    def _close(self) -> None:
-        self._thread.join()
-        session, self._session = self._session, None
-        if session is not None:
-            with self._quiet("close"):
-                session.close()  # type: ignore[no-untyped-call]
-
     # ---- in the event loop ----
 
     def _drain(self) -> None:
@@ -195,11 +169,3 @@ class Wire:
                 self._events.message(item)
             else:
                 self._events.request(item)
-
-    @contextlib.contextmanager
-    def _quiet(self, what: str) -> Iterator[None]:
-        """Log an error of Zenoh: the router is away then, and what drives falls silent."""
-        try:
-            yield
-        except zenoh.ZError as error:
-            log.debug("could not %s: %s", what, error)

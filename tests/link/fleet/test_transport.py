@@ -81,7 +81,7 @@ async def test_frames_both_ways_and_what_is_refused(port: int) -> None:
     rover.transport.send(VEHICLE_BEAT, me)
     await until(lambda: (VEHICLE_BEAT, "rover1") in station.received)
 
-    stranger = station.transport._session._session
+    stranger = station.transport._session._router.session
     assert stranger is not None
     before = len(rover.received)
     key = f"fleet/farm/rover1/down/{me}/watch/ctl/HEARTBEAT"
