@@ -30,6 +30,7 @@ from groundstation.station_socket.folder import FolderError
 from groundstation.station_socket.hello import HELLO_WITHIN, SCREEN, Hello, StationFailed
 from groundstation.views.base import View
 from link.runtime.child_process import end_process, start_module
+from link.transport.receive_buffer import ReceiveBuffer
 
 START_TIMEOUT = 15.0
 """s for the station to open its links: Python's start on a slow Pi (3 s) and a host name to resolve (10 s)."""
@@ -56,6 +57,7 @@ class StationClient:
         self.endpoints = ready.endpoints
         self.first_request = ready.first_request
         self._pipe = pipe
+        self._buffer = ReceiveBuffer(MAX_PACKET)
         self._process = process
         self._keep = False
         self._lock = threading.Lock()
@@ -216,7 +218,7 @@ class StationClient:
     def _read_packet(self) -> bytes | None:
         """Return the next packet, b"" at the end, None if none has arrived."""
         try:
-            return self._pipe.recv(MAX_PACKET)
+            return self._buffer.recv(self._pipe)
         except BlockingIOError:
             return None
         except ConnectionResetError:  # raised once, if intents were unread at the end; the last report follows

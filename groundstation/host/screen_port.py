@@ -11,6 +11,7 @@ import msgspec
 
 from groundstation.ipc import MAX_PACKET, IntentBatch, decode_from_screen, encode
 from groundstation.station_socket.packets import read_packet
+from link.transport.receive_buffer import ReceiveBuffer
 
 log = logging.getLogger(__name__)
 
@@ -35,6 +36,7 @@ class ScreenPort:
         self._socket = sock
         self._owner = owner
         self._reading = False
+        self._buffer = ReceiveBuffer(MAX_PACKET)
 
     def start(self) -> None:
         """Begin to read; the loop runs."""
@@ -66,7 +68,7 @@ class ScreenPort:
 
     def _read(self) -> None:
         now = asyncio.get_running_loop().time()
-        while self._reading and (packet := read_packet(self._socket, MAX_PACKET)) is not None:
+        while self._reading and (packet := read_packet(self._socket, self._buffer)) is not None:
             if not packet:
                 self.stop()
                 self._owner.handle_screen_end(self, now)

@@ -27,6 +27,7 @@ from groundstation.station_socket.relay import (
     encode,
 )
 from link.core import LinkReport, Received
+from link.transport.receive_buffer import ReceiveBuffer
 
 log = logging.getLogger(__name__)
 
@@ -47,6 +48,7 @@ class VerbPort:
     ) -> None:
         """`verb`: its name, whether it takes part, and whether it follows."""
         self._socket = sock
+        self._buffer = ReceiveBuffer(MAX_RELAYED)
         self._relay = relay
         self._flush = flush
         self._ended = ended
@@ -69,7 +71,7 @@ class VerbPort:
 
     def _read(self) -> None:
         now = asyncio.get_running_loop().time()
-        while (packet := read_packet(self._socket, MAX_RELAYED)) is not None:
+        while (packet := read_packet(self._socket, self._buffer)) is not None:
             if not packet:
                 self._ended(self)
                 break

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import socket
 
+from link.transport.receive_buffer import ReceiveBuffer
 
-def read_packet(sock: socket.socket, largest: int) -> bytes | None:
-    """Return the next packet of at most `largest` bytes; None if there is none yet, b"" after the end."""
+
+def read_packet(sock: socket.socket, buffer: ReceiveBuffer) -> bytes | None:
+    """Return the next packet, which must fit into `buffer`; None if there is none yet, b"" after the end."""
     try:
-        return sock.recv(largest)
+        return buffer.recv(sock)
     except BlockingIOError:
         return None
     except OSError:

@@ -30,6 +30,7 @@ from groundstation.station_socket.relay import (
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from link.core import Core, Peer, Received
 from link.protocol.log_tap import LogTap
+from link.transport.receive_buffer import ReceiveBuffer
 
 AUTO, ONLY, NEVER = "auto", "only", "never"
 """Values of --station; another one is a process id."""
@@ -124,6 +125,7 @@ class StationRunner:
         """`log_tap` records what the station hears, as frames without signatures."""
         self._core = core
         self._socket = link.sock
+        self._buffer = ReceiveBuffer(MAX_RELAYED)
         self._period = period
         self._take_reports = take_reports
         self._log_tap = log_tap
@@ -187,7 +189,7 @@ class StationRunner:
 
     def _read(self) -> None:
         now = asyncio.get_running_loop().time()
-        while (packet := read_packet(self._socket, MAX_RELAYED)) is not None:
+        while (packet := read_packet(self._socket, self._buffer)) is not None:
             if not packet:
                 raise VerbError(ExitCode.NO_ANSWER, "the station that this verb went through has ended")
             match decode_from_station(packet):

@@ -7,6 +7,7 @@ import socket
 from collections.abc import Callable, Hashable
 
 from link.transport.priority_queue import TransmitQueue
+from link.transport.receive_buffer import ReceiveBuffer
 from link.transport.stream_writer import StreamWriter
 from link.transport.transport import Outlet, ReceiveCallback
 
@@ -15,6 +16,7 @@ BULK = 65536
 SEND_BUFFER = 32768
 """Bytes that the kernel buffers, where nothing can overtake; its own default grows to megabytes."""
 READ = 65536
+"""Bytes that one turn of the event loop reads at most."""
 DEAD_AFTER = 10
 """s without an acknowledgement after which the other end counts as gone; twice the vehicle's GCS timeout."""
 
@@ -33,6 +35,7 @@ class Connection:
         self.address = address
         self.queue = TransmitQueue(BULK)
         self._socket = sock
+        self._buffer = ReceiveBuffer(READ)
         self._on_receive = on_receive
         self._on_end = on_end
         self._writer = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
@@ -58,7 +61,7 @@ class Connection:
 
     def _readable(self) -> None:
         try:
-            data = self._socket.recv(READ)
+            data = self._buffer.recv(self._socket)
         except BlockingIOError:
             return
         except OSError as error:

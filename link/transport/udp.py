@@ -8,6 +8,7 @@ from collections.abc import Hashable
 
 from link.endpoint import Endpoint
 from link.transport.address import bind_error_text, resolve
+from link.transport.receive_buffer import ReceiveBuffer
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 BATCH = 64
@@ -33,7 +34,7 @@ class UdpTransport:
         self.capacity: float | None = None
         self.dropped = 0
         self._socket = sock
-        self._buffer = memoryview(bytearray(BUFFER))
+        self._buffer = ReceiveBuffer(BUFFER)
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def start(
@@ -71,15 +72,13 @@ class UdpTransport:
         batch: list[tuple[bytes, Hashable]] = []
         for _ in range(BATCH):
             try:
-                size, address = self._socket.recvfrom_into(self._buffer)
+                data, address = self._buffer.recvfrom(self._socket)
             except (BlockingIOError, ConnectionRefusedError):
                 break
             except OSError as error:
                 self.problem = f"{self.endpoint.text}: {error.strerror}"
                 break
-            # A copy: recvfrom() shrinks a block of the heap as large as the buffer, and frames that are kept for a
-            # while keep the blocks between them apart, so that the heap grows by megabytes.
-            batch.append((bytes(self._buffer[:size]), self.fixed_address or address))
+            batch.append((data, self.fixed_address or address))
         if batch:
             on_receive(batch)
 
