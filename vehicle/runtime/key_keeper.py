@@ -25,6 +25,11 @@ class KeyKeeper:
         """Called with new keys, from `poll`."""
 
     @property
+    def folder(self) -> Path:
+        """The state folder that the file is in."""
+        return self._watch.path.parent
+
+    @property
     def ring(self) -> KeyRing:
         """The keys of now."""
         return self._watch.ring

@@ -22,11 +22,12 @@ log = logging.getLogger(__name__)
 PERIOD = 1.0
 """s between two looks at the clock of the computer."""
 
-NOBODY = (
-    "everybody in the network can send here, so nobody may drive: make a key with `vehicle key new NAME`, "
-    "or set allow_unsigned = true under [signing]"
-)
+NOBODY = "everybody in the network can send here, so nobody may drive: {}, or set allow_unsigned = true under [signing]"
 """What is said of a link that is open to a network, while there is neither a key nor a permission."""
+
+NEW_KEY = "make a key with `vehicle key new NAME --state {}`"
+NO_STATE = "run the simulation with `--state FOLDER` and " + NEW_KEY.format("FOLDER")
+"""What leads to a key. Keys are in the state folder, and a simulation has none unless it is told."""
 
 
 class LinkGuards:
@@ -42,8 +43,9 @@ class LinkGuards:
     ) -> None:
         """Prepare. `memory`: file of the signing clock. Raises SettingsError, and MemoryFileError."""
         ring = keys.ring if keys is not None else KeyRing()
+        self._new_key = NO_STATE if keys is None else NEW_KEY.format(keys.folder)
         if settings.required and not ring.keys:
-            raise SettingsError("signing.required: there is no key; make one with `vehicle key new NAME`")
+            raise SettingsError(f"signing.required: there is no key; {self._new_key}")
         private = [is_private(parse_endpoint(text)) for text in endpoints]
         self._policies = [build_policy(settings, private=each) for each in private]
         self._open = [text for text, each in zip(endpoints, private, strict=True) if not (each or settings.required)]
@@ -65,11 +67,13 @@ class LinkGuards:
         if not self._open:
             return None
         place = ", ".join(self._open)
+        known = bool(self._keeper.signing.ring.keys)
         if self._allowed:
-            return f"{place}: everybody in the network may drive (allow_unsigned); `vehicle key new NAME` closes it"
-        if self._keeper.signing.ring.keys:
+            first = "" if known else f"{self._new_key} and "
+            return f"{place}: everybody in the network may drive; to close it, {first}remove allow_unsigned"
+        if known:
             return None
-        return f"{place}: {NOBODY}"
+        return f"{place}: {NOBODY.format(self._new_key)}"
 
     def attach(self, links: Sequence[Link]) -> None:
         """Guard these links, in the order of the endpoints."""

@@ -9,7 +9,7 @@ import pytest
 from link.runtime.diagnosis import Health
 from vehicle.cli.check import CheckResult
 from vehicle.cli.doctor.facts import Clock, DoctorFacts
-from vehicle.cli.doctor.signing_row import NEW_KEY, signing
+from vehicle.cli.doctor.signing_row import CLOSE, NEW_KEY, signing
 from vehicle.config.signing import SigningSettings
 from vehicle.readings import ComputerReadings
 
@@ -27,7 +27,7 @@ KEYS = ("laptop (setup, 01234567)",)
             {"open_links": NETWORK, "keys": KEYS, "signing": SigningSettings(allow_unsigned=True)},
             Health.WARNING,
             "everybody in the network may drive",
-            NEW_KEY,
+            CLOSE,
         ),
         ({"keys": KEYS, "signing": SigningSettings(required=True)}, Health.OK, "nothing unsigned is obeyed", ""),
         ({"signing": SigningSettings(required=True)}, Health.FAULT, "required, but no key", NEW_KEY),

@@ -17,11 +17,12 @@ from link.transport.reach import is_private
 from tests.link.frames import heartbeat
 from tests.link.signing.signed import ARM, HERE, STRANGER, signed
 from tests.ports import free_port
+from vehicle.cli.main import main
 from vehicle.config.config import ConfigError, parse_config
 from vehicle.config.run_settings import SettingsError
-from vehicle.config.signing import SigningSettings
+from vehicle.config.signing import SigningSettings, build_policy
 from vehicle.runtime.key_keeper import KeyKeeper
-from vehicle.runtime.link_guards import NOBODY, LinkGuards
+from vehicle.runtime.link_guards import NO_STATE, NOBODY, LinkGuards
 
 
 @pytest.mark.parametrize(
@@ -49,7 +50,7 @@ def guards(settings: SigningSettings, endpoint: str, keys: KeyKeeper | None = No
 
 def test_the_start_says_what_to_do_in_one_line() -> None:
     place = "udpin:0.0.0.0:14550"
-    assert guards(SigningSettings(), place).warning == f"{place}: {NOBODY}"
+    assert guards(SigningSettings(), place).warning == f"{place}: {NOBODY.format(NO_STATE)}"
     assert "everybody in the network may drive" in str(guards(SigningSettings(allow_unsigned=True), place).warning)
     assert guards(SigningSettings(allow_unsigned=True), place).arming_note is not None
     for settings in (SigningSettings(), SigningSettings(allow_unsigned=True)):
@@ -58,8 +59,35 @@ def test_the_start_says_what_to_do_in_one_line() -> None:
 
 
 def test_signing_that_is_required_without_a_key_does_not_start() -> None:
-    with pytest.raises(SettingsError, match="there is no key; make one with `vehicle key new NAME`"):
+    with pytest.raises(SettingsError, match="there is no key; run the simulation with `--state FOLDER`"):
         guards(SigningSettings(required=True), "udpin:127.0.0.1:14550")
+
+
+def test_what_it_says_to_do_closes_the_network(tmp_path: Path) -> None:
+    """The key of the advice is one that this vehicle reads; with allow_unsigned a key alone closes nothing."""
+    place = "udpin:0.0.0.0:14550"
+    keys = KeyKeeper(tmp_path / FILE)
+    try:
+        advice = f"make a key with `vehicle key new NAME --state {tmp_path}`"
+        assert f"nobody may drive: {advice}" in str(guards(SigningSettings(), place, keys).warning)
+        allowed = guards(SigningSettings(allow_unsigned=True), place, keys)
+        assert str(allowed.warning).endswith(f"to close it, {advice} and remove allow_unsigned")
+    finally:
+        keys.close()
+    assert main(["key", "new", "NAME", "--state", str(tmp_path)]) == 0
+    keys = KeyKeeper(tmp_path / FILE)
+    try:
+        assert guards(SigningSettings(), place, keys).warning is None
+        allowed = guards(SigningSettings(allow_unsigned=True), place, keys)
+        assert str(allowed.warning).endswith("to close it, remove allow_unsigned")
+        assert [
+            build_policy(SigningSettings(allow_unsigned=each), private=False).unsigned for each in (True, False)
+        ] == [
+            Role.SET_UP,
+            Role.WATCH,
+        ]
+    finally:
+        keys.close()
 
 
 @pytest.mark.parametrize(

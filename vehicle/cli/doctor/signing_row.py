@@ -7,6 +7,7 @@ from vehicle.cli.doctor.check_rows import AFTER_CONFIG
 from vehicle.cli.doctor.facts import DoctorFacts
 
 NEW_KEY = "vehicle key new NAME, then install it at the ground station (docs/security.md)"
+CLOSE = "remove allow_unsigned; each ground station then needs a key (docs/security.md)"
 
 
 def signing(facts: DoctorFacts) -> Finding:
@@ -22,7 +23,7 @@ def signing(facts: DoctorFacts) -> Finding:
         return ok(f"{keys}; no link is open to a network")
     links = ", ".join(facts.open_links)
     if facts.signing.allow_unsigned:
-        return warn(f"{links}: everybody in the network may drive (allow_unsigned)", NEW_KEY)
+        return warn(f"{links}: everybody in the network may drive (allow_unsigned)", CLOSE)
     if facts.keys:
         return ok(f"{keys}; {links}: others may watch and stop")
     return warn(f"{links}: nobody may drive over the network, there is no key", NEW_KEY)
