@@ -21,6 +21,8 @@ class Peer(NamedTuple):
     address: Hashable
     conversation: int = 0
     """Counted over all addresses of the link."""
+    name: str = ""
+    """What the program there is called in its fleet; "" on links without names."""
 
 
 RECORDER = Peer(-1, "recorder")
@@ -211,6 +213,14 @@ class SendListener(Protocol):
 
     def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         """Take the sequence under which `message` was sent."""
+
+
+@runtime_checkable
+class RefusalListener(Protocol):
+    """A core that wants to know which of its messages are not sent because its role does not allow them."""
+
+    def handle_refused(self, message: Message, why: str, now: float) -> None:
+        """Take that a link did not send `message`; `why` is one line for the user."""
 
 
 @runtime_checkable

@@ -20,6 +20,7 @@ from link.core import (
     Outgoing,
     PlaceKeeper,
     Received,
+    RefusalListener,
     RestingCore,
     SendGuard,
     SendListener,
@@ -32,7 +33,7 @@ from link.protocol.peer_table import MAX_PEERS
 from link.protocol.sent_frames import SentFrames
 from link.routing.router import Delivery, Router
 from link.signing_keeper import SigningKeeper
-from link.transport.transport import Link, Transport
+from link.transport.transport import Link, RoleTransport, Transport
 from link.transport.transports import open_transports
 
 log = logging.getLogger(__name__)
@@ -105,6 +106,7 @@ def build_link(
         places=places,
         first_sequence=first_sequence,
         downloads=downloads,
+        named=bool(transport.endpoint.fleet),
     )
     return Link(transport, channel, watch_only)
 
@@ -143,6 +145,7 @@ class Runner:
         self._route = route
         self._router: Router | None = None
         self._sent = core.handle_sent if isinstance(core, SendListener) else None
+        self._refused = core.handle_refused if isinstance(core, RefusalListener) else None
         self._may_send = core.may_send if isinstance(core, SendGuard) else None
         self._on_sent = sent
         self._keeper = core if isinstance(core, PlaceKeeper) else None
@@ -177,6 +180,8 @@ class Runner:
 
     def _prepare(self, link: Link) -> None:
         link.channel.log_tap = self._log_tap
+        if self._refused and isinstance(link.transport, RoleTransport):
+            link.refusal = link.transport.refusal
         if self._signing is not None:
             link.channel.guard = self._signing.guard(link.channel.index)
 
@@ -366,14 +371,22 @@ class Runner:
                 now = asyncio.get_running_loop().time()
                 if self._may_send and not self._may_send(outgoing.message, now):
                     return
-                link.send(data, address)
-                taken = True
+                taken |= link.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, now)
                 if self._on_sent:
                     self._on_sent(link, address, outgoing.message, sequence, now)
+        if self._log_tap or self._refused:
+            self._note_sent(outgoing.message, payload, taken=taken)
+
+    def _note_sent(self, message: Message, payload: bytes, *, taken: bool) -> None:
+        """Record what was sent, and tell the core of what its role does not allow."""
+        now = asyncio.get_running_loop().time()
+        refusals = [link.pop_refusal() for link in self._links.values()] if self._refused else []
+        if self._refused and not taken and any(refusals):
+            self._refused(message, next(filter(None, refusals)), now)
         if self._log_tap and (taken or self._log_tap.unsent):
-            self._log_tap.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
+            self._log_tap.record_sent(type(message).id, payload, now)
 
 
 def _way(link: Link) -> tuple[bool, Hashable | None]:

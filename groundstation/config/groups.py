@@ -30,11 +30,11 @@ class VehicleGroup:
     patterns: tuple[str, ...]
     """Of names, in lower case, as "*boat*"."""
 
-    def has(self, system: int, name: str) -> bool:
-        """Return whether a vehicle belongs to it. `name` is as screens and verbs print it, e.g. "Rover 1"."""
+    def has(self, system: int, *names: str) -> bool:
+        """Return whether a vehicle belongs to it. It has a name in its fleet, as "rover1", and one as "Rover 1"."""
         if system in self.listed or system in self.others:
             return True
-        return any(fnmatch.fnmatchcase(name.lower(), each) for each in self.patterns)
+        return any(fnmatch.fnmatchcase(name.lower(), each) for name in names for each in self.patterns)
 
 
 EVERYBODY = VehicleGroup(frozenset(), frozenset(range(1, LARGEST_ID + 1)), ())

@@ -32,7 +32,7 @@ def _modes(station: Station) -> Iterable[str]:
 
 
 def _vehicles(station: Station) -> Iterable[str]:
-    return (str(contact.state.system) for contact in station.fleet)
+    return (contact.state.fleet_name or str(contact.state.system) for contact in station.fleet)
 
 
 _SOURCES: Mapping[str, Callable[[Station], Iterable[str]]] = {PARAMS: _params, MODES: _modes, VEHICLES: _vehicles}

@@ -12,7 +12,7 @@ import msgspec
 from msgspec.structs import replace
 
 from dialects import codec
-from dialects.messages import MESSAGES
+from dialects.messages import MESSAGES, Message
 from groundstation.station.verb_relay import Verb, VerbRelay
 from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.relay import (
@@ -22,6 +22,7 @@ from groundstation.station_socket.relay import (
     Heard,
     HeardMessage,
     LinksReport,
+    MessageRefused,
     VerbReady,
     decode_from_verb,
     encode,
@@ -53,7 +54,9 @@ class VerbPort:
         self._flush = flush
         self._ended = ended
         name, takes_part, follows = verb
-        self._verb = Verb(name, takes_part, self._deliver, self._report, self._refuse, follows=follows)
+        self._verb = Verb(
+            name, takes_part, self._deliver, self._report, self._refuse, follows=follows, tell_refusal=self._tell
+        )
 
     def start(self, ready: VerbReady) -> None:
         """Begin; the loop runs."""
@@ -94,6 +97,9 @@ class VerbPort:
     def _refuse(self, line: str) -> None:
         self._send(DemandRefused(line))
 
+    def _tell(self, message: Message, why: str) -> None:
+        self._send(MessageRefused(type(message).id, codec.encode_payload(message), why))
+
     def _send(self, message: msgspec.Struct) -> None:
         with contextlib.suppress(OSError):  # it does not read, or has ended, which _read sees
             self._socket.send(encode(message))
@@ -101,4 +107,5 @@ class VerbPort:
 
 def _heard(received: Received) -> HeardMessage:
     place = (received.system, received.component, received.sequence, received.peer.link)
-    return HeardMessage(type(received.message).id, *place, codec.encode_payload(received.message))
+    payload = codec.encode_payload(received.message)
+    return HeardMessage(type(received.message).id, *place, payload, received.peer.name)

@@ -55,6 +55,8 @@ class CommandResults:
             )  # no refusal: ArduPilot and PX4 take demands from any station
             whose = "you drive" if outcome.params[0] == 1 else "it gets no more demands from here"
             self._log.add(now, "ack", f"this vehicle does not manage control, {whose}", Severity.INFO, origin=origin)
+        elif outcome.refusal:
+            self.add_refusal(outcome.target_system, f"{label}: {outcome.refusal}", now)
         elif outcome.number is None:
             self.add_refusal(outcome.target_system, f"{label}: no answer", now)
         else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dialects.enums import Command, Result, Severity
+from dialects.messages import Message
 from dialects.modes import Mode
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.arming import ArmSequence, ArmStep, send_mode
@@ -156,6 +157,11 @@ class Commander:
         """Handle a message of a vehicle: a COMMAND_ACK, or what its state shows of our claim."""
         self._claims.update(now)
         self._client.receive(received, now)
+        self._handle_outcomes(now)
+
+    def handle_refused(self, message: Message, why: str, now: float) -> None:
+        """End the command whose message is not sent, because our role does not allow it."""
+        self._client.refuse(message, why)
         self._handle_outcomes(now)
 
     def handle_statustext(self, system: int, text: str, severity: int, now: float) -> None:

@@ -95,6 +95,11 @@ class CrashNeutral:
         if not self._active:
             self._station.handle_sent(message, sequence, now)
 
+    def handle_refused(self, message: Message, why: str, now: float) -> None:
+        """Pass on why a message was not sent."""
+        if not self._active:
+            self._station.handle_refused(message, why, now)
+
     def may_send(self, message: Message, now: float) -> bool:
         """Return whether a message may still be sent; the station withdraws old demands."""
         return self._active or self._station.may_send(message, now)

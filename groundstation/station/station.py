@@ -31,6 +31,7 @@ from groundstation.station.operator_log import OperatorLog
 from groundstation.station.param_texts import ParamTexts
 from groundstation.station.param_views import ParamViews
 from groundstation.station.plan_views import PlanViews
+from groundstation.station.refusals import Refusals
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.station_notes import StationNotes
 from groundstation.station.surroundings import Surroundings
@@ -87,6 +88,7 @@ class Station:
         self._handover = Handover(self.fleet, self._commander, self.driving, self.log, system)
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self.services)
         self.relay = VerbRelay(self.fleet, self.operator, self._commander, self.log)
+        self._refusals = Refusals(self.fleet, self._commander, self.relay, self.log)
         self.params = HeardParams()
         self._timesync = TimesyncClient(system)
         self._doctor = DoctorDesk(
@@ -255,6 +257,10 @@ class Station:
         self._traffic.count_sent(message, now)
         self._display.handle_sent(message, now)
         self.driving.handle_sent(message, sequence, now)
+
+    def handle_refused(self, message: m.Message, why: str, now: float) -> None:
+        """Tell who wanted a message that our role does not allow."""
+        self._refusals.handle(message, why, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
         """Return False for what moves a vehicle and was made before the process stood still."""

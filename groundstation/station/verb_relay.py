@@ -59,6 +59,8 @@ class Verb:
     """Kind and vehicle -> the newest demand that moves."""
     refused: str = ""
     """Why no more demands are taken."""
+    tell_refusal: Callable[[m.Message, str], None] = lambda message, why: None
+    """Takes a message of the verb that our role does not allow, and why."""
 
 
 @dataclass(slots=True)
@@ -92,6 +94,10 @@ class VerbRelay:
         self._proven: dict[int, float] = {}
         """System id -> when the session was last proven to it for a verb."""
         self._outbox: list[Outgoing] = []
+        self._senders: list[tuple[m.Message, Verb]] = []
+        """Of the messages of verbs in `_outbox`."""
+        self._sent: list[tuple[m.Message, Verb]] = []
+        """The same of those that are being sent."""
 
     def may_follow(self, now: float) -> bool:
         """Return whether a verb that only looks may go on with the session of the verb before."""
@@ -162,6 +168,7 @@ class VerbRelay:
             self._arming[message.target_system] = now + ARMS_WITHIN
         self._prove(verb, message, now)
         self._outbox.append(Outgoing(message))
+        self._senders.append((message, verb))
 
     def hear(self, verb: Verb, now: float) -> None:
         """Note that a verb runs. One that stood still has lost its demands, and makes no others."""
@@ -186,7 +193,15 @@ class VerbRelay:
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
         outbox, self._outbox = self._outbox, []
+        self._sent, self._senders = self._senders, []
         return outbox
+
+    def handle_refused(self, message: m.Message, why: str) -> bool:
+        """Tell the verb whose message our role does not allow; return whether it is one of a verb."""
+        verb = next((verb for sent, verb in self._sent if sent is message), None)
+        if verb is not None:
+            verb.tell_refusal(message, why)
+        return verb is not None
 
     @property
     def busy(self) -> bool:
@@ -211,7 +226,7 @@ class VerbRelay:
         contact = self._fleet.get(getattr(message, "target_system", getattr(message, "target", 0)))
         if contact is None:
             return False
-        if not _moves(message, contact):
+        if not moves(message, contact):
             verb.demands.pop((type(message), contact.state.system), None)
             return not contact.demand_stream.streaming  # else the station sends them
         other = next((each for each in self._verbs if each is not verb and each.demands), None)
@@ -279,8 +294,8 @@ def _values(message: m.Message) -> dict[str, Any]:
     return {name: getattr(message, name) for name in message.fieldnames}
 
 
-def _moves(message: m.Message, contact: Contact) -> bool:
-    """Return whether this requests motion, and does not only show that somebody is there."""
+def moves(message: m.Message, contact: Contact) -> bool:
+    """Return whether a demand requests motion, and does not only show that somebody is there."""
     if isinstance(message, m.RoverOperatorPresence):
         axes = (message.x, message.y, message.z, message.r) if message.flags & OperatorFlag.AXES else ()
         return any(axis not in (0, INVALID_AXIS) for axis in axes)

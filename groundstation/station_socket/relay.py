@@ -11,7 +11,7 @@ import msgspec
 from groundstation.station_socket.hello import StationFailed
 from link.core import LinkReport
 
-VERSION = 1
+VERSION = 2
 """Of the packets below."""
 
 MAX_RELAYED = 1 << 16
@@ -54,6 +54,8 @@ class HeardMessage(msgspec.Struct, frozen=True, array_like=True):
     sequence: int
     link: int
     payload: bytes
+    name: str = ""
+    """Of its program in the fleet behind the link (link.core.Peer)."""
 
 
 class Heard(msgspec.Struct, frozen=True, tag=True):
@@ -74,13 +76,22 @@ class DemandRefused(msgspec.Struct, frozen=True, tag=True):
     line: str
 
 
+class MessageRefused(msgspec.Struct, frozen=True, tag=True):
+    """From the station: a message of the verb is not sent, because the role of the station does not allow it."""
+
+    message: int
+    payload: bytes
+    why: str
+    """One line for the user."""
+
+
 class ToSend(msgspec.Struct, frozen=True):
     """From the verb: messages to send, ids and payloads. Without any it says that the verb runs."""
 
     messages: tuple[tuple[int, bytes], ...] = ()
 
 
-FromStation = VerbReady | Heard | LinksReport | DemandRefused | StationFailed
+FromStation = VerbReady | Heard | LinksReport | DemandRefused | MessageRefused | StationFailed
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(FromStation).decode

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dialects import messages as m
 from dialects.enums import Command, Result, command_name, result_name
 from groundstation.vehicles.requests import RequestBook
 from link.core import Outgoing, Received
@@ -62,6 +63,10 @@ class CommandRequests:
                 self._client.cancel(command)
                 self._book.cancel(number)
 
+    def refuse(self, message: m.Message, why: str) -> None:
+        """End the request whose command is not sent, because our role does not allow it."""
+        self._client.refuse(message, why)
+
     def receive(self, received: Received, now: float) -> None:
         """Handle COMMAND_ACK of the vehicle."""
         self._client.receive(received, now)
@@ -91,6 +96,8 @@ class CommandRequests:
                 self._queries.append(outcome)
             elif outcome.result is Result.ACCEPTED:
                 self._book.accept(number)
+            elif outcome.refusal:
+                self._book.refuse(number, outcome.refusal, now, by_vehicle=False)
             elif outcome.number is None:
                 self._book.fail(number, f"after {TRIES} tries")
             else:

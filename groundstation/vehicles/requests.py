@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -63,6 +65,7 @@ class RequestBook:
         """Refusals that wait for a reason, until when."""
         self._changed: dict[int, RequestReport] = {}
         self._reason: tuple[str, float] | None = None
+        self._refusal = ""
 
     @property
     def running(self) -> tuple[RequestReport, ...]:
@@ -110,7 +113,19 @@ class RequestBook:
 
     def cancel(self, number: int) -> None:
         """End a request because the operator wants it no more."""
-        self._end(number, RequestState.CANCELLED, "")
+        if self._refusal:
+            self._end(number, RequestState.REFUSED, self._refusal)
+        else:
+            self._end(number, RequestState.CANCELLED, "")
+
+    @contextmanager
+    def refusing(self, why: str) -> Iterator[None]:
+        """Make what is cancelled in this block end as refused, because its messages are not sent."""
+        self._refusal = why
+        try:
+            yield
+        finally:
+            self._refusal = ""
 
     def handle_text(self, text: str, severity: int, now: float) -> None:
         """Take a STATUSTEXT of the vehicle. A warning explains the refusals around it."""

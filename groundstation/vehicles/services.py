@@ -6,10 +6,11 @@ their modules imported, when they are used first: importing all of them takes a 
 
 from __future__ import annotations
 
-from collections.abc import MutableMapping, Sequence
+from collections.abc import Mapping, MutableMapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
+from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result, VehicleType
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.identity import VehicleIdentity
@@ -65,6 +66,16 @@ class _DiskUser(Protocol):
 
 
 _S = TypeVar("_S", bound=_Service)
+_SERVICE_OF: Mapping[type[m.Message], str] = {
+    m.ParamSet: "params",
+    m.MissionCount: "plans",
+    m.MissionClearAll: "plans",
+    m.MissionItem: "plans",
+    m.MissionItemInt: "plans",
+    m.FileTransferProtocol: "files",
+    m.LogErase: "logs",
+}
+"""Message that changes something -> the attribute of its service."""
 
 
 class VehicleServices:
@@ -231,6 +242,15 @@ class VehicleServices:
     def handle_text(self, text: str, severity: int, now: float) -> None:
         """Take a whole STATUSTEXT of the vehicle."""
         self.book.handle_text(text, severity, now)
+
+    def handle_refused(self, message: m.Message, why: str, now: float) -> None:
+        """End the requests of the service whose message was not sent, because our role does not allow it."""
+        self.commands.refuse(message, why)
+        service: _Service | None = getattr(self, _SERVICE_OF.get(type(message), ""), None)
+        if service is not None:
+            with self.book.refusing(why):
+                for report in self.book.running:
+                    service.cancel(report.number, now)
 
     def cancel(self, number: int, now: float) -> None:
         """Cancel a request."""

@@ -46,6 +46,8 @@ class VehicleState:
     def __init__(self, system: int, component: int) -> None:
         self.system = system
         self.component = component
+        self.fleet_name = ""
+        """Its name in the fleet behind the link of its newest message; "" without one."""
         self.monitor = HeartbeatMonitor(LOST_AFTER)
         self.key_timings = KeyTimings()
         self.latency = LatencyMeter(self.key_timings)
@@ -75,6 +77,7 @@ class VehicleState:
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of this system."""
         self.monitor.update(now)
+        self.fleet_name = received.peer.name or self.fleet_name
         message = received.message
         if received.component != self.component:
             return
@@ -117,7 +120,12 @@ class VehicleState:
 
     @property
     def name(self) -> str:
-        """Name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
+        """Name for the driver: that in its fleet, else as `kind_name`."""
+        return self.fleet_name or self.kind_name
+
+    @property
+    def kind_name(self) -> str:
+        """Kind and system id, e.g. "Rover 1", "ArduPilot rover 1"."""
         return vehicle_name(self.autopilot, self.kind, self.system)
 
     def restart(self) -> None:

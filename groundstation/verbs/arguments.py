@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from typing import Any
 
+from link.endpoint import FLEET_NAME
 from link.services.param.float32 import is_float32
 
 Argument = tuple[str, dict[str, Any]]
@@ -63,12 +65,23 @@ def system_id(text: str) -> int:
     return int(text)
 
 
-def vehicle_id(text: str) -> int:
-    """Parse a system id, or a name as all screens and verbs print it, e.g. "Rover 1". Raises ArgumentTypeError."""
+def vehicle_id(text: str) -> int | str:
+    """Parse a system id, or a name as all screens and verbs print it. Raises ArgumentTypeError.
+
+    Returns the system id, also of a name that ends with it as "Rover 1", or the name of a vehicle in its fleet.
+    """
     try:
         return system_id(text.rpartition(" ")[2])
     except argparse.ArgumentTypeError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255, nor a name as 'Rover 1'") from None
+        if re.fullmatch(FLEET_NAME, text) and not text.isdecimal():
+            return text
+        known = "nor a name as 'Rover 1', or as 'rover1' in a fleet"
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255, {known}") from None
+
+
+def is_chosen(wanted: int | str | None, system: int, fleet_name: str) -> bool:
+    """Return whether --vehicle names this vehicle; None: it names none, and any one will do."""
+    return wanted is None or wanted == (fleet_name if isinstance(wanted, str) else system)
 
 
 def float32(text: str) -> float:

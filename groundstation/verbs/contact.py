@@ -46,6 +46,10 @@ class VehicleContact:
         """It has signed with a key of ours."""
         self.texts = MessageLog()
         """What it has said."""
+        self.refusal = ""
+        """Why a message to it was not sent: the role of this program does not allow it."""
+        self.unproven = ""
+        """Why the session was not proven to it, likewise."""
         self._jobs: list[Job] = []
 
     @property
@@ -84,6 +88,13 @@ class VehicleContact:
         self.services.receive(received, now)
         self.client.receive(received, now)
         self._advance(now)
+
+    def handle_refused(self, message: m.Message, why: str) -> None:
+        """Take that a message to it was not sent. Stops need no session, so that without one a verb goes on."""
+        if isinstance(message, m.RoverOperatorPresence):
+            self.unproven = why
+        else:
+            self.refusal = why
 
     def tick(self, now: float) -> None:
         """Repeat what is overdue."""

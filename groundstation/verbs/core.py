@@ -10,6 +10,7 @@ from dialects import messages as m
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
+from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.contact import VehicleContact
 from link.core import LinkReport, Outgoing, Received
 
@@ -32,7 +33,7 @@ class VerbCore:
     `ids` are our system and component id, `session` is the number of our session.
     """
 
-    def __init__(self, ids: tuple[int, int], wanted: int | None, session: int) -> None:
+    def __init__(self, ids: tuple[int, int], wanted: int | str | None, session: int) -> None:
         self.contacts: dict[int, VehicleContact] = {}
         """All vehicles heard, by system id; at most MAX_VEHICLES."""
         self.chosen: VehicleContact | None = None
@@ -69,6 +70,13 @@ class VerbCore:
             tap(received, now)
         self._look()
 
+    def handle_refused(self, message: m.Message, why: str, now: float) -> None:
+        """Take that a message was not sent, because the role of this program does not allow it."""
+        contact = self.contacts.get(getattr(message, "target_system", getattr(message, "target", 0)))
+        if contact is not None:
+            contact.handle_refused(message, why)
+            self._look()
+
     def tick(self, now: float) -> None:
         """Send heartbeats, repeat what is overdue."""
         demanding = self.chosen is not None and self.chosen.operator.demanding
@@ -101,7 +109,7 @@ class VerbCore:
         if received.system not in self.contacts and len(self.contacts) < MAX_VEHICLES:
             target = (received.system, received.component)
             self.contacts[received.system] = VehicleContact(self._ids, self._session, target)
-        if self.chosen is None and self._wanted in (None, received.system):
+        if self.chosen is None and is_chosen(self._wanted, received.system, received.peer.name):
             self.chosen = self.contacts.get(received.system)
 
     def _look(self) -> None:

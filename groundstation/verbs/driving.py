@@ -57,8 +57,10 @@ def stood_still(session: VerbSession, now: float) -> float | None:
 
 
 def need_control(session: VerbSession) -> None:
-    """Raise VerbError if another program is in control."""
+    """Raise VerbError if another program is in control, or this one may not drive."""
     contact = session.contact
+    if contact.unproven:
+        raise VerbError(ExitCode.REFUSED, f"{contact.state.name}: {contact.unproven}")
     if contact.other_driver is not None and not contact.state.control.silent:
         text = f"GCS {contact.other_driver} is in control of {contact.state.name}"
         raise VerbError(ExitCode.NOT_IN_CONTROL, f"{text}; `groundstation control request` asks for it")

@@ -22,7 +22,7 @@ class ExitCode(IntEnum):
     NO_VEHICLE = 3
     """No vehicle was heard within --wait."""
     REFUSED = 4
-    """The vehicle refused; its reason was printed."""
+    """The vehicle refused, or our role does not allow it; the reason was printed."""
     NO_ANSWER = 5
     """No answer after all tries."""
     NOT_IN_CONTROL = 6

@@ -72,14 +72,15 @@ class ManyVehicles:
                     break
         self._add_missing()
         if not self._results:
-            heard = ", ".join(map(str, sorted(self._session.core.contacts)))
+            contacts = self._session.core.contacts
+            heard = ", ".join(contacts[each].state.name for each in sorted(contacts))
             raise VerbError(ExitCode.NO_VEHICLE, f"no vehicle of {self._options.group} among {heard}")
         self._print()
         return worst_code(each.code for each in self._results)
 
     def _begin(self, session: VerbSession, tasks: asyncio.TaskGroup) -> None:
         state = session.vehicle
-        if state.system not in self._begun and self._group.has(state.system, state.name):
+        if state.system not in self._begun and self._group.has(state.system, state.fleet_name, state.kind_name):
             self._begun.add(state.system)
             tasks.create_task(self._run_one(session))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import math
-from collections.abc import Awaitable, Callable, Iterable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from dialects import messages as m
@@ -87,20 +87,25 @@ class VerbSession:
         """The vehicle, once it was heard."""
         return self.contact.state
 
-    async def find_vehicle(self, wait: float, wanted: int | None, where: str) -> None:
+    async def find_vehicle(self, wait: float, wanted: int | str | None, where: str) -> None:
         """Wait for the HEARTBEAT of the vehicle. Raises VerbError after `wait` s."""
         if not await self.wait_for(lambda: self.core.chosen is not None, wait):
             which = "no vehicle" if wanted is None else f"no vehicle {wanted}"
-            heard = f", but {_numbers(self.core.contacts)}" if self.core.contacts else ""
+            heard = f", but {_names(self.core.contacts)}" if self.core.contacts else ""
             raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {where} within {wait:g} s{heard}")
 
-    async def need_only_vehicle(self, wanted: int | None) -> None:
-        """Before the first change: without --vehicle there must be only one. Raises VerbError."""
+    async def need_only_vehicle(self, wanted: int | str | None) -> None:
+        """Before the first change: there must be only one, or only one with that name. Raises VerbError."""
         if wanted is None:
             await self.hear_all()
             if len(self.core.contacts) > 1:
-                heard = _numbers(self.core.contacts)
+                heard = _names(self.core.contacts)
                 raise VerbError(ExitCode.USAGE, f"vehicles {heard} are here: choose one with --vehicle")
+        elif isinstance(wanted, str):
+            same = [system for system, each in sorted(self.core.contacts.items()) if each.state.fleet_name == wanted]
+            if len(same) > 1:
+                text = f"{wanted} are several vehicles: choose one with --vehicle {same[0]}"
+                raise VerbError(ExitCode.USAGE, text)
 
     async def hear_all(self, seconds: float = ALONE_AFTER) -> None:
         """Wait until the links were heard for so long, counted from the start; a station has heard them before."""
@@ -115,7 +120,7 @@ class VerbSession:
         """
         contact, until = self.contact, self.now + SETTLED_WITHIN
         contact.operator.begin(self.now)
-        while not contact.operator.settled and self.now < until:
+        while not (contact.operator.settled or contact.unproven) and self.now < until:
             contact.tick(self.now)  # proofs follow each other faster than PERIOD
             self.flush()
             await self.wait_for(lambda: contact.operator.settled, PROOF_PERIOD)
@@ -133,24 +138,35 @@ class VerbSession:
             contact.operator.demanding = False
 
     async def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Wait until `condition` holds; return whether it does."""
+        """Wait until `condition` holds; return whether it does. Raises VerbError if a message may not be sent."""
         if condition():
             return True
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self.core.add_look(condition), seconds)
+            await asyncio.wait_for(self.core.add_look(lambda: condition() or bool(self._refusal)), seconds)
+        self._need_sent()
         return condition()
+
+    @property
+    def _refusal(self) -> str:
+        contact = self._contact or self.core.chosen
+        return contact.refusal if contact else ""
+
+    def _need_sent(self) -> None:
+        if self._refusal:
+            raise VerbError(ExitCode.REFUSED, f"{self.vehicle.name}: {self._refusal}")
 
     def of_others(self) -> list[VerbSession]:
         """Return a session for each vehicle that was heard, this one included."""
         return [VerbSession(self.core, self.flush, self._progress, each) for each in self.core.contacts.values()]
 
     async def request(self, start: RequestStart) -> RequestReport:
-        """Make a request and return how it ended."""
+        """Make a request and return how it ended. Raises VerbError if its messages may not be sent."""
         self._count += 1
         number = self._count
         start(number, self.now)
         self.flush()
-        await self.core.add_look(lambda: self._collect(number))
+        await self.core.add_look(lambda: self._collect(number) or bool(self._refusal))
+        self._need_sent()
         return self._ended.pop(number)
 
     def heard_at(self, kind: type[m.Message]) -> float:
@@ -177,14 +193,15 @@ class VerbSession:
         return number in self._ended
 
 
-def _numbers(systems: Iterable[int]) -> str:
-    return ", ".join(map(str, sorted(systems)))
+def _names(contacts: Mapping[int, VehicleContact]) -> str:
+    """Return what --vehicle may name: names of a fleet, else system ids."""
+    return ", ".join(contacts[system].state.fleet_name or str(system) for system in sorted(contacts))
 
 
 async def run_session(
     endpoints: Sequence[str],
     ids: tuple[int, int],
-    wanted: int | None,
+    wanted: int | str | None,
     script: Callable[[VerbSession], Awaitable[int]],
     progress: Callable[[RequestReport], None],
     guard: DemandGuard | None = None,

@@ -22,13 +22,14 @@ from groundstation.station_socket.relay import (
     Heard,
     HeardMessage,
     LinksReport,
+    MessageRefused,
     ToSend,
     VerbReady,
     decode_from_station,
     encode,
 )
 from groundstation.verbs.exit_codes import ExitCode, VerbError
-from link.core import Core, Peer, Received
+from link.core import Core, Peer, Received, RefusalListener
 from link.protocol.log_tap import LogTap
 from link.transport.receive_buffer import ReceiveBuffer
 
@@ -192,15 +193,21 @@ class StationRunner:
         while (packet := read_packet(self._socket, self._buffer)) is not None:
             if not packet:
                 raise VerbError(ExitCode.NO_ANSWER, "the station that this verb went through has ended")
-            match decode_from_station(packet):
-                case Heard(messages):
-                    for heard in messages:
-                        self._take(heard, now)
-                case LinksReport() as links:
-                    self._take_reports(links)
-                case DemandRefused(line):
-                    raise VerbError(ExitCode.NOT_IN_CONTROL, line)
+            self._handle(packet, now)
         self._flush()
+
+    def _handle(self, packet: bytes, now: float) -> None:
+        match decode_from_station(packet):
+            case Heard(messages):
+                for heard in messages:
+                    self._take(heard, now)
+            case LinksReport() as links:
+                self._take_reports(links)
+            case MessageRefused(number, payload, why):
+                if isinstance(self._core, RefusalListener):
+                    self._core.handle_refused(codec.decode(number, payload), why, now)
+            case DemandRefused(line):
+                raise VerbError(ExitCode.NOT_IN_CONTROL, line)
 
     def _take(self, heard: HeardMessage, now: float) -> None:
         if heard.message not in MESSAGES:
@@ -214,5 +221,5 @@ class StationRunner:
 
 def _received(heard: HeardMessage) -> Received:
     message = codec.decode(heard.message, heard.payload)
-    peer = Peer(heard.link, "station")
+    peer = Peer(heard.link, "station", name=heard.name)
     return Received(message, heard.system, heard.component, heard.sequence, peer, introduced=True, named=True)

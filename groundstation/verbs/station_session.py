@@ -15,6 +15,7 @@ from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
 from groundstation.station.station import COMPONENT, Station
 from groundstation.station_socket.relay import LinksReport
+from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.station_link import StationLink, StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
@@ -79,16 +80,17 @@ class StationSession:
                 found.set_result(None)
         self._looks = [each for each in self._looks if not each[1].done()]
 
-    async def find_vehicle(self, wait: float, wanted: int | None) -> bool:
+    async def find_vehicle(self, wait: float, wanted: int | str | None) -> bool:
         """Wait for a vehicle and select it; return whether it is there."""
-        found = await self.until(lambda: self._has(wanted), wait)
-        if found and wanted is not None:
-            self.do(SelectVehicle(wanted))
+        found = await self.until(lambda: self._find(wanted) is not None, wait)
+        system = self._find(wanted)
+        if found and wanted is not None and system is not None:
+            self.do(SelectVehicle(system))
         return found
 
-    def _has(self, wanted: int | None) -> bool:
-        systems = self.snapshot.vehicles
-        return bool(systems) if wanted is None else wanted in systems
+    def _find(self, wanted: int | str | None) -> int | None:
+        states = (contact.state for contact in self._station.fleet)
+        return next((each.system for each in states if is_chosen(wanted, each.system, each.fleet_name)), None)
 
     @property
     def _now(self) -> float:

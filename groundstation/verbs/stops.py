@@ -13,6 +13,7 @@ from dialects.enums import Command
 from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.station.emergency import DANGEROUS, EmergencyLock
 from groundstation.vehicles.requests import RequestReport, RequestState
+from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.contact import Job, VehicleContact
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.output import Output
@@ -37,7 +38,7 @@ def _stop_all(what: str, done: str, build: BuildJob) -> Run:
         while True:
             for each in session.of_others():
                 system = each.vehicle.system
-                if system not in codes and options.vehicle in (None, system):
+                if system not in codes and is_chosen(options.vehicle, system, each.vehicle.fleet_name):
                     codes[system] = asyncio.ensure_future(_stop(each, within, output))
             known = len(session.core.contacts)
             if options.vehicle or not await session.wait_for(

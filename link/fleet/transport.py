@@ -19,8 +19,9 @@ from link.fleet.keys import FleetKeys, read_frame
 from link.fleet.presence import Presence
 from link.fleet.roles import needed_role
 from link.fleet.session import FleetSession
-from link.protocol.frame import read_header
+from link.protocol.frame import Frame, read_header
 from link.protocol.link_events import CONNECTING
+from link.signing.role import Role
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 log = logging.getLogger(__name__)
@@ -45,7 +46,7 @@ class FleetTransport:
         """Frames dropped because their key names another message, role or sender."""
         self._refused_key = ""
         """The newest key of such a frame that was not reported yet."""
-        self._role = config.operator_role
+        self._role, self._name = config.operator_role, config.name
         me = None if is_vehicle else f"{config.name}/{secrets.token_hex(4)}"
         self._keys = FleetKeys(endpoint.fleet, endpoint.vehicle, me)
         self._session = FleetSession(config, self._keys, self)
@@ -79,6 +80,11 @@ class FleetTransport:
             self._send_frame(data[:size], str(address))
             data = data[size:]
 
+    def refusal(self, data: bytes) -> str | None:
+        """Return which role this program lacks to send a frame; None if it may, or its role is not known."""
+        frame = read_frame(data) if self._role not in (None, Role.SET_UP) else None
+        return None if frame is None else self._role_missing(frame)
+
     def outlet(self, address: Hashable) -> Outlet | None:
         """Return None: a session cannot be handed to another process."""
         return None
@@ -95,11 +101,19 @@ class FleetTransport:
         if frame is None:
             self._unsent += 1
             return
-        if self._keys.me and self._role is not None and needed_role(frame) > self._role:
-            self._say(f"a message was not sent: the certificate may {self._role.word} only", f"{frame[0]}")
+        if why := self._role_missing(frame):
+            self._say(f"a message was not sent: {why}", f"{frame[0]}")
             self._unsent += 1
         elif not self._session.publish(self._keys.place(frame, address), data):
             self._unsent += 1
+
+    def _role_missing(self, frame: Frame) -> str | None:
+        if not self._keys.me or self._role is None:
+            return None
+        needed = needed_role(frame)
+        if needed <= self._role:
+            return None
+        return f"the certificate of {self._name} may {self._role.word} only; ask for the role {needed.word}"
 
     # ---- from threads of Zenoh ----
 

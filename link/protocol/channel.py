@@ -39,8 +39,8 @@ class Channel:
     the core handles (None: all); others are counted and not decoded. `target`: the address that the user named, for
     links that send first. `capacity`: bytes/s that the link carries, where known. `sent`: shared by all channels.
     `downloads`: files may come faster than other messages; a vehicle serves them and expects requests only.
-    `places`: peers at once. `first_sequence`: packet sequence of the first frame to each. `guard`: verifies and signs;
-    None: frames are neither verified nor signed.
+    `places`: peers at once. `first_sequence`: packet sequence of the first frame to each. `named`: an address is the
+    name of its program in a fleet. `guard`: verifies and signs; None: frames are neither verified nor signed.
     """
 
     def __init__(
@@ -58,6 +58,7 @@ class Channel:
         places: int = MAX_PEERS,
         first_sequence: int = 0,
         downloads: bool = False,
+        named: bool = False,
         guard: SigningGuard | None = None,
     ) -> None:
         self.name = name
@@ -74,7 +75,7 @@ class Channel:
         self._wanted = wanted
         self._rate_class = _RATE_CLASS_OF_STATIONS if downloads else _RATE_CLASS
         self._new_peer_framer = Framer(stream=False)
-        self._peers = PeerTable(index, stream=stream, places=places, first_sequence=first_sequence)
+        self._peers = PeerTable(index, stream=stream, places=places, first_sequence=first_sequence, named=named)
         self._bytes_received = 0
         self._duplicates = self._late = self._rate_limited = 0
         self._own_id = False

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable, Iterable, Iterator
 from itertools import count
 
 from dialects.traits import LOG_ONLY
 from link.core import Outgoing, Peer
+from link.endpoint import FLEET_NAME
 from link.protocol.frame import Frame, FramerCounts
 from link.protocol.framer import Framer
 from link.protocol.peer import PeerState
@@ -25,10 +27,13 @@ PEER_SILENCE = 10.0
 class PeerTable:
     """The peers of link `index` by address, at most `places`. `stream`: bytes have no datagram boundaries.
 
-    `first_sequence` is the packet sequence, 0..255, of the first frame to each peer.
+    `first_sequence` is the packet sequence, 0..255, of the first frame to each peer. `named`: an address is the name of
+    its program.
     """
 
-    def __init__(self, index: int, *, stream: bool, places: int = MAX_PEERS, first_sequence: int = 0) -> None:
+    def __init__(
+        self, index: int, *, stream: bool, places: int = MAX_PEERS, first_sequence: int = 0, named: bool = False
+    ) -> None:
         self.past_counts = FramerCounts()
         """Of the peers that have gone."""
         self.refused = 0
@@ -41,6 +46,7 @@ class PeerTable:
         self._stream = stream
         self._places = places
         self._first_sequence = first_sequence
+        self._named = named
         self._states: dict[Hashable, PeerState] = {}
         self._conversations = count()
 
@@ -139,4 +145,10 @@ class PeerTable:
         return PeerState(peer, framer, now, fixed, silent=fixed, sequence=self._first_sequence)
 
     def _new_conversation(self, address: Hashable) -> Peer:
-        return Peer(self._index, address, next(self._conversations))
+        return Peer(self._index, address, next(self._conversations), _name(address) if self._named else "")
+
+
+def _name(address: Hashable) -> str:
+    """Return the name of a program in its fleet; "" for a text that is no name, which may hold anything."""
+    text = str(address)
+    return text if re.fullmatch(FLEET_NAME, text) else ""

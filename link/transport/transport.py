@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Hashable, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import msgspec
 
@@ -68,6 +68,14 @@ class Transport(Protocol):
         """Free the socket or port. Called once."""
 
 
+@runtime_checkable
+class RoleTransport(Protocol):
+    """A transport that knows what this program may send."""
+
+    def refusal(self, data: bytes) -> str | None:
+        """Return why a frame may not be sent, in one line for the user; None if it may."""
+
+
 class Link(msgspec.Struct):
     """A transport and the channel on it."""
 
@@ -77,14 +85,26 @@ class Link(msgspec.Struct):
     """Nothing is ever sent on it."""
     frames_sent: int = 0
     bytes_sent: int = 0
+    refusal: Callable[[bytes], str | None] | None = None
+    """That of a RoleTransport, for a core that wants to know."""
+    _refused: str = ""
 
-    def send(self, data: bytes, address: Hashable) -> None:
-        """Send one frame and count it; on a link that only watches drop it."""
+    def send(self, data: bytes, address: Hashable) -> bool:
+        """Send one frame and count it; return False if it may not be sent, as on a link that only watches."""
         if self.watch_only:
-            return
+            return False
+        if self.refusal is not None and (why := self.refusal(data)):
+            self._refused = why
+            return False
         self.frames_sent += 1
         self.bytes_sent += len(data)
         self.transport.send(data, address)
+        return True
+
+    def pop_refusal(self) -> str:
+        """Return once why a frame was not sent; "" if all were."""
+        refused, self._refused = self._refused, ""
+        return refused
 
     @property
     def endpoint(self) -> Endpoint:

@@ -374,3 +374,29 @@ async def test_what_is_due_before_the_next_tick_is_done_then_and_sent(ground: so
     gaps = [later - earlier for earlier, later in pairwise([core.ticks[0], *core.acts])]
     assert all(gap >= Early.AFTER - 1e-6 for gap in gaps), gaps
     assert len(core.acts) == 3, "and then nothing more is due"
+
+
+async def test_the_core_is_told_what_its_role_does_not_allow() -> None:
+    """Of two links one refuses demands: a message that the other one has taken is not refused."""
+    refused: list[tuple[Message, str]] = []
+    port, other = free_port(), free_port()
+
+    class Listener(Recorder):
+        def handle_refused(self, message: Message, why: str, now: float) -> None:
+            refused.append((message, why))
+
+    async def send(message: Message, *endpoints: str) -> None:
+        runner: list[Runner] = []
+        core = Listener(lambda core: len(core.ticks) >= 3, runner)
+        links = open_links(endpoints, system=255, component=190)
+        links[0].refusal = lambda data: "may not" if data[7] == ManualControl.id else None
+        runner.append(Runner(core, links, period=0.01, route=False))
+        core.outbox.append(Outgoing(message))
+        await runner[0].run()
+
+    steer, beat = ManualControl(1, 100, 0, 0, 0, 0), Heartbeat(6, 8, 0, 0, 4, 3)
+    await send(beat, f"udpout:127.0.0.1:{port}")
+    await send(steer, f"udpout:127.0.0.1:{port}", f"udpout:127.0.0.1:{other}")
+    assert refused == []
+    await send(steer, f"udpout:127.0.0.1:{port}")
+    assert refused == [(steer, "may not")]

@@ -12,6 +12,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.intents.line import RunLine
 from groundstation.station.station import Station
 from groundstation.vehicles.fleet import Contact
+from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.parser import ParsedLine, parse_line
 from groundstation.verbs.line.session import LineOutput, LineSession, here
@@ -65,8 +66,9 @@ class LineDesk:
 
     def _find(self, parsed: ParsedLine, system: int) -> Contact:
         """Return the vehicle: that of --vehicle, or the one that the operator saw. Raises VerbError."""
-        wanted = parsed.options.vehicle or system
-        contact = self._station.fleet.get(wanted) if wanted else self._station.fleet.selected
+        wanted, fleet = parsed.options.vehicle or system, self._station.fleet
+        named = (each for each in fleet if is_chosen(wanted, each.state.system, each.state.fleet_name))
+        contact = next(named, None) if wanted else fleet.selected
         if contact is None:
             raise VerbError(ExitCode.NO_VEHICLE, f"no vehicle {wanted}" if wanted else "no vehicle yet")
         return contact

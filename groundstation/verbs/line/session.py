@@ -84,7 +84,7 @@ class LineSession:
             self._station.handle_intent(intent, self.now)
         self.flush()
 
-    async def need_only_vehicle(self, wanted: int | None) -> None:
+    async def need_only_vehicle(self, wanted: int | str | None) -> None:
         """Do nothing: the operator has chosen the vehicle."""
 
     async def take_part(self) -> None:

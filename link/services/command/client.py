@@ -40,6 +40,8 @@ class CommandOutcome(msgspec.Struct, frozen=True):
     """None: no answer."""
     number: int | None = None
     """MAV_RESULT as received, also one without a name here."""
+    refusal: str = ""
+    """Why it was never sent; its result is DENIED then."""
 
 
 class _Waiting(msgspec.Struct):
@@ -118,6 +120,15 @@ class CommandClient:
         del self._waiting[received.system, message.command]
         known = Result(message.result) if message.result in Result._value2member_map_ else Result.FAILED
         self._outcomes.append(CommandOutcome(waiting.command, waiting.params, received.system, known, message.result))
+
+    def refuse(self, message: Message, why: str) -> None:
+        """End the command that `message` carries: it was not sent, because our role does not allow it."""
+        if not isinstance(message, (CommandLong, CommandInt)):
+            return
+        waiting = self._waiting.pop((message.target_system, message.command), None)
+        if waiting is not None:
+            outcome = CommandOutcome(waiting.command, waiting.params, message.target_system, Result.DENIED, refusal=why)
+            self._outcomes.append(outcome)
 
     def tick(self, now: float) -> None:
         """Repeat overdue commands; give up those repeated TRIES times."""

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from dialects import messages as m
 from link.endpoint import Side, parse_endpoint
-from link.fleet.config import SETTINGS, apply_settings
+from link.fleet.config import SETTINGS, apply_settings, load_config
 from link.fleet.transport import FleetTransport, open_fleet
 from tests.link.frames import demand, frame, heartbeat
 from tests.ports import free_port
@@ -138,3 +138,24 @@ async def test_an_address_where_nothing_is(rest: str) -> None:
     end.transport.close()
     assert time.monotonic() - begun < 2.0
     assert json.dumps(end.received) == "[]"
+
+
+async def test_a_role_refuses_what_it_does_not_allow(port: int) -> None:
+    endpoint = replace(parse_endpoint(f"zenoh:tcp/127.0.0.1:{port}/farm"), side=Side.GROUND_STATION)
+    config = replace(load_config(endpoint), name="alice")
+
+    def refusal(role: str | None, data: bytes, *, is_vehicle: bool = False) -> str | None:
+        return FleetTransport(endpoint, replace(config, role=role), is_vehicle=is_vehicle).refusal(data)
+
+    parameter = frame(m.ParamSet(1, 1, b"A", 1.0, 9), 1)
+    assert refusal("watch", demand(0)) == "the certificate of alice may watch only; ask for the role drive"
+    assert refusal("drive", parameter) == "the certificate of alice may drive only; ask for the role setup"
+    allowed = [
+        ("watch", heartbeat(0)),
+        ("drive", demand(0)),
+        ("setup", parameter),
+        (None, parameter),
+        ("watch", b"no frame"),
+    ]
+    assert [refusal(role, data) for role, data in allowed] == [None] * len(allowed)
+    assert refusal("vehicle", demand(0), is_vehicle=True) is None

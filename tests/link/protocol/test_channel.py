@@ -496,3 +496,11 @@ def test_of_too_many_sources_at_one_address_no_numbers_are_kept() -> None:
     assert len(channel.receive(heartbeat(0, system=200), HERE, 0.1)) == 1
     assert len(channel.receive(heartbeat(0, system=200), HERE, 0.2)) == 1  # not known as a repeat
     assert (200, 190) not in channel.report().sources
+
+
+def test_addresses_of_a_fleet_are_names() -> None:
+    for address, name in (("rover1", "rover1"), ("alice/3f2a", ""), ("[b]", "")):
+        channel = Channel("zenoh:x", 0, system=255, component=190, stream=True, named=True)
+        assert [each.peer.name for each in channel.receive(heartbeat(0, 1, 1), address, 0.0)] == [name]
+    channel = Channel("tcpin:x", 0, system=255, component=190, stream=True)
+    assert [each.peer.name for each in channel.receive(heartbeat(0, 1, 1), "rover1", 0.0)] == [""]
