@@ -8,6 +8,7 @@ lines to publish, {"topic", "type", "values"}; a header is [microseconds, frame]
     {"ready": name, "master": uri}       it subscribes now
     {"topic", "from", "at", "values"}    a message, with the name of its publisher and time.monotonic()
     {"topic", "publishers": n}           how many publishers are connected, when that has changed
+    {"silent": bool, "master": uri}      the master has not answered for SILENT_AFTER, or does again
     {"lost": text}                       the master has ended, or another node has its name; it ends
 
 It ends with stdin. It also ends when its master does, because rospy does not register with the next one.
@@ -30,6 +31,8 @@ LOOK_PERIOD = 0.05
 """s between two looks at the connections: how fast the end of a publisher's process is noticed."""
 MASTER_PERIOD = 0.25
 """s between two questions to the master."""
+SILENT_AFTER = 2.0
+"""s without an answer after which the master counts as frozen: on a busy machine it takes 0.5 s."""
 END_WITHIN = 0.5
 """s to sign off at the master."""
 PUBLISHED = ("nav_msgs/Odometry", "sensor_msgs/Imu")
@@ -74,6 +77,30 @@ class Master:
         return "" if process == self._process else f"{self.uri} was restarted"
 
 
+class MasterWatch:
+    """Asks the master again and again in a thread of its own: one that stands still never answers."""
+
+    def __init__(self, master: Master) -> None:
+        self._master = master
+        self._asked: float | None = None
+        self.problem: str | None = None
+        """What is wrong with it, '' if nothing is; None before its first answer."""
+        threading.Thread(target=self._ask, daemon=True).start()
+
+    @property
+    def silent(self) -> bool:
+        """It does not answer."""
+        asked = self._asked
+        return asked is not None and time.monotonic() - asked > SILENT_AFTER
+
+    def _ask(self) -> None:
+        while True:
+            self._asked = time.monotonic()
+            self.problem = self._master.problem()
+            self._asked = None
+            time.sleep(MASTER_PERIOD)
+
+
 def find_class(name: str) -> Any:
     """Return the class of a type, e.g. "std_msgs/String". Raises ImportError."""
     package, _, kind = name.partition("/")
@@ -105,7 +132,8 @@ class Node:
     """Subscribes and publishes until the parent, the master or the node ends."""
 
     def __init__(self, rospy: Any, pipe: Pipe, master: Master) -> None:
-        self._rospy, self._pipe, self._master = rospy, pipe, master
+        self._rospy, self._pipe = rospy, pipe
+        self._uri, self.master = master.uri, MasterWatch(master)
         self._publishers: dict[str, tuple[Any, Any]] = {}
         self._subscribers: dict[str, Any] = {}
 
@@ -141,16 +169,25 @@ class Node:
             self._publishers[topic] = self._rospy.Publisher(topic, kind, queue_size=1), kind
         return self._publishers[topic]
 
+    def wait_for_master(self) -> None:
+        """Wait until the master answers."""
+        told = False
+        while self.master.problem != "":
+            if not told and (self.master.problem or self.master.silent):
+                self._pipe.write(waiting=self._uri)
+                told = True
+            time.sleep(LOOK_PERIOD)
+
     def watch(self) -> str:
         """Look at the master and the connections; return why the node cannot go on."""
-        due = 0.0
+        silent = False
         counts: dict[str, int] = {}
         while not self._rospy.is_shutdown():
-            if time.monotonic() >= due:
-                problem = self._master.problem()
-                if problem:
-                    return problem
-                due = time.monotonic() + MASTER_PERIOD
+            if self.master.problem:
+                return self.master.problem
+            if self.master.silent != silent:
+                silent = not silent
+                self._pipe.write(silent=silent, master=self._uri)
             for topic, subscriber in self._subscribers.items():
                 count = subscriber.get_num_connections()
                 if counts.get(topic) != count:
@@ -181,23 +218,13 @@ def main() -> int:
     master = Master(rosgraph)
     node = Node(rospy, pipe, master)
     threading.Thread(target=node.publish, daemon=True).start()
-    wait_for(master, pipe)
+    node.wait_for_master()
     rospy.init_node(name, disable_signals=True)
     for topic, kind in topics:
         node.subscribe(topic, kind)
     pipe.write(ready=rospy.get_name(), master=master.uri)
     pipe.write(lost=node.watch())
     os._exit(1)  # threads of rospy may wait for the master
-
-
-def wait_for(master: Master, pipe: Pipe) -> None:
-    """Wait until the master answers."""
-    told = False
-    while master.problem():
-        if not told:
-            pipe.write(waiting=master.uri)
-            told = True
-        time.sleep(MASTER_PERIOD)
 
 
 if __name__ == "__main__":

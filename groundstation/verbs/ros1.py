@@ -32,6 +32,7 @@ REJOIN_AFTER = 0.5
 LATE = 0.25
 """s after its arrival at the node for which a message counts: what waited longer, because this program stood still, is
 not what its publisher wants now."""
+SILENT = "does not answer: publishers that are connected still drive, new ones are not heard"
 INSTALL = (
     "apt install python3-rospy python3-geometry-msgs python3-sensor-msgs python3-nav-msgs (Debian), "
     "or source the setup.bash of ROS; --python names another interpreter"
@@ -129,6 +130,8 @@ class Ros1:
                 telemetry.ready = True
                 self._ready.set()
                 note(f"{self._session.vehicle.name} is {name} at {uri}: publish to command or cmd_vel")
+            case {"silent": bool(silent), "master": str(uri)}:
+                note(f"the ROS master at {uri} {SILENT if silent else 'answers again'}")
             case {"lost": str(text)}:
                 note(f"the node has left ROS: {text}; neutral")
                 return False

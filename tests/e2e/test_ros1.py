@@ -67,7 +67,20 @@ def test_keys_and_twists_drive_until_their_publisher_ends(rig: Rig) -> None:
 
 
 def test_the_wheels_stop_when_a_program_between_them_is_killed(rig: Rig) -> None:
-    """The master, without which nobody hears of a new publisher; the process with rospy; this program."""
+    """The master, without which nobody hears of a new publisher; the process with rospy; this program.
+
+    A frozen master is reported, and a publisher that is killed meanwhile stops the wheels all the same.
+    """
+    node = rig.command_node()
+    rig.drives(node)
+    os.kill(rig.core.master, signal.SIGSTOP)
+    rig.station.says("does not answer")
+    wait_until(rig.vehicle.turning, "its publisher drives on")
+    node.program.kill()
+    rig.stops()
+    os.kill(rig.core.master, signal.SIGCONT)
+    rig.station.says("answers again")
+
     rig.drives(rig.command_node())
     os.kill(rig.core.master, signal.SIGKILL)
     rig.stops()
