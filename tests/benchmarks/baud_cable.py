@@ -4,7 +4,7 @@ A byte arrives after the wire time of everything before it and its own. What the
 pty, as in the driver of a real port. SIGUSR1 turns a second ground station on that line on and off: it requests bulk
 data again and again (line_load.py), between the frames of the first. Each time the cable prints its totals.
 
-Usage: python -m tests.benchmarks.baud_cable PATH_OF_VEHICLE PATH_OF_GROUND BAUD
+Usage: python -m tests.benchmarks.baud_cable PATH_OF_VEHICLE PATH_OF_GROUND BAUD NOISE (0..1)
 """
 
 from __future__ import annotations
@@ -12,19 +12,28 @@ from __future__ import annotations
 import contextlib
 import os
 import pty
+import random
 import select
 import signal
 import sys
 import time
 import tty
+from collections import deque
+from collections.abc import Callable
 from pathlib import Path
 
+from dialects.messages import RoverOperatorPresence
+from link.protocol.frame import payload_of
+from link.protocol.framer import Framer
 from tests.benchmarks.line_load import Asker
 
 BITS_PER_BYTE = 10
 """8 data bits, one start and one stop bit."""
 CHUNK = 0.001
 """s of wire time that passes in one piece: a wake-up for each byte costs too much, more would blur where frames end."""
+DEMANDS = frozenset({RoverOperatorPresence.id})
+"""Carries a demand to a vehicle of this project, with the time it was made at: only a copy has the same payload."""
+REMEMBERED = 8
 HEAD, FRAME, SIGNATURE = 3, 12, 13
 """Bytes of a MAVLink 2 frame: up to its flags, around its payload, of a signature."""
 
@@ -55,16 +64,43 @@ class Boundary:
                 self._head = b""
 
 
+class Copies:
+    """Counts the bytes of frames that repeat what a frame just before them had: copies of a changed demand."""
+
+    def __init__(self) -> None:
+        self._framer = Framer(stream=True)
+        self._payloads: deque[bytes] = deque(maxlen=REMEMBERED)
+        self._found: deque[tuple[float, int]] = deque()
+        """Time and bytes of those within the last second."""
+        self.most = 0
+        """Bytes within any second, since this was last set to 0."""
+
+    def follow(self, data: bytes, now: float) -> None:
+        """Follow these bytes."""
+        for message_id, *_, raw in self._framer.feed(data, now):
+            if message_id not in DEMANDS:
+                continue
+            payload = bytes(payload_of(raw))
+            if payload in self._payloads:
+                self._found.append((now, len(raw)))
+            self._payloads.append(payload)
+        while self._found and now - self._found[0][0] >= 1.0:
+            self._found.popleft()
+        self.most = max(self.most, sum(size for _, size in self._found))
+
+
 class Direction:
     """One direction of the cable: from one descriptor to another, one piece in transit at a time."""
 
-    def __init__(self, source: int, target: int, rate: float) -> None:
-        """`rate`: bytes/s."""
+    def __init__(self, source: int, target: int, rate: float, spoilt: Callable[[], bool]) -> None:
+        """`rate`: bytes/s. `spoilt` returns whether noise spoils the next piece."""
         self.source = source
         self.passed = 0
         """Bytes since the totals were last read."""
         self.extra = b""
         """Frames of the second station that wait for a gap between two frames of the first."""
+        self.copies = Copies()
+        self._spoilt = spoilt
         self._target = target
         self._rate = rate
         self._chunk = max(1, int(rate * CHUNK))
@@ -96,6 +132,10 @@ class Direction:
 
     def _hand_over(self) -> None:
         self.passed += len(self._flying)
+        if not self._from_extra:
+            self.copies.follow(self._flying, self._due)
+        if self._spoilt():
+            self._flying = bytes([self._flying[0] ^ 0x55]) + self._flying[1:]
         with contextlib.suppress(BlockingIOError):  # no program reads there: a UART would have lost it, too
             os.write(self._target, self._flying)
         self._flying = b""
@@ -115,16 +155,20 @@ class Direction:
 class BaudCable:
     """Both directions and the second station, in one loop."""
 
-    def __init__(self, vehicle: int, ground: int, rate: float) -> None:
-        self._down = Direction(vehicle, ground, rate)
-        self._up = Direction(ground, vehicle, rate)
+    def __init__(self, vehicle: int, ground: int, rate: float, noise: float) -> None:
+        """`noise`: part of the pieces of CHUNK that are spoilt, 0..1."""
+        chance = random.Random(1)
+        self._down, self._up = (
+            Direction(*ends, rate, lambda: chance.random() < noise) for ends in ((vehicle, ground), (ground, vehicle))
+        )
         self._asker: Asker | None = None
 
     def toggle(self) -> None:
-        """Turn the second station on or off; print the time in ns and the bytes down and up since the last time."""
+        """Turn the second station on or off; print the time in ns and what passed since the last time: the bytes down
+        and up, and the most of copies up within a second."""
         self._asker = None if self._asker else Asker()
-        print("passed", time.monotonic_ns(), self._down.passed, self._up.passed, flush=True)
-        self._down.passed = self._up.passed = 0
+        print("passed", time.monotonic_ns(), self._down.passed, self._up.passed, self._up.copies.most, flush=True)
+        self._down.passed = self._up.passed = self._up.copies.most = 0
 
     def run(self) -> None:
         """Run until killed."""
@@ -150,13 +194,13 @@ def _end(path: Path) -> int:
     return ours  # the other end stays open, too, so that programs can come and go
 
 
-def main(vehicle: str, ground: str, baud: str) -> None:
+def main(vehicle: str, ground: str, baud: str, noise: str) -> None:
     """Run until killed."""
-    cable = BaudCable(_end(Path(vehicle)), _end(Path(ground)), int(baud) / BITS_PER_BYTE)
+    cable = BaudCable(_end(Path(vehicle)), _end(Path(ground)), int(baud) / BITS_PER_BYTE, float(noise))
     signal.signal(signal.SIGUSR1, lambda *_: cable.toggle())
     print("cable ready", flush=True)
     cable.run()
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:4])
+    main(*sys.argv[1:5])

@@ -13,7 +13,7 @@ from statistics import median
 
 from dialects import messages as m
 from dialects.enums import Autopilot, SystemState, VehicleType
-from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table
+from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, brief
 from tests.benchmarks.procfs import cpu_seconds, family
 from tests.benchmarks.programs import free_port, on_pipe, python
 from tests.benchmarks.traffic import framed, mix
@@ -91,17 +91,22 @@ class Vehicle:
 def run(options: Options) -> Report:
     """Measure round by round, the counts in turn."""
     costs = {count: Cost() for count in COUNTS}
-    for number in range(ROUNDS):
+    for turn in range(ROUNDS):
         for count in COUNTS:
-            options.say(f"bridge_stations: round {number + 1} of {ROUNDS}, {count} stations")
+            options.say(f"bridge_stations: round {turn + 1} of {ROUNDS}, {count} stations")
             _measure(costs[count], count, QUICK_WINDOW if options.quick else WINDOW)
     note = f"A vehicle sends {RATE} messages/s, which go to all. CPU: 100 % is one core."
     table = Table("bridge with ground stations on UDP", [_row(*each) for each in costs.items()], note)
-    share = [median(cost.share) for cost in costs.values()]
+    shares = [(count, median(cost.share)) for count, cost in costs.items()]
+    beside = [f"to one of {count}, {brief(share)} us" for count, share in shares]
+    cpu = f"with {COUNTS[0]}, {brief(median(costs[COUNTS[0]].cpu))} %"
     most = COUNTS[-1]
     goals = [
-        Goal(f"bridge, CPU with {most} stations", median(costs[most].cpu), HALF_A_CORE, "%"),
-        Goal(f"bridge, a message to one of {most} stations / to the only one", share[-1] / share[0], 1.0, "x"),
+        Goal(f"bridge, CPU with {most} stations", median(costs[most].cpu), HALF_A_CORE, "%", reference=cpu),
+        *(
+            Goal(f"bridge, CPU of a message to one of {more} stations", ours / theirs, 1.0, "x", False, text)
+            for (more, ours), theirs, text in zip(shares[1:], [each for _, each in shares], beside, strict=False)
+        ),
         *(Goal(f"{count} stations, reached", min(costs[count].reached), count, "", True) for count in COUNTS),
     ]
     return Report([table], goals)

@@ -22,7 +22,7 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
-from tests.benchmarks.figures import BenchmarkError
+from tests.benchmarks.figures import BenchmarkSkippedError
 from tests.benchmarks.programs import python
 
 RUN, PERIOD = 0.0005, 0.005
@@ -55,10 +55,10 @@ def whole_core(pid: int) -> Iterator[Begin]:
 
 @contextmanager
 def kernel_quota(pid: int) -> Iterator[Begin]:
-    """Move the process into a group with a quota. Raises BenchmarkError where that is not allowed."""
+    """Move the process into a group with a quota. Raises BenchmarkSkippedError where that is not allowed."""
     parent = next((each for each in CGROUPS if (each / "cgroup.procs").exists()), None)
     if parent is None:
-        raise BenchmarkError("no control groups for CPU under /sys/fs/cgroup")
+        raise BenchmarkSkippedError("no control groups for CPU under /sys/fs/cgroup")
     group = parent / f"mavhelm-bench-{pid}"
     try:
         group.mkdir()
@@ -66,7 +66,7 @@ def kernel_quota(pid: int) -> Iterator[Begin]:
     except OSError as error:
         with suppress(OSError):
             group.rmdir()
-        raise BenchmarkError(f"{group}: {error.strerror}; a CPU quota needs root") from error
+        raise BenchmarkSkippedError(f"{group}: {error.strerror}; a CPU quota needs root") from error
     try:
         yield partial(_set_quota, group)
     finally:
@@ -85,7 +85,7 @@ def _set_quota(group: Path) -> None:
 
 @contextmanager
 def slices(pid: int) -> Iterator[Begin]:
-    """Stop and continue the process from another one. Raises BenchmarkError if that did not begin."""
+    """Stop and continue the process from another one. Raises BenchmarkSkippedError if that did not begin."""
     with subprocess.Popen(
         python("tests.benchmarks.cpu_quota", str(pid)), stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0
     ) as child:
@@ -93,7 +93,9 @@ def slices(pid: int) -> Iterator[Begin]:
         assert child.stdout is not None
         try:
             if not child.stdout.readline():
-                raise BenchmarkError("the process that stops and continues the vehicle did not begin; it needs root")
+                raise BenchmarkSkippedError(
+                    "the process that stops and continues the vehicle did not begin; it needs root"
+                )
             yield partial(child.stdin.write, b"\n")
         finally:
             child.terminate()

@@ -58,21 +58,13 @@ class Goal:
     unit: str
     at_least: bool = False
     """True if the measured value must be at least `limit`, else at most."""
+    reference: str = ""
+    """What it is beside in the same run, with its figure."""
 
     @property
     def met(self) -> bool:
         """Return whether this run meets the goal."""
         return self.measured >= self.limit if self.at_least else self.measured <= self.limit
-
-    def row(self) -> Row:
-        """Return the goal as a row of a table."""
-        sign = ">=" if self.at_least else "<="
-        return {
-            "goal": self.what,
-            "measured": self.measured,
-            "limit": f"{sign} {self.limit:g} {self.unit}".rstrip(),
-            "met": "yes" if self.met else "NO",
-        }
 
 
 @dataclass(slots=True)
@@ -113,5 +105,21 @@ class Options:
     """Seeds for the noise of simulated sensors."""
 
 
+def brief(value: Any) -> str:
+    """Format with three significant digits: more than a shared machine repeats. None is a dash."""
+    if value is None:
+        return "-"
+    if not isinstance(value, float):
+        return f"{value:,}" if isinstance(value, int) else str(value)
+    if value == 0.0 or not 1e-3 <= abs(value) < 1e15:
+        return f"{value:.3g}"
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:,.0f}" if abs(rounded) >= 100 else f"{rounded:.3g}"
+
+
 class BenchmarkError(Exception):
     """A benchmark could not run; the message is one line with the reason."""
+
+
+class BenchmarkSkippedError(BenchmarkError):
+    """This machine or this user lacks what a benchmark needs; the message names it."""

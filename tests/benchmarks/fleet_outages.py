@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import ExitStack
 
-from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table
+from tests.benchmarks.figures import BenchmarkSkippedError, Goal, Options, Report, Row, Table
 from tests.benchmarks.programs import scratch
 from tests.e2e.fleet_driver import ROUTERS, VEHICLE, Fleet, Outage
 from tests.e2e.namespaces import Namespaces, why_not
@@ -58,7 +58,7 @@ OUTAGES: dict[str, _Suffer] = {
 def run(options: Options) -> Report:
     """Go through each outage over each transport."""
     if reason := why_not():
-        raise BenchmarkError(reason)
+        raise BenchmarkSkippedError(reason)
     found: dict[tuple[str, str], Outage] = {}
     for transport, quic in TRANSPORTS.items():
         with scratch() as folder, ExitStack() as stack:
@@ -86,7 +86,7 @@ def _report(found: dict[tuple[str, str], Outage]) -> Report:
     ]
     outages = found.values()
     goals = [
-        Goal("outages after which kept demands moved the wheels", float(sum(each.moved for each in outages)), 0, ""),
+        Goal("outages after which kept demands moved the wheels", sum(each.moved for each in outages), 0, ""),
         Goal("first frame to obeyed, worst", max(each.obeyed for each in outages), BACK_WITHIN, "s"),
     ]
     note = (

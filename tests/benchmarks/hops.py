@@ -21,13 +21,13 @@ from itertools import pairwise
 from pathlib import Path
 
 from groundstation.ui.panes import PANES
-from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Spread, Table, spread
+from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Spread, Table, brief, spread
 from tests.benchmarks.key_to_motor import BARE, CONTENDERS, LOST_AFTER, OURS_WIDE, Outcome, Rig, running
 from tests.benchmarks.machine import ROOT
 from tests.benchmarks.procfs import family
 from tests.benchmarks.programs import Program, scratch
 
-KEYS, QUICK_KEYS = 100, 12
+KEYS, QUICK_KEYS = 60, 12
 """Keys for each pane."""
 SETTLE = 0.3
 """s from the key that changes the pane to the next one."""
@@ -91,11 +91,11 @@ def run(options: Options) -> Report:
         alone = stack.enter_context(_before_all_others(ours, bare))
         for pane in PANES:
             options.say(f"hops: pane {pane.id}")
-            for number in range(QUICK_KEYS if options.quick else KEYS):
+            for count in range(QUICK_KEYS if options.quick else KEYS):
                 ours.settle(chance)
-                pressed += _press(ours, number, totals[pane.id])
+                pressed += _press(ours, count, totals[pane.id])
                 bare.watch.pause(chance.uniform(0.02, 0.1))
-                _press(bare, number, totals[BARE])
+                _press(bare, count, totals[BARE])
             ours.ground.type(b"v")
             ours.watch.pause(SETTLE)
         stack.close()
@@ -106,10 +106,10 @@ def run(options: Options) -> Report:
     return _report(totals, found, alone=alone)
 
 
-def _press(rig: Rig, number: int, outcome: Outcome) -> list[tuple[int, int]]:
+def _press(rig: Rig, count: int, outcome: Outcome) -> list[tuple[int, int]]:
     """Press a key that changes the motors; return when it was pressed and when they changed, ns."""
     keys = rig.next_keys()
-    stamp = _inject(rig.ground, keys[number // 2 % len(keys)])
+    stamp = _inject(rig.ground, keys[count // 2 % len(keys)])
     change = rig.feed.after(stamp, LOST_AFTER)
     if change is None:
         outcome.lost += 1
@@ -176,8 +176,8 @@ def _before_all_others(*rigs: Rig) -> Iterator[bool]:
 
 def _report(totals: Mapping[str, Outcome], hops: list[list[float]], *, alone: bool) -> Report:
     spreads = {name: spread(outcome.latencies) for name, outcome in totals.items()}
-    bare, first = spreads[BARE], spreads[PANES[0].id]
-    busiest = max((spreads[pane.id] for pane in PANES), key=lambda each: each.p99)
+    bare, mine = spreads[BARE], max((spreads[pane.id] for pane in PANES), key=lambda each: each.p99)
+    p50, p99 = f"bare pair, {brief(bare.p50)} ms", f"bare pair, {brief(bare.p99)} ms"
     shown = [_row("hop", text, spread([[each[at] for each in hops]])) for at, (_, text) in enumerate(HOPS)]
     panes = [
         _row("pane", name, each) | {"keys": each.samples, "lost": totals[name].lost} for name, each in spreads.items()
@@ -189,9 +189,10 @@ def _report(totals: Mapping[str, Outcome], hops: list[list[float]], *, alone: bo
             Table("Key to motor with each pane of Drive, ms, at 140x45", panes),
         ],
         [
-            Goal("key to motor, busiest pane / bare pair, p50", busiest.p50 / bare.p50, 2, "x"),
-            Goal("key to motor, busiest pane / bare pair, p99", busiest.p99 / bare.p99, 3, "x"),
-            Goal("key to motor, busiest pane / first pane, p99", busiest.p99 / first.p99, 2, "x"),
+            Goal(
+                "before all others: pane with the longest p99 / bare pair, p50", mine.p50 / bare.p50, 2, "x", False, p50
+            ),
+            Goal("the same, p99", mine.p99 / bare.p99, 3, "x", False, p99),
         ],
     )
 

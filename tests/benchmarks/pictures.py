@@ -12,7 +12,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.tables import number
+from tests.benchmarks.figures import brief
 
 WIDTH, HEIGHT = 640, 360
 LEFT, RIGHT, TOP, BOTTOM = 70, 30, 60, 60
@@ -73,7 +73,7 @@ def caption(run: Mapping[str, Any]) -> str:
 def draw(picture: Picture, points: Sequence[tuple[float, float]], below: str) -> str:
     """Return the SVG of some points, each x and y above 0."""
     xs, ys = _Scale([x for x, _ in points], LEFT, WIDTH - RIGHT), _Scale([y for _, y in points], HEIGHT - BOTTOM, TOP)
-    spoken = "; ".join(f"{number(x)} {picture.x_label}: {number(y)} %" for x, y in points)
+    spoken = "; ".join(f"{brief(x)} {picture.x_label}: {brief(y)} %" for x, y in points)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
         'aria-labelledby="title desc" font-family="sans-serif" font-size="13">',
@@ -95,7 +95,7 @@ def draw(picture: Picture, points: Sequence[tuple[float, float]], below: str) ->
     ]
     for x, y in points:
         parts.append(f'<circle cx="{xs.at(x):.1f}" cy="{ys.at(y):.1f}" r="4" fill="{LINE}"/>')
-        parts.append(_text(xs.at(x), ys.at(y) - 9, number(y)))
+        parts.append(_text(xs.at(x), ys.at(y) - 9, brief(y)))
     return "\n".join([*parts, "</svg>", ""])
 
 

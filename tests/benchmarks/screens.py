@@ -8,7 +8,7 @@ from statistics import median
 
 from groundstation.screens import SCREENS
 from groundstation.ui.panes import PANES
-from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, spread
+from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, brief, spread
 from tests.benchmarks.key_to_motor import CONTENDERS, OURS_WIDE, Outcome, Rig, running
 
 TITLES = {
@@ -20,7 +20,7 @@ TITLES = {
 
 GO_TO, DRIVE = b"\x07", b"\x1bOP"
 MENU_TITLE, DRIVE_TITLE = "go to", "motion"
-CHANGES, QUICK_CHANGES = 10, 2
+CHANGES, QUICK_CHANGES = 6, 2
 """Openings of each screen in each round, with the first one."""
 KEYS, QUICK_KEYS = 70, 8
 """Keys for each pane in each round: of 210 the third longest is the p99."""
@@ -35,8 +35,8 @@ def run(options: Options) -> Report:
     changes: dict[str, list[list[float]]] = {name: [] for name in TITLES}
     firsts: dict[str, list[float]] = {name: [] for name in TITLES}
     panes = {pane.id: Outcome([]) for pane in PANES}
-    for number in range(ROUNDS):
-        options.say(f"screens: round {number + 1} of {ROUNDS}")
+    for turn in range(ROUNDS):
+        options.say(f"screens: round {turn + 1} of {ROUNDS}")
         with running(CONTENDERS[OURS_WIDE]) as rig:
             rig.arm()
             for pane in PANES:
@@ -90,9 +90,17 @@ def _report(firsts: dict[str, list[float]], changes: dict[str, list[list[float]]
     ]
     first = driven[PANES[0].id]
     busiest = max(driven.values(), key=lambda each: each.p99)
+    slowest = max(opened, key=lambda name: opened[name].p50)
     goals = [
-        Goal("the slowest screen, key to first picture, p50", max(each.p50 for each in opened.values()), 100, "ms"),
-        Goal("key to motor with the busiest pane / with the first one, p99", busiest.p99 / first.p99, 2, "x"),
+        Goal(f"key to first picture of the slowest screen, {slowest}, p50", opened[slowest].p50, 100, "ms"),
+        Goal(
+            "key to motor with the busiest pane, p99",
+            busiest.p99 / first.p99,
+            2,
+            "x",
+            reference=f"first pane, {brief(first.p99)} ms",
+        ),
+        Goal("keys lost with all panes", sum(each.lost for each in panes.values()), 0, "keys"),
     ]
     return Report(
         [

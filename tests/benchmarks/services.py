@@ -109,7 +109,7 @@ def _on_wire(options: Options, report: Report) -> None:
         folder, watch = stack.enter_context(scratch()), Watch()
         stack.callback(watch.close)
         ends = folder / "vehicle", folder / "ground"
-        cable = on_pipe(watch, python("tests.benchmarks.baud_cable", *map(str, ends), str(BAUD)))
+        cable = on_pipe(watch, python("tests.benchmarks.baud_cable", *map(str, ends), str(BAUD), "0"))
         stack.callback(cable.end)
         cable.wait_for("cable ready", 20)
         stack.enter_context(_vehicle(watch, folder, size, f"serial:{ends[0]}:{BAUD}"))

@@ -12,7 +12,7 @@ from itertools import cycle
 from statistics import median
 from unittest.mock import patch
 
-from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table, quantile
+from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table, brief, quantile
 from tests.benchmarks.programs import Program, free_port, on_pipe, python, scratch
 from tests.benchmarks.watch import Watch
 
@@ -38,8 +38,8 @@ def run(options: Options) -> Report:
     rounds = QUICK_ROUNDS if options.quick else ROUNDS
     samples: Samples = {}
     with _ways() as ways:
-        for number in range(rounds):
-            options.say(f"verb: round {number + 1} of {rounds}")
+        for turn in range(rounds):
+            options.say(f"verb: round {turn + 1} of {rounds}")
             _measure_round(samples, ways)
     return _report(samples)
 
@@ -115,7 +115,7 @@ def _report(samples: Samples) -> Report:
         for (name, way), each in samples.items()
     ]
     goals = [
-        Goal(f"{name}, {way}, p50", median(each), LIMITS[way], "s")
+        Goal(f"{name}, {way}, p50", median(each), LIMITS[way], "s", reference=f"{PYTHON}, {brief(bare)} s")
         for (name, way), each in samples.items()
         if way in LIMITS
     ]
