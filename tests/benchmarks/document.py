@@ -33,9 +33,10 @@ def _head(run: Mapping[str, Any]) -> Iterator[str]:
     loads = f"load {machine['load_before']} before and {machine.get('load_after', '?')} after"
     yield f"{kind}, {machine['date'][:16].replace('T', ' ')}, commit {machine['commit']}, {took:.0f} minutes, {loads}."
     yield f"{machine['cpu']}, {machine['cores']} cores, {machine['system']}, Python {machine['python']}."
+    yield ""
     for word, reasons in (("Not run", run["failed"]), ("Left out", run["skipped"]), ("Run again", run["again"])):
         for name, reason in reasons.items():
-            yield f"{word}: `{name}`, {' '.join(reason.split())}."
+            yield f"- {word}: `{name}`, {' '.join(reason.split())}."
 
 
 def _summary(run: Mapping[str, Any]) -> Iterator[str]:

@@ -19,8 +19,9 @@ from tests.benchmarks.station import Station
 from tests.benchmarks.traffic import framed
 
 ITEMS = 200
-LOG_NAME = "00000001.tlog"
+LOG_NAME, DRIVEN_LOG = "00000001.tlog", "00000002.tlog"
 PARAMS, UPLOAD, DOWNLOAD, FILE = "parameter list", f"mission of {ITEMS}, up", f"mission of {ITEMS}, down", "log"
+DRIVEN_FILE = "log while somebody drives"
 RELATIVE_ALTITUDE = 6
 """MAV_FRAME_GLOBAL_RELATIVE_ALT_INT"""
 WITHIN = 1200.0
@@ -67,11 +68,11 @@ async def download(station: Station, times: Times) -> None:
     await _mission_job(station, times, DOWNLOAD, lambda: station.missions.download(MissionType.MISSION, _now()))
 
 
-async def fetch_log(station: Station, times: Times, size: int) -> None:
-    """Download the log of `size` bytes."""
-    with _clocked(times, FILE):
-        station.files.download(f"/logs/{LOG_NAME}", _now())
-        await station.until(lambda: not station.files.busy, FILE, WITHIN)
+async def fetch_log(station: Station, times: Times, size: int, job: str = FILE, name: str = LOG_NAME) -> None:
+    """Download a log of `size` bytes."""
+    with _clocked(times, job):
+        station.files.download(f"/logs/{name}", _now())
+        await station.until(lambda: not station.files.busy, job, WITHIN)
     (outcome,) = station.files.outcomes()
     if len(outcome.data) != size:
         raise BenchmarkError(f"{len(outcome.data)} of {size} bytes of the log came: {outcome.error}")

@@ -16,14 +16,15 @@ from statistics import median
 
 from tests.benchmarks import service_jobs as jobs
 from tests.benchmarks.baud_cable import BITS_PER_BYTE
-from tests.benchmarks.figures import ROUNDS, Goal, Options, Report, Table
+from tests.benchmarks.driven_download import LOG_SIZE, QUICK_LOG_SIZE, Part, drive, judge
+from tests.benchmarks.figures import ROUNDS, Goal, Options, Report, Table, brief
 from tests.benchmarks.programs import free_port, on_pipe, python, scratch
 from tests.benchmarks.station import Station, connected
 from tests.benchmarks.watch import Watch
 
 BAUD = 57600
-LOG, QUICK_WIRE_LOG = 1_000_000, 100_000
-"""Bytes; a megabyte takes more than three minutes of the wire."""
+LOG, WIRE_LOG, QUICK_WIRE_LOG = 1_000_000, 400_000, 50_000
+"""Bytes on the network and on the wire, where a megabyte takes four minutes."""
 ARMED = "parameter list, armed"
 ARDUROVER = 30.9
 """s of ArduRover's list at 57600 baud, with more parameters than ours; the figure was measured before."""
@@ -64,10 +65,10 @@ def _on_network(options: Options, report: Report) -> None:
             await jobs.fetch_log(station, ours, size)
             parameters = len(station.params.params)
 
-        for number in range(ROUNDS):
-            options.say(f"services: round {number + 1} of {ROUNDS}, UDP loopback")
+        for turn in range(ROUNDS):
+            options.say(f"services: round {turn + 1} of {ROUNDS}, UDP loopback")
             asyncio.run(connected(f"udpout:127.0.0.1:{port}", all_jobs))
-            if number == 0:
+            if turn == 0:
                 words = python("tests.benchmarks.bare_services", str(bare_port), str(parameters), str(_log(folder)))
                 server = on_pipe(watch, words)
                 stack.callback(server.end)
@@ -83,11 +84,13 @@ def _on_network(options: Options, report: Report) -> None:
         table.rows.append({"job": name, "taken": taken, "bare": reference, "x": taken / reference})
     report.tables.append(table)
     rate = size / median(ours[jobs.FILE]) / 1e6
-    report.goals.append(Goal("log on UDP loopback", rate, LOG_RATE, "MB/s", at_least=True))
+    plain = f"bare pair, {brief(size / median(bare[jobs.FILE]) / 1e6)} MB/s"
+    report.goals.append(Goal("log on UDP loopback while nobody drives", rate, LOG_RATE, "MB/s", True, plain))
 
 
 def _on_wire(options: Options, report: Report) -> None:
-    size = QUICK_WIRE_LOG if options.quick else LOG
+    size, driven_size = (QUICK_WIRE_LOG, QUICK_LOG_SIZE) if options.quick else (WIRE_LOG, LOG_SIZE)
+    parts: dict[str, Part] = {}
     times: jobs.Times = {}
     needed: dict[str, int] = {}
     rounds = 1 if options.quick else ROUNDS
@@ -102,8 +105,10 @@ def _on_wire(options: Options, report: Report) -> None:
         await jobs.fetch_log(station, times, size)
         await station.arm()
         await jobs.fetch_params(station, times, ARMED)
+        options.say(f"services: driving, {BAUD} baud")
+        parts.update(await drive(station, times, quick=options.quick))
         needed.update(jobs.wire_bytes(station, size))
-        needed[ARMED] = needed[jobs.PARAMS]
+        needed.update({ARMED: needed[jobs.PARAMS], jobs.DRIVEN_FILE: jobs.log_bytes(driven_size)})
 
     with ExitStack() as stack:
         folder, watch = stack.enter_context(scratch()), Watch()
@@ -112,8 +117,13 @@ def _on_wire(options: Options, report: Report) -> None:
         cable = on_pipe(watch, python("tests.benchmarks.baud_cable", *map(str, ends), str(BAUD), "0"))
         stack.callback(cable.end)
         cable.wait_for("cable ready", 20)
-        stack.enter_context(_vehicle(watch, folder, size, f"serial:{ends[0]}:{BAUD}"))
+        motors = folder / "motors"
+        words = ["--motor-log", str(motors), "--param", "MOT_SLEWRATE=1000"]
+        stack.enter_context(_vehicle(watch, folder, size, f"serial:{ends[0]}:{BAUD}", *words))
+        (_log(folder).parent / jobs.DRIVEN_LOG).write_bytes(random.Random(6).randbytes(driven_size))
         asyncio.run(connected(f"serial:{ends[1]}:{BAUD}", all_jobs))
+        share = 100 * needed[jobs.DRIVEN_FILE] * BITS_PER_BYTE / BAUD / median(times[jobs.DRIVEN_FILE])
+        driven, late = judge(parts, motors, share, BAUD)
 
     note = (
         f"A log of {size:,} bytes. wire: of the bytes that must travel, alone on the line; telemetry flows beside "
@@ -123,7 +133,7 @@ def _on_wire(options: Options, report: Report) -> None:
     for name, each in times.items():
         wire = needed[name] * BITS_PER_BYTE / BAUD
         table.rows.append({"job": name, "taken": median(each), "wire": wire, "share %": 100 * wire / median(each)})
-    report.tables.append(table)
+    report.tables += [table, driven]
     shares = {row["job"]: row["share %"] for row in table.rows}
     report.goals += [
         Goal(
@@ -131,21 +141,23 @@ def _on_wire(options: Options, report: Report) -> None:
             median(times[jobs.PARAMS]),
             ARDUROVER,
             "s",
+            reference=f"on the wire alone, {brief(needed[jobs.PARAMS] * BITS_PER_BYTE / BAUD)} s",
         ),
         *(
-            Goal(f"{name} at {BAUD} baud, share of the wire", shares[name], least, "%", True)
+            Goal(f"{name} at {BAUD} baud, share of the wire", shares[name], least, "%", True, "the wire")
             for name, least in LEAST.items()
         ),
+        *late,
     ]
 
 
 @contextmanager
-def _vehicle(watch: Watch, folder: Path, size: int, endpoint: str) -> Iterator[None]:
+def _vehicle(watch: Watch, folder: Path, size: int, endpoint: str, *words: str) -> Iterator[None]:
     """Start a simulated rover with a log of `size` bytes."""
     log = _log(folder)
     log.parent.mkdir(parents=True)
     log.write_bytes(random.Random(5).randbytes(size))
-    vehicle = on_pipe(watch, python("vehicle", "--sim", endpoint, "--state", str(folder / "state")))
+    vehicle = on_pipe(watch, python("vehicle", "--sim", endpoint, "--state", str(folder / "state"), *words))
     try:
         vehicle.wait_for("ready", 20)
         yield

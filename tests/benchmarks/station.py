@@ -49,7 +49,7 @@ class Station:
         self.texts: list[str] = []
         self.bytes_received = 0
         """Of the link, as of the last report."""
-        self._clients: Sequence[Client] = (self.params, self.missions, self.files)
+        self._clients: list[Client] = [self.params, self.missions, self.files]
         self._outgoing: list[Outgoing] = []
         self._heartbeat_due = 0.0
         self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
@@ -91,6 +91,10 @@ class Station:
         return outgoing
 
     # ---- for scripts ----
+
+    def add_client(self, client: Client) -> None:
+        """Let a further client hear, wait and send."""
+        self._clients.append(client)
 
     async def until(self, condition: Callable[[], bool], what: str, within: float) -> None:
         """Wait until `condition`, checked with each message and each tick. Raises BenchmarkError."""

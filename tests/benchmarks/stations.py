@@ -155,7 +155,13 @@ def run(options: Options) -> Report:
     goals = [Goal(f"vehicle, {count} stations reached", min(seen[count].reached), count, "", True) for count in COUNTS]
     alone = f"1 station, {brief(median(seen[1].cpu))} %"
     goals += [
-        Goal(f"vehicle with {count} stations, CPU", median(seen[count].cpu), most, "%", reference=alone)
+        Goal(
+            f"vehicle with {count} stations, CPU",
+            median(seen[count].cpu),
+            most,
+            "%",
+            reference=alone if count > 1 else "",
+        )
         for count, most in CPU
     ]
     goals.append(Goal("vehicle, memory with the most stations", median(seen[COUNTS[-1]].rss), MEMORY, "MiB"))
