@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from typing import NamedTuple
 
-from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
+from dialects.codec import CRC_EXTRA
 from dialects.messages import SystemTime
 from dialects.targets import TARGETS, target_of
 from dialects.traits import LOCAL
@@ -59,7 +59,7 @@ class Router:
         self._recent: dict[SourceId, RecentFrames] = {}
         """One per source, shared by all peers, so that their frames can be compared."""
         self._untracked: dict[bytes, float] = {}
-        """Frames of sources without `recent`, without their signatures -> when each arrived first; the oldest first."""
+        """Frames of sources without `recent` -> when each arrived first; the oldest first."""
         self._boot_times: dict[SourceId, int] = {}
         self._loaded: list[RoutedPeer] = []
 
@@ -171,22 +171,25 @@ class Router:
         return source
 
     def _is_redundant(self, before: tuple[float, RoutedPeer, bytes], raw: bytes, now: float) -> bool:
-        """Return whether another link has brought this frame already."""
-        again = now - before[0] < REDUNDANCY_WINDOW and _same(before[2], raw)
+        """Return whether another link has brought this frame already, with the same signature.
+
+        One with another signature goes on as well: without keys nobody knows which of the two is genuine, and a forged
+        one that comes first must not keep the genuine one away. The receiver counts one of them.
+        """
+        again = now - before[0] < REDUNDANCY_WINDOW and before[2] == raw
         self.duplicates += again
         return again
 
     def _is_untracked_copy(self, raw: bytes, now: float) -> bool:
         """Return whether this frame of an untracked source went on less than REDUNDANCY_WINDOW ago, on any link."""
-        key = _without_signature(raw)
-        at = self._untracked.get(key)
+        at = self._untracked.get(raw)
         if at is not None and now - at < REDUNDANCY_WINDOW:
             self.duplicates += 1
             return True
-        self._untracked.pop(key, None)
+        self._untracked.pop(raw, None)
         if len(self._untracked) >= MAX_RECENT_UNTRACKED:
             del self._untracked[next(iter(self._untracked))]
-        self._untracked[key] = now
+        self._untracked[raw] = now
         return False
 
     def _is_link_local(self, source: RoutedSource, message_id: int, raw: bytes) -> bool:
@@ -224,12 +227,3 @@ class Router:
             deliveries.append(Delivery(peer.link, peer.address, frames))
         self._loaded = []
         return deliveries
-
-
-def _same(one: bytes, other: bytes) -> bool:
-    """Return whether two frames are equal but for their signatures, which differ between links."""
-    return one == other or _without_signature(one) == _without_signature(other)
-
-
-def _without_signature(raw: bytes) -> bytes:
-    return raw[: HEADER_V2 + raw[1] + CRC_SIZE] if raw[0] == MAGIC_V2 else raw
