@@ -31,10 +31,13 @@ def quoted(text: str) -> list[str]:
 
 
 def functions(path: Path) -> set[str]:
-    """Return the names of the functions in a test file."""
+    """Return the functions in a file as pytest takes them after the path: `name`, or `Class::name`."""
+    body = ast.parse(path.read_text()).body
+    inside = [("", body), *((f"{node.name}::", node.body) for node in body if isinstance(node, ast.ClassDef))]
     return {
-        node.name
-        for node in ast.walk(ast.parse(path.read_text()))
+        before + node.name
+        for before, nodes in inside
+        for node in nodes
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
     }
 

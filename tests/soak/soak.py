@@ -1,7 +1,7 @@
 """One soak: the programs, the network between them, kills, and the rules, for so many seconds of real time.
 
-In its first half each program in turn loses a process to kill -9, and is started again. In the second half all live, so
-that what grows can be seen. The network is bad all the time, but for the end.
+In its first third each program in turn loses a process to kill -9, and is started again. Then all live, so that what
+grows can be seen, also behind the time in which histories fill up. The network is bad all the time, but for the end.
 """
 
 from __future__ import annotations
@@ -36,6 +36,8 @@ KILLS = (6.0, 20.0)
 """s, random, between two kills."""
 WOUNDED = (0.5, 4.0)
 """s, random, for which a program goes on without the process that was killed, before it is started again."""
+KILLED = 1 / 3
+"""Share of a soak in which processes are killed."""
 LEAST_POWER = 0.02
 """Share of a soak for which motors must have power, or there was nothing to stop."""
 REPORTED = 0.05
@@ -139,7 +141,7 @@ class Soak:
         quick = min(1.0, self._seconds / 150)  # a short soak kills each of them, too
         for number, member in enumerate(itertools.cycle(self.crew)):
             yield quick * self._chance.uniform(*KILLS)
-            if number >= len(self.crew) and time.monotonic() > self._begun + self._seconds / 2:
+            if number >= len(self.crew) and time.monotonic() > self._begun + self._seconds * KILLED:
                 break
             self._wound(member)
             yield quick * self._chance.uniform(*WOUNDED)
