@@ -208,6 +208,15 @@ class RestingCore(Protocol):
 
 
 @runtime_checkable
+class Onlooker(Protocol):
+    """A core that looks at some vehicles only; of others a little telemetry is enough, where a link can choose."""
+
+    @property
+    def looked_at(self) -> frozenset[int] | None:
+        """System ids of the vehicles that it looks at; None: all."""
+
+
+@runtime_checkable
 class SendListener(Protocol):
     """A core that needs the packet sequence of the messages it sent."""
 

@@ -17,6 +17,7 @@ from link.core import (
     Core,
     EarlyActor,
     LinkReport,
+    Onlooker,
     Outgoing,
     PlaceKeeper,
     Received,
@@ -33,7 +34,7 @@ from link.protocol.peer_table import MAX_PEERS
 from link.protocol.sent_frames import SentFrames
 from link.routing.router import Delivery, Router
 from link.signing_keeper import SigningKeeper
-from link.transport.transport import Link, RoleTransport, Transport
+from link.transport.transport import Link, RoleTransport, SelectiveTransport, Transport
 from link.transport.transports import open_transports
 
 log = logging.getLogger(__name__)
@@ -150,6 +151,8 @@ class Runner:
         self._on_sent = sent
         self._keeper = core if isinstance(core, PlaceKeeper) else None
         self._resting = core if isinstance(core, RestingCore) else None
+        self._onlooker = core if isinstance(core, Onlooker) else None
+        self._looked_at: frozenset[int] | None = None
         self._early = core if isinstance(core, EarlyActor) else None
         self._early_timer: asyncio.TimerHandle | None = None
         self._ended: asyncio.Future[None] | None = None
@@ -184,6 +187,7 @@ class Runner:
             link.refusal = link.transport.refusal
         if self._signing is not None:
             link.channel.guard = self._signing.guard(link.channel.index)
+        self._look_at(link)
 
     def remove(self, index: int) -> None:
         """Close a link and forget it while run() runs; the others go on. An unknown index changes nothing."""
@@ -327,7 +331,17 @@ class Runner:
             self._report_due = now + REPORT_PERIOD
             self._observe(now)
         self._core.tick(now)
+        if self._onlooker is not None and (systems := self._onlooker.looked_at) != self._looked_at:
+            self._looked_at = systems
+            for link in self.links:
+                self._look_at(link)
         self._flush()
+
+    def _look_at(self, link: Link) -> None:
+        """Tell a link that can choose which vehicles are looked at."""
+        if isinstance(link.transport, SelectiveTransport):
+            link.transport.look_at(self._looked_at)
+            link.channel.look_at(self._looked_at, time.monotonic())
 
     def _observe(self, now: float) -> None:
         if self._signing is not None:

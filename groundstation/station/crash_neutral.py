@@ -48,6 +48,11 @@ class CrashNeutral:
         """The station may, and it still runs."""
         return not self._active and self._station.may_rest
 
+    @property
+    def looked_at(self) -> frozenset[int] | None:
+        """The vehicles that the station looks at; after an exception it is not asked."""
+        return frozenset(self._driven) if self._active else self._station.looked_at
+
     # ---- Core ----
 
     def receive(self, received: Received, now: float) -> None:

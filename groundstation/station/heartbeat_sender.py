@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dialects.enums import Autopilot, SystemState, VehicleType
 from dialects.messages import Heartbeat
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
 from link.core import Outgoing, Peer
 
 HEARTBEAT_PERIOD = 1.0
@@ -16,8 +17,9 @@ after a heartbeat, and drives again within 1 s of the change."""
 GREETING, GREETING_PERIOD = 1.0, 0.2
 """s for which, and s between which, heartbeats go to a vehicle at a new address: all are lost once in 400 at 30 %."""
 
-MAX_PEERS = 64
-"""Addresses of vehicles remembered; each restart of a vehicle may bring another."""
+MAX_PEERS = 2 * MAX_VEHICLES
+"""Addresses of vehicles remembered; each restart of a vehicle may bring another. With fewer places than vehicles all of
+them would be greeted for ever."""
 
 
 class HeartbeatSender:

@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot
+from groundstation.station.attention import Attention
 from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
@@ -121,6 +122,7 @@ class Station:
                 **self._display.sources,
             }
         )
+        self._attention = Attention(self.fleet, self.views, self._charts, self.relay)
         self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
         self._intents = IntentHandler(
             self.operator,
@@ -196,6 +198,11 @@ class Station:
         self.departure.tick(now)
         self._charts.tick(now)
         self._detail.tick(now)
+
+    @property
+    def looked_at(self) -> frozenset[int] | None:
+        """System ids of the vehicles whose whole telemetry is needed; None: all."""
+        return self._attention.systems
 
     @property
     def may_rest(self) -> bool:

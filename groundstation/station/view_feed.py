@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from groundstation.views.base import View, ViewRequest
+
+_R = TypeVar("_R", bound=ViewRequest)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +69,13 @@ class ViewFeed:
     def is_watching(self, kind: type[ViewRequest]) -> bool:
         """Return whether a screen watches a view of this kind."""
         return kind in self._watched or any(other.is_watching(kind) for other in self._others)
+
+    def requests(self, kind: type[_R]) -> Iterator[_R]:
+        """Yield what all screens request of this kind."""
+        if kind in self._watched:
+            yield self._watched[kind].request  # type: ignore[misc]
+        for other in self._others:
+            yield from other.requests(kind)
 
     def build(self, request: ViewRequest, now: float, wall: float) -> View | None:
         """Build the view for a request at once, for a station without a screen."""

@@ -2,6 +2,7 @@
 
     fleet/FLEET/VEHICLE/alive                                   a token while the vehicle is connected
     fleet/FLEET/VEHICLE/gcs/NAME/RUN                            a token while a ground station talks to it
+    fleet/FLEET/VEHICLE/gcs/NAME/RUN/brief                      a token while a little of its telemetry is enough there
     fleet/FLEET/VEHICLE/up/NAME/RUN/CLASS/MESSAGE               a frame to that ground station
     fleet/FLEET/VEHICLE/down/NAME/RUN/ROLE/CLASS/MESSAGE        a frame to the vehicle
 
@@ -16,12 +17,17 @@ import msgspec
 
 from dialects.messages import MESSAGES
 from link.fleet.roles import needed_role
-from link.fleet.traffic import traffic_class
+from link.fleet.traffic import TELEMETRY, traffic_class
 from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 
+_BRIEF = "brief"
 _CHUNKS = 6
 """Of a frame's key before role, class and message."""
+MAX_KEYS = 8192
+"""Keys that are kept parsed: 160 vehicles with 50 messages each."""
+_IDS = {str(message.msgname): number for number, message in MESSAGES.items()}
+"""Name of a message in a key -> its id."""
 
 
 def message_word(message_id: int) -> str:
@@ -30,10 +36,33 @@ def message_word(message_id: int) -> str:
     return str(known.msgname) if known else f"ID{message_id}"
 
 
+def _read_word(word: str) -> int | None:
+    """Return the id of a message from its name in a key; None if no message has it."""
+    if word in _IDS:
+        return _IDS[word]
+    number = int(word[2:]) if word[:2] == "ID" and word[2:].isascii() and word[2:].isdecimal() else None
+    return None if number is None or message_word(number) != word else number
+
+
 def read_frame(data: bytes) -> Frame | None:
     """Return the frame if `data` is exactly one whole frame with a good checksum, or of an unknown id."""
     frames = Framer(stream=False, unknown=True).feed(data, 0.0)
     return frames[0] if len(frames) == 1 and frames[0][4] == data else None
+
+
+class Place(msgspec.Struct, frozen=True):
+    """What a key says of the frame under it."""
+
+    sender: str
+    """Address of who sent it."""
+    message_id: int
+    role: str
+    """Word of the role that its sender claims for it; empty in a key to a ground station."""
+    is_telemetry: bool
+
+    def fits(self, frame: Frame) -> bool:
+        """Return whether a frame is of this message, and needs exactly this role."""
+        return frame[0] == self.message_id and (not self.role or needed_role(frame).word == self.role)
 
 
 class FleetKeys(msgspec.Struct, frozen=True):
@@ -52,11 +81,20 @@ class FleetKeys(msgspec.Struct, frozen=True):
     @property
     def others(self) -> str:
         """The tokens of those to talk to."""
-        return f"{self._base}/alive" if self.me else f"{self._base}/gcs/*/*"
+        return f"{self._base}/alive" if self.me else f"{self._base}/gcs/**"
 
     def token(self, address: str) -> str:
         """Return the token that tells `address` that this program is here; the same for all if it is a vehicle."""
         return f"fleet/{self.fleet}/{address}/gcs/{self.me}" if self.me else f"{self._base}/alive"
+
+    def brief_token(self, address: str) -> str:
+        """Return the token that tells a vehicle that a little of its telemetry is enough for this ground station."""
+        return f"{self.token(address)}/{_BRIEF}"
+
+    def read_brief(self, key: str) -> str | None:
+        """Return the address of the ground station with this token; None if it is no such token."""
+        base, _, last = key.rpartition("/")
+        return self.read_token(base) if last == _BRIEF and not self.me else None
 
     def read_token(self, key: str) -> str | None:
         """Return the address of the program with this token; None if it is no such token."""
@@ -70,15 +108,17 @@ class FleetKeys(msgspec.Struct, frozen=True):
         base = f"fleet/{self.fleet}/{address}/down/{self.me}" if self.me else f"{self._base}/up/{address}"
         return f"{base}/{self._suffix(frame, to_vehicle=bool(self.me))}"
 
-    def read(self, key: str, data: bytes) -> tuple[str, Frame] | None:
-        """Return sender and frame of what arrived; None if it is not the frame that its key names."""
+    def parse(self, key: str) -> Place | None:
+        """Return what a key says of the frame under it; None if it is the key of no frame to this program."""
         chunks = key.split("/")
-        frame = read_frame(data)
-        if frame is None or len(chunks) <= _CHUNKS:
+        roles, rest = chunks[_CHUNKS:-2], chunks[-2:]
+        if len(chunks) <= _CHUNKS or len(roles) != (0 if self.me else 1):
             return None
-        if "/".join(chunks[_CHUNKS:]) != self._suffix(frame, to_vehicle=not self.me):
+        message_id = _read_word(rest[1])
+        if message_id is None or traffic_class(message_id).word != rest[0]:
             return None
-        return chunks[2] if self.me else "/".join(chunks[4:_CHUNKS]), frame
+        sender = chunks[2] if self.me else "/".join(chunks[4:_CHUNKS])
+        return Place(sender, message_id, "".join(roles), rest[0] == TELEMETRY.word)
 
     @property
     def _base(self) -> str:
@@ -88,3 +128,28 @@ class FleetKeys(msgspec.Struct, frozen=True):
     def _suffix(frame: Frame, *, to_vehicle: bool) -> str:
         role = f"{needed_role(frame).word}/" if to_vehicle else ""
         return f"{role}{traffic_class(frame[0]).word}/{message_word(frame[0])}"
+
+
+class KeyReader:
+    """Compares frames with their keys. Keys are kept parsed, because a sender has few and uses them again and again."""
+
+    def __init__(self, keys: FleetKeys) -> None:
+        self._keys = keys
+        self._places: dict[str, Place | None] = {}
+        self._framer = Framer(stream=False, unknown=True)
+
+    def find(self, key: str) -> Place | None:
+        """Return what a key says, as FleetKeys.parse(); may be called from any thread."""
+        place = self._places.get(key, self)
+        if place is self:
+            if len(self._places) >= MAX_KEYS:
+                self._places.clear()
+            place = self._places[key] = self._keys.parse(key)
+        return place  # type: ignore[return-value]
+
+    def read(self, key: str, data: bytes) -> tuple[Place, Frame] | None:
+        """Return what arrived; None unless `data` is exactly the one frame that its key names."""
+        place, frames = self.find(key), self._framer.feed(data, 0.0)
+        if place is None or len(frames) != 1 or frames[0][4] != data or not place.fits(frames[0]):
+            return None
+        return place, frames[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import msgspec
 
 MAX_PRESENT = 256
@@ -41,6 +43,10 @@ class Presence(msgspec.Struct):
             self.present.discard(address)
             self._owners = {system: owner for system, owner in self._owners.items() if owner != address}
         return gone
+
+    def find_owners(self, systems: Iterable[int]) -> set[str]:
+        """Return the vehicles that these system ids belong to."""
+        return {self._owners[system] for system in systems if system in self._owners}
 
     def owner(self, system: int, address: str) -> str:
         """Return the vehicle that a system id belongs to: the first one that sends with it, while it is there."""

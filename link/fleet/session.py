@@ -77,6 +77,12 @@ class FleetSession:
             with self._router.quiet("declare a token"):
                 self._tokens[key] = session.liveliness().declare_token(key)
 
+    def hide_token(self, key: str) -> None:
+        """Take back what show_token() has told."""
+        if token := self._tokens.pop(key, None):
+            with self._router.quiet("undeclare a token"):
+                token.undeclare()  # type: ignore[no-untyped-call]
+
     def close(self) -> None:
         """Say farewell in a thread that is not waited for longer than CLOSE_WITHIN."""
         self._router.close(CLOSE_WITHIN)

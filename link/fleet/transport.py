@@ -8,20 +8,25 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import math
 import secrets
+import time
 from collections.abc import Callable, Hashable
 from functools import partial
 
 from link.endpoint import Endpoint, Side
+from link.fleet.arrivals import PACE, Arrivals
+from link.fleet.brevity import BriefTelemetry
 from link.fleet.config import VEHICLE_ROLE, FleetConfig, load_config
-from link.fleet.inbox import Inbox
-from link.fleet.keys import FleetKeys, read_frame
+from link.fleet.inbox import BATCH, Inbox
+from link.fleet.keys import FleetKeys, KeyReader, Place, read_frame
 from link.fleet.presence import Presence
 from link.fleet.roles import needed_role
 from link.fleet.session import FleetSession
 from link.protocol.frame import Frame, read_header
 from link.protocol.link_events import CONNECTING
 from link.signing.role import Role
+from link.transport.priority_queue import STALE
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 log = logging.getLogger(__name__)
@@ -50,8 +55,15 @@ class FleetTransport:
         me = None if is_vehicle else f"{config.name}/{secrets.token_hex(4)}"
         self._keys = FleetKeys(endpoint.fleet, endpoint.vehicle, me)
         self._session = FleetSession(config, self._keys, self)
+        self._reader = KeyReader(self._keys)
+        self._arrivals = Arrivals()
         self._inbox = Inbox()
+        self._delivered_at = -math.inf
+        """When frames were delivered last."""
+        self._delivery: asyncio.TimerHandle | None = None
         self._presence = Presence()
+        self._brief = BriefTelemetry()
+        self._looked_at: frozenset[int] | None = None
         self._unsent = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -62,7 +74,7 @@ class FleetTransport:
     @property
     def dropped(self) -> int:
         """Frames that were not sent or not handed over: no room, too old, overtaken, not allowed, under a wrong key."""
-        return self._unsent + self.refused + self._inbox.dropped
+        return self._unsent + self.refused + self._arrivals.dropped + self._inbox.dropped
 
     def start(
         self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
@@ -85,14 +97,20 @@ class FleetTransport:
         frame = read_frame(data) if self._role not in (None, Role.SET_UP) else None
         return None if frame is None else self._role_missing(frame)
 
+    def look_at(self, systems: frozenset[int] | None) -> None:
+        """Let the vehicles with these system ids send all of their telemetry, and the others a little; None: all."""
+        self._looked_at = systems
+        self._ask_for_brief()
+
     def outlet(self, address: Hashable) -> Outlet | None:
         """Return None: a session cannot be handed to another process."""
         return None
 
     def close(self) -> None:
         """End the session."""
-        if self._timer:
-            self._timer.cancel()
+        for timer in (self._timer, self._delivery):
+            if timer:
+                timer.cancel()
         self._loop = None
         self._session.close()
 
@@ -104,6 +122,8 @@ class FleetTransport:
         if why := self._role_missing(frame):
             self._say(f"a message was not sent: {why}", f"{frame[0]}")
             self._unsent += 1
+        elif not self._brief.passes(frame, address, time.monotonic()):
+            pass
         elif not self._session.publish(self._keys.place(frame, address), data):
             self._unsent += 1
 
@@ -118,22 +138,19 @@ class FleetTransport:
     # ---- from threads of Zenoh ----
 
     def handle_frame(self, key: str, data: bytes) -> None:
-        """Put a frame into the inbox if its key fits, and wake the loop."""
-        loop = self._loop
-        found = self._keys.read(key, data)
-        if loop is None:
-            return
-        if found is None:
-            self.refused += 1
-            self._refused_key = key  # the next tick says so: a flood must not keep the loop busy
-        elif self._inbox.put(found[0], data, loop.time()):
+        """Keep a frame for the loop, and wake it if need be."""
+        loop, place = self._loop, self._reader.find(key)
+        may_wait = place is not None and place.is_telemetry
+        if loop is not None and self._arrivals.put(key, data, loop.time(), may_wait=may_wait):
             self._call(loop, self._deliver)
 
     def handle_token(self, key: str, is_there: bool) -> None:
         """Tell the loop who came or has gone."""
-        address = self._keys.read_token(key)
+        address, brief = self._keys.read_token(key), self._keys.read_brief(key)
         if self._loop is not None and address is not None:
             self._call(self._loop, partial(self._note_token, address, is_there))
+        if self._loop is not None and brief is not None:
+            self._call(self._loop, partial(self._brief.set, brief, is_brief=is_there))
 
     def handle_routers(self, routers: int) -> None:
         """Tell the loop whether a router is connected."""
@@ -154,13 +171,47 @@ class FleetTransport:
     # ---- in the loop ----
 
     def _deliver(self) -> None:
-        if self._loop is None:
+        """Hand over what has arrived, and plan when to look again."""
+        loop, timer, self._delivery = self._loop, self._delivery, None
+        if timer:
+            timer.cancel()
+        if loop is None:
             return
-        taken, more = self._inbox.take(self._loop.time())
+        now = loop.time()
+        taken, more = self._take(now)
         if more:
-            self._loop.call_soon(self._deliver)
+            self._arrivals.expect(now=True)
+            loop.call_soon(self._deliver)
+        elif taken and now - self._delivered_at < 2 * PACE:
+            self._arrivals.expect(now=False)
+            self._delivery = loop.call_later(PACE, self._deliver)
+        if taken:
+            self._delivered_at = now
         if mine := [(data, address) for data, address in taken if self._is_owner(data, address)]:
             self._on_receive(mine)
+
+    def _take(self, now: float) -> tuple[list[tuple[bytes, str]], bool]:
+        """Return the frames to hand over now, and whether more wait."""
+        may_pass = self._inbox.is_empty
+        fresh: list[tuple[bytes, str]] = []
+        for key, data, at in self._arrivals.take():
+            found = self._check(key, data)
+            if found is None:
+                continue
+            if may_pass and found.is_telemetry and len(fresh) < BATCH and now - at <= STALE:
+                fresh.append((data, found.sender))  # no older telemetry waits in the inbox
+            else:
+                self._inbox.put(found.sender, data, at)
+        taken, more = self._inbox.take(now)
+        return taken + fresh, more or not self._arrivals.is_empty
+
+    def _check(self, key: str, data: bytes) -> Place | None:
+        """Return who sent a frame, if it is the one that its key names."""
+        found = self._reader.read(key, data)
+        if found is None:
+            self.refused += 1
+            self._refused_key = key  # the next tick says so: a flood must not keep the loop busy
+        return None if found is None else found[0]
 
     def _is_owner(self, data: bytes, address: str) -> bool:
         """Return whether a frame's system id is that of its vehicle; two vehicles with one id would look like one."""
@@ -180,10 +231,21 @@ class FleetTransport:
             self._presence.remove(address, self._loop.time())
             return
         if self._keys.me:
+            if self._looked_at is not None and address not in self._presence.present:
+                self._session.show_token(self._keys.brief_token(address))  # before it can send anything
             self._session.show_token(self._keys.token(address))
         if self._presence.add(address):
             log.debug("%s: %s is connected", self.endpoint.text, address)
             self._on_receive([(b"", address)])
+
+    def _ask_for_brief(self) -> None:
+        """Tell each vehicle whether this ground station looks at it."""
+        if not self._keys.me:
+            return
+        whole = None if self._looked_at is None else self._presence.find_owners(self._looked_at)
+        for address in self._presence.present:
+            tell = self._session.hide_token if whole is None or address in whole else self._session.show_token
+            tell(self._keys.brief_token(address))
 
     def _note_problem(self, problem: str | None) -> None:
         self.problem = None if problem is None else f"{self.endpoint.text}: {problem}"
@@ -192,7 +254,9 @@ class FleetTransport:
         for address in self._presence.expire(loop.time()):
             log.debug("%s: %s has disconnected", self.endpoint.text, address)
             self._inbox.forget(address)
+            self._brief.set(address, is_brief=False)
             self._on_disconnect(address)
+        self._ask_for_brief()  # of those that have come, and whose system id has become known
         if self._refused_key:
             self._say("frames were dropped: they are not what their key names", self._refused_key)
             self._refused_key = ""

@@ -8,6 +8,7 @@ all places are taken, and can be answered.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Iterator, Sequence
 
 from dialects import codec
@@ -30,6 +31,10 @@ _RADIO_STATUS: int = RadioStatus.id
 _RATE_CLASS = {**dict.fromkeys(DEMANDS, "demand"), **dict.fromkeys(COMMANDS, "command")}
 """Message id -> the token bucket that limits it; all other messages share one."""
 _RATE_CLASS_OF_STATIONS = {**_RATE_CLASS, FileTransferProtocol.id: "file"}
+
+
+LOOK_WITHIN = 2.0
+"""s until a vehicle that is looked at sends everything."""
 
 
 class Channel:
@@ -79,6 +84,7 @@ class Channel:
         self._bytes_received = 0
         self._duplicates = self._late = self._rate_limited = 0
         self._own_id = False
+        self._looked_at: frozenset[int] | None = None
         if target is not None:
             self._peers.add_fixed(target)
 
@@ -119,6 +125,17 @@ class Channel:
         A partial frame is lost, and the next peer there must send its HEARTBEAT.
         """
         self._peers.end_connection(address)
+
+    def look_at(self, systems: frozenset[int] | None, now: float) -> None:
+        """Take the system ids that send everything; what others leave out is not lost. None: all do."""
+        self._looked_at = systems
+        for state in self._peers:
+            for (system, _), source in state.sources.items():
+                source.expect_gaps(self._gaps_until(system, now + LOOK_WITHIN))
+
+    def _gaps_until(self, system: int, otherwise: float) -> float:
+        """Return until when the numbers of a system have gaps: always while it is not looked at."""
+        return math.inf if self._looked_at is not None and system not in self._looked_at else otherwise
 
     def reserve(self, ids: tuple[int, int] | None) -> None:
         """Keep places for the system and component id of the ground station in control; None: for nobody."""
@@ -175,6 +192,8 @@ class Channel:
             source = state.sources.get(sender)
             if source is None:
                 source = state.add_source(frame, digest, now)
+                if source is not None:
+                    source.expect_gaps(self._gaps_until(system, -math.inf))
             elif (order := source.accept(sequence, number, digest, now)) is not NEW and self._is_old(order, frame):
                 continue
             message = self._decode(state, frame, now)

@@ -10,6 +10,7 @@ the same ids, or of copies of old frames. The runs are kept apart, so that a veh
 
 from __future__ import annotations
 
+import math
 from enum import Enum, auto
 
 LATE_WINDOW = 32
@@ -121,7 +122,7 @@ class SequenceTracker:
     `digest` is equal for equal frames and hardly ever for others; `now` in s.
     """
 
-    __slots__ = ("_begun", "_numberings", "clash", "lost", "numbering", "received")
+    __slots__ = ("_begun", "_gaps_until", "_numberings", "clash", "lost", "numbering", "received")
 
     def __init__(self, sequence: int, message_id: int, digest: int, now: float) -> None:
         self.received = 1
@@ -133,18 +134,32 @@ class SequenceTracker:
         is in use is so close that frames of one pass for frames of the other."""
         self._numberings = [self.numbering]
         self._begun = 1
+        self._gaps_until = -math.inf
+
+    def expect_gaps(self, until: float) -> None:
+        """Take the time until which the sender leaves frames out on purpose: missing numbers are not lost."""
+        self._gaps_until = until
 
     def accept(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder:
         """Count a frame and return its order; `numbering` and `clash` are then those of this frame."""
         current = self.numbering
         ahead = (sequence - current.newest) & 0xFF
-        if 0 < ahead <= CLOSE and len(self._numberings) == 1 and now - current.heard_at <= NUMBERING_SILENCE:
-            self.lost += ahead - 1
+        gaps = now <= self._gaps_until
+        if (
+            0 < ahead <= (REACH_MAX if gaps else CLOSE)
+            and len(self._numberings) == 1
+            and now - current.heard_at <= NUMBERING_SILENCE
+        ):
+            self.lost += 0 if gaps else ahead - 1
             self.received += 1
             self.clash = False
             current.advance(sequence, message_id, digest, now)
             return NEW
-        return self._accept_any(sequence, message_id, digest, now)
+        lost = self.lost
+        order = self._accept_any(sequence, message_id, digest, now)
+        if gaps:
+            self.lost = min(lost, self.lost)
+        return order
 
     def _accept_any(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder:
         self._numberings = [each for each in self._numberings if now - each.heard_at <= NUMBERING_SILENCE]

@@ -76,6 +76,14 @@ class RoleTransport(Protocol):
         """Return why a frame may not be sent, in one line for the user; None if it may."""
 
 
+@runtime_checkable
+class SelectiveTransport(Protocol):
+    """A transport whose vehicles send less to a ground station that does not look at them."""
+
+    def look_at(self, systems: frozenset[int] | None) -> None:
+        """Take the system ids whose whole telemetry is needed; None: that of all vehicles, as at the start."""
+
+
 class Link(msgspec.Struct):
     """A transport and the channel on it."""
 

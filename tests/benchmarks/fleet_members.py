@@ -7,7 +7,6 @@ python -m tests.benchmarks.fleet_members FOLDER listen              counts what 
 from __future__ import annotations
 
 import itertools
-import random
 import sys
 import time
 from pathlib import Path
@@ -15,30 +14,30 @@ from typing import Any
 
 import zenoh
 
-from dialects.messages import Heartbeat, Message
 from link.endpoint import parse_endpoint
+from link.fleet.brevity import BriefTelemetry
 from link.fleet.config import load_config
 from link.fleet.keys import FleetKeys, read_frame
-from tests.benchmarks.traffic import framed, telemetry
+from tests.benchmarks.fleet_sender import vehicle_frames
 
 FLEET = "farm"
 STEP = 0.02
 """s between two bursts; each has messages of every vehicle in turn."""
-KINDS = 50
-"""Frames of a vehicle, again and again; one of them is a HEARTBEAT."""
 SYSTEMS = 250
 """System ids; of more vehicles, some have the same."""
 
 
 class Sender:
-    """One vehicle: whoever talks to it gets its telemetry."""
+    """One vehicle: whoever talks to it gets its telemetry, or a little of it, as of a real one."""
 
     def __init__(self, folder: Path, number: int) -> None:
         name = f"v{number}"
         endpoint = parse_endpoint(f"zenoh:{folder}/{name}.json5/{FLEET}/{name}")
         self._keys = FleetKeys(FLEET, name, None)
-        self._frames = _frames(1 + number % SYSTEMS)
+        self._frames = vehicle_frames(1 + number % SYSTEMS)
         self._places: dict[str, list[Any]] = {}
+        self._brief = BriefTelemetry()
+        self._read = [frame for each in self._frames if (frame := read_frame(each))]
         self._session = zenoh.open(load_config(endpoint).zenoh)
         live = self._session.liveliness()
         self._token = live.declare_token(self._keys.token(""))
@@ -47,24 +46,21 @@ class Sender:
     def send(self, number: int) -> None:
         """Send message `number` to each ground station."""
         at = number % len(self._frames)
-        for places in list(self._places.values()):
-            self._session.put(places[at], self._frames[at])
+        for address, places in list(self._places.items()):
+            if self._brief.passes(self._read[at], address, time.monotonic()):
+                self._session.put(places[at], self._frames[at])
 
     def _meet(self, sample: zenoh.Sample) -> None:
-        address = self._keys.read_token(str(sample.key_expr))
+        key, is_there = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
+        if brief := self._keys.read_brief(key):
+            self._brief.set(brief, is_brief=is_there)
+        address = self._keys.read_token(key)
         if address is None:
             return
-        if sample.kind == zenoh.SampleKind.PUT:
-            frames = [read_frame(each) for each in self._frames]
-            self._places[address] = [zenoh.KeyExpr(self._keys.place(each, address)) for each in frames if each]
+        if is_there:
+            self._places[address] = [zenoh.KeyExpr(self._keys.place(each, address)) for each in self._read]
         else:
             self._places.pop(address, None)
-
-
-def _frames(system: int) -> list[bytes]:
-    found = [each for each in telemetry(random.Random(system), 2 * KINDS) if not isinstance(each, Heartbeat)]
-    beat: Message = Heartbeat(10, 3, 81, 0, 4, 3)
-    return [framed(each, number, system) for number, each in enumerate([beat, *found[: KINDS - 1]])]
 
 
 def send(folder: Path, first: int, count: int, rate: int) -> None:

@@ -28,7 +28,7 @@ def main(count: int, port: int) -> None:
         sockets = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(count)]
         for each in sockets:
             each.connect(("127.0.0.1", port))
-        frames = [_second(system) for system in range(FIRST_SYSTEM, FIRST_SYSTEM + count)]
+        frames = [vehicle_frames(system) for system in range(FIRST_SYSTEM, FIRST_SYSTEM + count)]
         sys.stdout.write("fleet ready\n")
         sys.stdout.flush()
         start, sent = time.monotonic(), 0
@@ -41,7 +41,7 @@ def main(count: int, port: int) -> None:
             sent = due
 
 
-def _second(system: int) -> list[bytes]:
+def vehicle_frames(system: int) -> list[bytes]:
     """Return the frames of 256 messages, so that there is no gap in the sequence numbers at the restart."""
     chance = random.Random(system)
     found = telemetry(chance, 256)

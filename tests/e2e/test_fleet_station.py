@@ -56,4 +56,4 @@ def test_the_vehicle_stops_by_its_own_rule(driven: Driven) -> None:
     falls, stood = vehicle.falls_and_stops_after(at)
     assert falls <= MAN_TIMEOUT + 0.1 + waits.total()
     assert stood <= MAN_TIMEOUT + FALL + waits.total()
-    screen.wait_for(lambda: "neutral could NOT be sent to Rover 1" in screen.drawn(), PATIENCE, "the screen says so")
+    screen.wait_for(lambda: "neutral could NOT be sent to rover1" in screen.drawn(), PATIENCE, "the screen says so")

@@ -60,6 +60,11 @@ class ChartDesk:
             FieldsRequest: ViewSource(self._build_fields, FIELDS_PERIOD),
         }
 
+    @property
+    def systems(self) -> frozenset[int]:
+        """System ids of the vehicles whose fields are recorded."""
+        return frozenset(field.system for field in self._recorded if not field.sent)
+
     def pin(self, fields: Iterable[FieldId]) -> None:
         """Record these fields also while no screen draws them, in place of those pinned before."""
         self._recorder.pin(fields)

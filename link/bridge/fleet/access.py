@@ -68,8 +68,8 @@ def _operator_rules(base: str, name: str, role: str, roles: Mapping[str, int]) -
     granted = [word for word, rank in roles.items() if rank <= roles[role]]
     return [
         (IN, _PUBLISH, [f"{base}/down/{name}/*/{word}/**" for word in granted]),
-        (IN, _TOKEN, [f"{base}/gcs/{name}/*"]),
+        (IN, _TOKEN, [f"{base}/gcs/{name}/**"]),
         (IN, _HEAR, [f"{base}/up/{name}/**"]),
         (IN, _HEAR_TOKENS, [f"{base}/alive"]),
-        (OUT, _GET, [f"{base}/up/{name}/**", f"{base}/alive", f"{base}/down/{name}/**", f"{base}/gcs/{name}/*"]),
+        (OUT, _GET, [f"{base}/up/{name}/**", f"{base}/alive", f"{base}/down/{name}/**", f"{base}/gcs/{name}/**"]),
     ]

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import SystemState
 from groundstation.intents.session import RenewLease
+from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.station import Station
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
 from link.core import Peer, Received
 from tests.groundstation.fake_vehicle import Cockpit
 
@@ -32,3 +34,13 @@ def test_a_vehicle_at_a_new_address_gets_a_heartbeat_at_once() -> None:
         station.receive(Received(beat, 1, 1, 0, Peer(0, address), introduced=True), 100.1)
         station.tick(100.12)
         assert any(isinstance(each.message, m.Heartbeat) for each in station.messages_to_send())
+
+
+def test_the_largest_fleet_gets_one_heartbeat_a_second_too() -> None:
+    sender, sent = HeartbeatSender(0.0), 0
+    for step in range(100):
+        now = step / 10
+        for number in range(MAX_VEHICLES):
+            sender.greet(Peer(0, number), now)
+        sent += len(sender.tick(now, driving=False)) if now >= 5.0 else 0
+    assert sent == 5

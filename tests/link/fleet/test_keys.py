@@ -6,11 +6,12 @@ import pytest
 
 from dialects import messages as m
 from dialects import rover
-from link.fleet.keys import FleetKeys, read_frame
+from link.fleet.keys import MAX_KEYS, FleetKeys, KeyReader, read_frame
 from tests.link.frames import demand, frame, heartbeat
 
 ALICE = FleetKeys("farm", "", "alice/1")
 ROVER = FleetKeys("farm", "rover1", None)
+TO_ALICE, TO_ROVER = KeyReader(ALICE), KeyReader(ROVER)
 ARM = frame(m.CommandLong(1, 1, rover.MAV_CMD_COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
 DISARM = frame(m.CommandLong(1, 1, rover.MAV_CMD_COMPONENT_ARM_DISARM, 0, 0, 0, 0, 0, 0, 0, 0))
 BASE = "fleet/farm/rover1/down/alice/1"
@@ -35,14 +36,18 @@ def key(data: bytes, keys: FleetKeys = ALICE, address: str = "rover1") -> str:
 )
 def test_a_frame_to_a_vehicle_and_back_from_its_key(data: bytes, tail: str) -> None:
     assert key(data) == f"{BASE}/{tail}"
-    sender, read = ROVER.read(key(data), data) or ("", ())
-    assert (sender, read) == ("alice/1", read_frame(data))
+    for _ in range(2):  # the second time from its memory
+        found = TO_ROVER.read(key(data), data)
+        assert found is not None
+        assert (found[0].sender, found[1]) == ("alice/1", read_frame(data))
 
 
 def test_a_frame_to_a_ground_station() -> None:
     beat = heartbeat(0, system=1, component=1)
     assert key(beat, ROVER, "alice/1") == "fleet/farm/rover1/up/alice/1/ctl/HEARTBEAT"
-    assert (ALICE.read(key(beat, ROVER, "alice/1"), beat) or ("",))[0] == "rover1"
+    found = TO_ALICE.read(key(beat, ROVER, "alice/1"), beat)
+    assert found is not None
+    assert (found[0].sender, found[0].is_telemetry) == ("rover1", False)
 
 
 @pytest.mark.parametrize(
@@ -57,8 +62,8 @@ def test_a_frame_to_a_ground_station() -> None:
     ],
 )
 def test_what_hides_under_the_key_of_a_heartbeat_is_refused(name: str, data: bytes) -> None:
-    assert ROVER.read(f"{BASE}/watch/ctl/HEARTBEAT", heartbeat(0)) is not None
-    assert ROVER.read(f"{BASE}/watch/ctl/HEARTBEAT", data) is None, name
+    assert TO_ROVER.read(f"{BASE}/watch/ctl/HEARTBEAT", heartbeat(0)) is not None
+    assert TO_ROVER.read(f"{BASE}/watch/ctl/HEARTBEAT", data) is None, name
 
 
 @pytest.mark.parametrize(
@@ -74,15 +79,19 @@ def test_what_hides_under_the_key_of_a_heartbeat_is_refused(name: str, data: byt
     ],
 )
 def test_a_command_counts_only_under_its_role_and_class(wrong: str) -> None:
-    assert ROVER.read(f"{BASE}/drive/cmd/COMMAND_LONG", ARM) is not None
-    assert ROVER.read(wrong, ARM) is None
+    assert TO_ROVER.read(f"{BASE}/drive/cmd/COMMAND_LONG", ARM) is not None
+    assert TO_ROVER.read(wrong, ARM) is None
 
 
 def test_tokens() -> None:
     assert ALICE.read_token(ROVER.token("")) == "rover1"
     assert ROVER.read_token(ALICE.token("rover1")) == "alice/1"
-    assert (ALICE.others, ROVER.others) == ("fleet/farm/*/alive", "fleet/farm/rover1/gcs/*/*")
+    assert (ALICE.others, ROVER.others) == ("fleet/farm/*/alive", "fleet/farm/rover1/gcs/**")
     assert ALICE.read_token(ALICE.token("rover1")) is None
+    brief = ALICE.brief_token("rover1")
+    assert brief == "fleet/farm/rover1/gcs/alice/1/brief"
+    assert (ROVER.read_brief(brief), ROVER.read_token(brief)) == ("alice/1", None)
+    assert (ROVER.read_brief(ALICE.token("rover1")), ALICE.read_brief(brief)) == (None, None)
     assert ROVER.read_token("fleet/farm/rover1/alive") is None
     assert FleetKeys("farm", "rover1", "alice/1").others == "fleet/farm/rover1/alive"
 
@@ -90,3 +99,19 @@ def test_tokens() -> None:
 def test_an_unknown_message_is_under_its_number() -> None:
     unknown = bytes([0xFD, 1, 0, 0, 7, 1, 1, 0x48, 0xEE, 0, 5, 1, 2])
     assert key(unknown).endswith("/setup/tlm/ID61000")
+    assert TO_ROVER.read(key(unknown), unknown) is not None
+
+
+def test_keys_that_nobody_uses_again_are_bounded() -> None:
+    reader = KeyReader(ALICE)
+    for number in range(MAX_KEYS + 10):
+        reader.find(f"fleet/farm/v{number}/up/alice/1/ctl/HEARTBEAT")
+    assert len(reader._places) == 10
+    place = reader.find("fleet/farm/v1/up/alice/1/ctl/HEARTBEAT")
+    assert place is not None
+    assert place.sender == "v1"
+
+
+@pytest.mark.parametrize("word", ["ID0", "ID061000", "ID", "IDx", "heartbeat", "ID²"])
+def test_a_message_has_one_name(word: str) -> None:
+    assert ALICE.parse(f"fleet/farm/v1/up/alice/1/tlm/{word}") is None

@@ -113,6 +113,44 @@ async def test_two_vehicles_with_one_system_id_are_not_taken_for_one(port: int) 
         each.transport.close()
 
 
+async def test_only_vehicles_that_are_looked_at_send_all_of_their_telemetry(port: int) -> None:
+    station, rover = ends(port, "rover1")
+    await until(lambda: station.received and rover.received)
+    me = rover.received[0][1]
+    rover.transport.send(VEHICLE_BEAT, me)
+    await until(lambda: (VEHICLE_BEAT, "rover1") in station.received)
+
+    def send(count: int) -> None:
+        for number in range(count):
+            rover.transport.send(frame(m.Attitude(number, *(0.0,) * 6), number, 1, 1), me)
+        rover.transport.send(frame(m.StatusText(6, b"end"), 0, 1, 1), me)
+
+    async def arrives(count: int) -> int:
+        station.received.clear()
+        send(count)
+        await until(lambda: any(data[7] == m.StatusText.id for data, _ in station.received))
+        await asyncio.sleep(0.05)  # classes overtake each other
+        return sum(data[7] == m.Attitude.id for data, _ in station.received)
+
+    async def until_it_sends(least: int, most: int) -> None:
+        deadline = time.monotonic() + 30.0
+        while not least <= await arrives(20) <= most:
+            assert time.monotonic() < deadline
+
+    await until_it_sends(20, 20)
+    station.transport.look_at(frozenset())
+    await until_it_sends(0, 1)
+    station.transport.look_at(frozenset((1,)))
+    await until_it_sends(20, 20)
+    station.transport.look_at(frozenset((2,)))
+    await until_it_sends(0, 1)
+    station.transport.look_at(None)
+    await until_it_sends(20, 20)
+    assert rover.transport.dropped == 0
+    for each in (station, rover):
+        each.transport.close()
+
+
 async def test_without_a_router_the_link_says_why_and_connects_when_there_is_one() -> None:
     port = free_port()
     station, rover = ends(port, "rover1")

@@ -9,7 +9,7 @@ from fastcrc.crc16 import mcrf4xx
 
 from dialects import codec
 from dialects.messages import CommandLong, Heartbeat, ManualControl, StatusText
-from link.protocol.channel import Channel
+from link.protocol.channel import LOOK_WITHIN, Channel
 from link.protocol.frame import NOISE_HINT_BYTES, FramerCounts, Header, read_header, sum_counts
 from link.protocol.peer import MAX_SOURCES
 from link.protocol.peer_table import PEER_SILENCE
@@ -244,3 +244,24 @@ def test_the_shortest_frames_have_a_header_and_shorter_ones_at_an_end_have_none(
     assert read_header(codec.frame(0, b"\x01", 0, 1, 1)[:12]) is not None
     for data in (version_1(Heartbeat(6, 8, 0, 0, 4, 3))[:7], heartbeat(0)[:11]):
         assert read_header(b"longer than it is" + data, 17) is None
+
+
+# ---- vehicles that are not looked at ----
+
+
+def test_only_of_a_system_that_sends_everything_missing_numbers_are_lost() -> None:
+    channel = Channel("fleet", 0, system=255, component=190, stream=True)
+
+    def lost(first: int, now: float) -> list[int]:
+        """Skip a number of two systems; return what each has lost by then."""
+        for system in (1, 2):
+            channel.receive(heartbeat(first, system, 1) + heartbeat(first + 2, system, 1), f"rover{system}", now)
+        return [channel.report().sources[system, 1].lost for system in (1, 2)]
+
+    channel.look_at(frozenset((1,)), 0.0)
+    assert lost(0, 0.0) == [1, 0]
+    channel.look_at(frozenset((2,)), 0.1)
+    assert lost(3, 0.1) == [1, 0], "both: what was asked for takes a moment to come"
+    assert lost(6, 0.1 + LOOK_WITHIN + 0.1) == [1, 1]
+    channel.look_at(None, 2.3)
+    assert lost(9, 2.3 + LOOK_WITHIN + 0.1) == [2, 2]

@@ -207,3 +207,22 @@ def test_of_too_many_numberings_the_least_used_is_forgotten() -> None:
     sender.take(161)
     assert sender.numbering > 4  # one frame only, and the first of those
     assert LATE_WINDOW == 32
+
+
+def test_numbers_that_are_left_out_on_purpose_are_not_lost() -> None:
+    sender = Sender()
+    sender.tracker.expect_gaps(sender.now + 10.0)
+    for step in range(1, 20):
+        assert sender.take(100 * step, wait=0.05) is NEW
+    assert (sender.tracker.received, sender.tracker.lost, sender.numbering) == (20, 0, 1)
+    assert sender.take(1900) is DUPLICATE
+    sender.take(1900 + 200)
+    assert (sender.tracker.lost, sender.numbering) == (0, 2), "another numbering, as without gaps"
+
+
+def test_from_then_on_they_are_lost_again() -> None:
+    sender = Sender()
+    sender.tracker.expect_gaps(sender.now + 1.0)
+    sender.take(50, wait=1.0)
+    sender.take(53, wait=0.1)
+    assert sender.tracker.lost == 2

@@ -1,0 +1,60 @@
+"""Which vehicles a station looks at: what is selected, driven, asked for something or drawn, and all for a verb."""
+
+from __future__ import annotations
+
+from groundstation.intents.services import FetchParams
+from groundstation.intents.vehicle import SelectVehicle
+from groundstation.intents.watch import Watch
+from groundstation.station.verb_relay import Verb
+from groundstation.views.charts import FieldId, SeriesRequest
+from groundstation.views.messages import MessageRequest
+from tests.groundstation.flotilla import Flotilla
+
+
+def test_the_selected_vehicle_and_what_is_asked_for_something() -> None:
+    flotilla = Flotilla(4)
+    station = flotilla.station
+    assert station.looked_at == frozenset()
+    flotilla.run(3.0)
+    assert station.looked_at == frozenset((1,))
+    station.handle_intent(SelectVehicle(system=2), flotilla.now)
+    assert station.looked_at == frozenset((2,))
+    station.handle_intent(FetchParams(request=1, system=3), flotilla.now)
+    assert station.looked_at == frozenset((2, 3))
+
+
+def test_a_vehicle_that_this_station_drives_is_looked_at_whatever_is_selected() -> None:
+    flotilla = Flotilla(3)
+    flotilla.run(3.0)
+    driven = flotilla.station.fleet.get(1)
+    assert driven is not None
+    flotilla.station.handle_intent(SelectVehicle(system=2), flotilla.now)
+    assert flotilla.station.looked_at == frozenset((2,))
+    driven.ours = driven.state.armed = True
+    assert flotilla.station.looked_at == frozenset((1, 2))
+
+
+def test_what_a_screen_shows_or_draws_of_another_vehicle() -> None:
+    flotilla = Flotilla(3)
+    flotilla.run(3.0)
+    series = SeriesRequest(fields=(FieldId(3, 1, False, "ATTITUDE", "roll"), FieldId(2, 1, True, "HEARTBEAT", "type")))
+    flotilla.station.handle_intent(Watch((MessageRequest(2, 1, False, "SYS_STATUS"), series)), flotilla.now)
+    flotilla.run(0.5)
+    assert flotilla.station.looked_at == frozenset((1, 2, 3))
+    other = flotilla.station.views.open_another()
+    flotilla.station.handle_intent(Watch(()), flotilla.now)
+    other.watch((MessageRequest(2, 1, False, "SYS_STATUS"),))
+    flotilla.run(5.0)
+    assert flotilla.station.looked_at == frozenset((1, 2))
+
+
+def test_a_verb_gets_what_all_vehicles_send() -> None:
+    flotilla = Flotilla(3)
+    flotilla.run(3.0)
+    verb = Verb("groundstation watch", False, lambda _: None, lambda _: None, lambda _: None)
+    flotilla.station.relay.join(verb, flotilla.now)
+    assert flotilla.near.core.looked_at is None  # type: ignore[attr-defined]
+    flotilla.station.relay.leave(verb, flotilla.now)
+    assert flotilla.near.core.looked_at == frozenset((1,))  # type: ignore[attr-defined]
+    flotilla.near.core.activate(flotilla.now)  # type: ignore[attr-defined]
+    assert flotilla.near.core.looked_at == frozenset()  # type: ignore[attr-defined]
