@@ -93,7 +93,7 @@ class ManyVehicles:
             quiet = max(quiet, self._session.began + self._options.wait - now)
         if known >= MAX_VEHICLES:
             return False
-        return await self._session.wait_for(lambda: len(core.contacts) > known, quiet)
+        return await self._session.look_for(lambda: len(core.contacts) > known, quiet)
 
     @property
     def _missing(self) -> set[int]:

@@ -141,9 +141,16 @@ class VerbSession:
         """Wait until `condition` holds; return whether it does. Raises VerbError if a message may not be sent."""
         if condition():
             return True
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self.core.add_look(lambda: condition() or bool(self._refusal)), seconds)
+        await self.look_for(lambda: condition() or bool(self._refusal), seconds)
         self._need_sent()
+        return condition()
+
+    async def look_for(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Wait until `condition`, which is about all vehicles, holds; return whether it does."""
+        if condition():
+            return True
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self.core.add_look(condition), seconds)
         return condition()
 
     @property

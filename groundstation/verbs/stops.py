@@ -41,7 +41,7 @@ def _stop_all(what: str, done: str, build: BuildJob) -> Run:
                 if system not in codes and is_chosen(options.vehicle, system, each.vehicle.fleet_name):
                     codes[system] = asyncio.ensure_future(_stop(each, within, output))
             known = len(session.core.contacts)
-            if options.vehicle or not await session.wait_for(
+            if options.vehicle or not await session.look_for(
                 _more_than(session, known), 0.0 if session.core.has_heard_all else ALONE_AFTER
             ):
                 break

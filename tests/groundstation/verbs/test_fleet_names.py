@@ -70,6 +70,8 @@ def test_a_role_that_is_missing_is_named_at_once(run: Run) -> None:
         assert (refused.code, refused.err.count("\n")) == (ExitCode.REFUSED, 1), refused.err
         assert f"the certificate of {operator} may" in refused.err
         assert f"ask for the role {role}" in refused.err
+    many = run("bob", "param", "set", "WP_RADIUS", "2", "--all")
+    assert (many.code, many.err.endswith("2 vehicles: 2 refused\n")) == (ExitCode.REFUSED, True), many
     assert run("alice", "estop", "-v", "rover1").code == 0, "stops need no role"
 
 
