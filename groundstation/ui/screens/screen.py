@@ -22,6 +22,7 @@ from groundstation.ui.instruments import CHROME, InstrumentRow
 from groundstation.ui.question import ANSWER_WITHIN, Question
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.ui.terminal.key_parser import KeyRepeat
+from groundstation.ui.terminal.painting import LineCompositor, painted_at_once
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.ui.widgets.line_field import LineField
 from groundstation.views.base import View, ViewRequest
@@ -91,6 +92,7 @@ class ConsoleScreen(Screen[None]):
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__()
+        self._compositor = LineCompositor()
         self.context = context
         self._built: dict[str, Instrument[Any]] = {}
         self._state = context.newest()
@@ -234,8 +236,9 @@ class ConsoleScreen(Screen[None]):
     def show_state(self, now: DisplayState) -> None:
         """Give every instrument its value; each redraws only the lines that changed."""
         self.keep_state(now)
-        self.show_rows()
-        self.show_body(self._state)
+        with painted_at_once(self):
+            self.show_rows()
+            self.show_body(self._state)
 
     def show_rows(self) -> None:
         """Show the state in the instruments of ROWS."""

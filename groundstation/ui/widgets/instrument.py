@@ -13,6 +13,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from groundstation.ui.look.colours import style, theme_changes
+from groundstation.ui.terminal.painting import Ground, find_ground, mark_changed
 
 Value = TypeVar("Value")
 
@@ -47,6 +48,7 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         self._value = value
         self._strips: list[Strip] = []
         self._drawn_for = (Size(0, 0), theme_changes())
+        self._ground: tuple[int, Ground | None] = (-1, None)
 
     @property
     def value(self) -> Value:
@@ -69,11 +71,29 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         if len(old) != len(new):
             self.refresh()
         elif changed:
-            self.refresh(*changed)
+            mark_changed(self, changed)
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Return the lines of the value at this size. Missing lines stay blank, surplus lines are not shown."""
         raise NotImplementedError
+
+    def notify_style_update(self) -> None:
+        """Forget what the styles were."""
+        self._ground = (-1, None)
+        super().notify_style_update()
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return lines of the whole widget; without frame and effects of the styles sooner than Textual would."""
+        if self._ground[0] != theme_changes():
+            self._ground = (theme_changes(), find_ground(self))
+        ground = self._ground[1]
+        if ground is None:
+            return super().render_lines(crop)
+        width = self.size.width
+        lines = [self.render_line(y).adjust_cell_length(width, ground.style) for y in crop.line_range]
+        for each in self.get_line_filters():
+            lines = [line.apply_filter(each, ground.colour) for line in lines]
+        return lines if crop.column_span == (0, width) else [line.crop(*crop.column_span) for line in lines]
 
     def render_line(self, y: int) -> Strip:
         """Return one line; Textual calls this for each line that it must paint."""
