@@ -58,9 +58,23 @@ class Canvas:
         steps = max(1, round(max(abs(across), abs(down))))
         if steps > 4 * (self.across + self.down):  # far outside: too many steps
             return
-        for step in range(steps + 1):
+        dots, styles, width, height = self._dots, self._styles, self.across, self.down
+        for step in range(steps + 1):  # dot(), written out: most of the time of a map goes here
             part = step / steps
-            self.dot(round(x + across * part), round(y + down * part), style)
+            at_x, at_y = round(x + across * part), round(y + down * part)
+            if 0 <= at_x < width and 0 <= at_y < height:
+                row, column = at_y >> 2, at_x >> 1
+                dots[row][column] |= _BITS[at_y & 3][at_x & 1]
+                styles[row][column] = style
+
+    def copy(self) -> Canvas:
+        """Return a canvas with the same dots and text, which can be drawn on by itself."""
+        other = Canvas.__new__(Canvas)
+        other.width, other.height, other.across, other.down = self.width, self.height, self.across, self.down
+        other._dots = [bytearray(row) for row in self._dots]
+        other._styles = [list(row) for row in self._styles]
+        other._texts = [dict(row) for row in self._texts]
+        return other
 
     def path(self, points: Sequence[Point], style: Style) -> None:
         """Connect points by lines."""
@@ -91,17 +105,16 @@ class Canvas:
     def _segments(self, row: int) -> Iterable[Segment]:
         dots, styles, texts = self._dots[row], self._styles[row], self._texts[row]
         run, run_style = "", style_of()
+        ground = _has_ground(run_style)
         for column in range(self.width):
-            character, style = texts.get(column) or (
-                chr(0x2800 + dots[column]) if dots[column] else " ",
-                styles[column],
-            )
-            blank = character == " " and column not in texts and not _has_ground(run_style)
+            text = texts.get(column)
+            character, style = text or (chr(0x2800 + dots[column]) if dots[column] else " ", styles[column])
+            blank = text is None and not dots[column] and not ground
             if style is not run_style and not blank and run:
                 yield Segment(run, run_style)
                 run = ""
-            if not run or not blank:
-                run_style = style
+            if style is not run_style and not (run and blank):
+                run_style, ground = style, _has_ground(style)
             run += character
         if run:
             yield Segment(run, run_style)

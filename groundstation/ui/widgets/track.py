@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
-from groundstation.ui.look.colours import AMBER, BLUE, DIM, LINE, RED, YELLOW, style
+from groundstation.ui.look.colours import AMBER, BLUE, DIM, LINE, RED, YELLOW, style, theme_changes
 from groundstation.ui.widgets.canvas import Canvas, Point
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 
@@ -116,22 +117,51 @@ class TrackMap(Instrument[TrackValue]):
 
     BORDER_TITLE = "track"
 
+    def __init__(self, value: TrackValue, **options: Any) -> None:
+        super().__init__(value, **options)
+        self._base: _Base | None = None
+
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw rings and home, the track over them, and the vehicle on top."""
-        canvas = Canvas(width, height)
         value = self.value
         if value.position is None:
+            canvas = Canvas(width, height)
             canvas.write(max(0, width // 2 - 7), height // 2, "no position yet", style(DIM))
             return canvas.strips()
-        view = fit_view(value, canvas.across, canvas.down)
-        _draw_rings(canvas, view, value.home or (0.0, 0.0))
-        canvas.path([view.to_canvas(point, canvas) for point in (*value.track, value.position)], style(BLUE))
+        view = fit_view(value, width * 2, height * 4)
+        if self._base is None or not self._base.extend(value, view, (width, height)):
+            self._base = _Base(value, view, (width, height))
+        canvas = self._base.canvas.copy()
+        canvas.path([view.to_canvas(point, canvas) for point in (*value.track[-1:], value.position)], style(BLUE))
         if value.home is not None:
             x, y = view.to_canvas(value.home, canvas)
             canvas.write(int(x) >> 1, int(y) >> 2, "⌂", style(AMBER, bold=True))
         _draw_vehicle(canvas, view.to_canvas(value.position, canvas), value.heading, ascii=value.ascii)
         _draw_labels(canvas, view, value)
         return canvas.strips()
+
+
+class _Base:
+    """Rings and track, which are drawn once; points that are added to the track are drawn when they come."""
+
+    def __init__(self, value: TrackValue, view: MapView, size: tuple[int, int]) -> None:
+        self.canvas = Canvas(*size)
+        self._key = (view, size, value.home, theme_changes())
+        self._track = value.track
+        _draw_rings(self.canvas, view, value.home or (0.0, 0.0))
+        self._draw(value.track, view)
+
+    def extend(self, value: TrackValue, view: MapView, size: tuple[int, int]) -> bool:
+        """Draw what was added to the track. Return False if it is not the base of this value."""
+        known = len(self._track)
+        if self._key != (view, size, value.home, theme_changes()) or value.track[:known] != self._track:
+            return False
+        self._draw(value.track[max(0, known - 1) :], view)
+        self._track = value.track
+        return True
+
+    def _draw(self, points: Sequence[Point], view: MapView) -> None:
+        self.canvas.path([view.to_canvas(point, self.canvas) for point in points], style(BLUE))
 
 
 def _draw_rings(canvas: Canvas, view: MapView, home: Point) -> None:

@@ -9,6 +9,7 @@ from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.track import TrackMap, TrackValue, fit_view
 
 metres = st.floats(-1e5, 1e5)
+near = st.floats(-20, 20)
 
 
 @given(st.lists(st.tuples(metres, metres), max_size=50), st.tuples(metres, metres), st.none() | st.floats(-10, 10))
@@ -56,3 +57,15 @@ def test_the_vehicle_is_on_the_map_at_each_zoom(position: tuple[float, float], z
     x, y = fit_view(value, canvas.across, canvas.down).to_canvas(position, canvas)
     assert 0 <= x < canvas.across
     assert 0 <= y < canvas.down
+
+
+@given(st.lists(st.tuples(near, near), min_size=1, max_size=30), st.integers(0, 30), st.integers(1, 3))
+def test_a_track_that_grew_is_drawn_as_one_that_was_there(
+    track: list[tuple[float, float]], known: int, stride: int
+) -> None:
+    grown = TrackMap(TrackValue(track[0], 0.5, (0.0, 0.0), tuple(track[:known])))
+    grown.draw(36, 14)
+    for points in (track, track[::stride], track):
+        value = TrackValue(points[-1], 0.5, (0.0, 0.0), tuple(points))
+        grown._value = value
+        assert grown.draw(36, 14) == TrackMap(value).draw(36, 14)
