@@ -56,6 +56,10 @@ class KeyPrinter:
         """Note the answer to a ping."""
         self.names.append("answer to a ping")
 
+    def is_repeat(self, key: str) -> bool:
+        """Return False: all keys are shown."""
+        return False
+
     def cancel_hold(self) -> None:
         """Note a report of the mouse."""
         self.names.append("mouse")

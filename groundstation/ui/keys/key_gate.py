@@ -88,6 +88,10 @@ OPENING = frozenset(
 )
 """Actions that open a screen or menu on top of Drive."""
 
+SHOW_PERIOD = 0.1
+"""s between two presses of a held drive key that the event loop gets to see: its cap stays lit for 0.15 s after one
+(pressed_keys.py), and nothing else follows from a repeat there."""
+
 PALETTE_KEY = "ctrl+p"
 """Opens Textual's command palette, which is a text field."""
 
@@ -111,6 +115,7 @@ class KeyGate:
         self._driving = True
         self._opening_until = -math.inf
         self._hold = HoldToConfirm(keymap)
+        self._shown_key, self._shown_at = "", -math.inf
         self.ping = TerminalPing()
         self.split_keys = 0
         """Keys that arrived in pieces and did nothing, so far."""
@@ -148,6 +153,16 @@ class KeyGate:
         stops = [press for press, action in actions if action and isinstance(action.intent, (Stop, EmergencyStop))]
         if stops:
             self.handle_keys(stops)
+
+    def is_repeat(self, key: str) -> bool:
+        """Return whether the event loop need not see a key, which has been handled: it saw this drive key just now."""
+        with self._lock:
+            action, now = self.keymap.get_action(key), self._clock()
+            drives = self._closure is None and action is not None and isinstance(action.intent, DriveKeyDown)
+            if drives and key == self._shown_key and now - self._shown_at < SHOW_PERIOD:
+                return True
+            self._shown_key, self._shown_at = key if drives else "", now
+            return False
 
     def cancel_hold(self) -> None:
         """End the hold of a key that confirms an action; it must be released before it counts again."""
@@ -205,6 +220,7 @@ class KeyGate:
         for press in batch:
             if press.release:
                 self._down.discard(press.key)
+                self._shown_key = ""
             elif not press.repeat:
                 self._down.add(press.key)
             elif press.key not in self._down:

@@ -9,6 +9,7 @@ import contextlib
 import os
 import selectors
 import termios
+import weakref
 from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterable, Iterator
 from threading import Thread
@@ -38,7 +39,7 @@ SUSPEND_PATIENCE = 0.1
 """s that a suspend waits for its neutral demand to be sent."""
 
 SELECT_TIMEOUT = 0.1
-"""Longest wait of the input thread, s: the delay until it notices the end of the app or a lone Escape."""
+"""Longest wait of the input thread, s, while a lone Escape or the end of a paste may have to be noticed."""
 
 
 class TerminalClosed(Message, bubble=False):
@@ -54,6 +55,8 @@ class ConsoleDriver(LinuxDriver):
     def __init__(self, app: App[Any], **options: Any) -> None:
         super().__init__(app, **options)
         self._lent = False
+        self._end_signal, self._end_sender = os.pipe()
+        weakref.finalize(self, _close, self._end_signal, self._end_sender)
         self._file = cast(Any, self.terminal)
         self.fileno = self.terminal.keyboard
         self.input_tty = os.isatty(self.fileno)
@@ -65,7 +68,7 @@ class ConsoleDriver(LinuxDriver):
 
     def start_application_mode(self) -> None:
         """Set up the terminal, also after a suspend, and request key releases."""
-        self.terminal.write(SAVE_WHEEL_MODE)  # before the stock method, which captures the mouse twice
+        self.terminal.prepend(SAVE_WHEEL_MODE)  # before the stock method, which captures the mouse twice
         super().start_application_mode()  # type: ignore[no-untyped-call]
         if not constants.DISABLE_KITTY_KEY:
             self.write(REQUEST_KEY_RELEASES)
@@ -88,7 +91,7 @@ class ConsoleDriver(LinuxDriver):
             yield note
         finally:
             if not clean:
-                self.terminal.write(ABANDONED)
+                self.terminal.prepend(ABANDONED)
                 self.terminal.flush()
             with contextlib.suppress(termios.error):
                 termios.tcsetattr(self.fileno, termios.TCSAFLUSH, modes)
@@ -96,8 +99,8 @@ class ConsoleDriver(LinuxDriver):
 
     def write(self, data: str) -> None:
         """Write to the terminal, unless it is lent."""
-        if not self._lent:
-            super().write(data)
+        if not self._lent and (rest := self.terminal.write_at_once(data)) is not None:
+            super().write(rest)
 
     def send_message(self, message: Message) -> None:
         """Post a message to the app, from any thread. The stock method makes a task and two futures for each key."""
@@ -129,14 +132,24 @@ class ConsoleDriver(LinuxDriver):
         closing.join(SUSPEND_PATIENCE)
         super()._sigtstp_application(*arguments)
 
+    def disable_input(self) -> None:
+        """End the input thread, which waits for keys without a limit."""
+        os.write(self._end_sender, b"x")
+        super().disable_input()
+        os.read(self._end_signal, 1)
+
     def run_input_thread(self) -> None:
         """Read until the app or the terminal ends. The stock loop does not notice the end of the terminal."""
         parser = KeyEventParser(self.sink, self._debug)
         decode = getincrementaldecoder("utf-8")(errors="replace").decode
         with selectors.DefaultSelector() as selector:
-            selector.register(self.fileno, selectors.EVENT_READ)
+            for descriptor in (self.fileno, self._end_signal):
+                selector.register(descriptor, selectors.EVENT_READ)
             while not self.exit_event.is_set():
-                if selector.select(SELECT_TIMEOUT) and not self._read(parser, decode):
+                ready = {key.fd for key, _ in selector.select(SELECT_TIMEOUT if parser.waiting else None)}
+                if self._end_signal in ready:
+                    self.exit_event.wait(SELECT_TIMEOUT)
+                elif ready and not self._read(parser, decode):
                     self.sink.close("the terminal was closed")
                     self.process_message(TerminalClosed())
                     return
@@ -154,3 +167,8 @@ class ConsoleDriver(LinuxDriver):
     def _dispatch(self, messages: Iterable[Message]) -> None:
         for message in messages:
             self.process_message(message)
+
+
+def _close(*descriptors: int) -> None:
+    for each in descriptors:
+        os.close(each)

@@ -93,6 +93,11 @@ class SequenceAssembler:
         self._read_at = 0.0
         """Time of its newest byte."""
 
+    @property
+    def waiting(self) -> bool:
+        """A sequence has begun, and `expire` must be called."""
+        return bool(self._held)
+
     def feed(self, data: str, now: float) -> list[Piece]:
         """Return the pieces of one read; the beginning of a sequence stays here."""
         pieces = self.expire(now)

@@ -79,6 +79,9 @@ class KeySink(Protocol):
     def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Handle keys from the rest of an escape sequence that a slow line has split: only a stop key counts."""
 
+    def is_repeat(self, key: str) -> bool:
+        """Return whether the event loop need not see this key, which was handled."""
+
     def handle_release_support(self) -> None:
         """Note that the terminal reports repeats and releases."""
 
@@ -112,6 +115,11 @@ class KeyEventParser(XTermParser):
         self._read_at = self._clock()
         return self._handle(self._sequences.feed(data, self._read_at))
 
+    @property
+    def waiting(self) -> bool:
+        """Something depends on time, and `tick` must be called."""
+        return self._pasting or self._sequences.waiting
+
     def tick(self) -> Iterable[Message]:
         """Return the events that depend on time: a lone Escape, and the end of a paste that was never closed."""
         now = self._clock()
@@ -120,7 +128,7 @@ class KeyEventParser(XTermParser):
         return self._handle(self._sequences.expire(now))
 
     def _handle(self, pieces: Iterable[Piece]) -> list[Message]:
-        """Return the events of one read, after its keys have gone to the sink as one batch."""
+        """Return the events of one read, without repeats, after its keys have gone to the sink as one batch."""
         found, batch = list[Message](), list[KeyEvent]()
         for piece in pieces:
             keys = [_PASTE] if piece.text == PASTE_BEGINS and not self._pasting else []
@@ -132,7 +140,7 @@ class KeyEventParser(XTermParser):
             batch += (press for press in keys if press != _PASTE or press not in batch)
             found += tokens
         self._tell(found, batch)
-        return found
+        return [token for token in found if not (isinstance(token, events.Key) and self._sink.is_repeat(token.key))]
 
     def _tell(self, found: Iterable[Message], batch: Sequence[KeyEvent]) -> None:
         if self._mouse_reports != self._sequences.mouse_reports:

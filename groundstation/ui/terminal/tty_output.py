@@ -20,13 +20,19 @@ MAX_FLUSH = 0.5
 
 
 class TerminalFile:
-    """The file that Textual draws into. Output to a terminal that is gone is discarded instead of raising."""
+    """The file that Textual draws into. Output to a terminal that is gone is discarded instead of raising.
+
+    Textual writes in a thread of its own, because a terminal may accept nothing for a long time. One that accepts a
+    frame at once gets it from the event loop: then no thread is woken, and none waits for the interpreter.
+    """
 
     def __init__(self, descriptor: int, keyboard: int) -> None:
         self.keyboard = keyboard
         """Descriptor to read keys from."""
         self._descriptor = descriptor
-        self._buffer: list[str] = []
+        self._buffer: list[bytes] = []
+        self._queued = self._taken = self._flushed = 0
+        self._direct = not os.get_blocking(descriptor)
         self.gone = False
         self._flushing_since: float | None = None
 
@@ -34,15 +40,36 @@ class TerminalFile:
         """Return the descriptor of the terminal."""
         return self._descriptor
 
+    def write_at_once(self, text: str) -> str | None:
+        """Write as much as the terminal accepts now. Return what the thread must be given, None where nothing is left.
+
+        In the event loop only. Without a thread that has written all it was given, nothing is written here.
+        """
+        rest: str | None = text
+        if self._direct and self._flushed == self._queued and not self._buffer:
+            data = text.encode("utf-8", "replace")
+            with contextlib.suppress(OSError):  # it accepts nothing, or is gone, which the thread finds out
+                data = data[os.write(self._descriptor, data) :]
+            self._buffer += [data] if data else []
+            rest = "" if data else None
+        self._queued += rest is not None
+        return rest
+
     def write(self, text: str) -> int:
-        """Buffer text for the next flush."""
-        self._buffer.append(text)
+        """Buffer what the thread was given for the next flush."""
+        self._taken += 1
+        return self.prepend(text)
+
+    def prepend(self, text: str) -> int:
+        """Buffer text for the next flush, which writes it before all that the thread is given later."""
+        self._buffer.append(text.encode("utf-8", "replace"))
         return len(text)
 
     def flush(self) -> None:
         """Write the buffer. Blocks while the terminal accepts no output; `is_stuck` then becomes true."""
-        data = "".join(self._buffer).encode("utf-8", "replace")
+        data = b"".join(self._buffer)
         self._buffer.clear()
+        taken = self._taken
         self._flushing_since = time.monotonic()
         while data and not self.gone:
             try:
@@ -52,6 +79,7 @@ class TerminalFile:
             except OSError:
                 self.gone = True
         self._flushing_since = None
+        self._flushed = taken
 
     def is_stuck(self, now: float) -> bool:
         """Return whether a flush takes too long: the operator sees an old frame. `now` is of time.monotonic."""

@@ -23,6 +23,9 @@ class Sink:
     def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
         self.split += [press.key for press in batch]
 
+    def is_repeat(self, key: str) -> bool:
+        return False
+
     def handle_release_support(self) -> None:
         self.told.append("exact")
 

@@ -10,7 +10,8 @@ from groundstation.input.keymap import KeyEvent
 from groundstation.intents.driving import HOLD_TIME, DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm, SetMode
-from groundstation.ui.keys.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, TEXT_FIELD, GateClosure, KeyGate
+from groundstation.ui.keys.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, SHOW_PERIOD, TEXT_FIELD, GateClosure, KeyGate
+from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.examples import Recorder
 from tests.groundstation.ui.ptys import STANDARD
@@ -234,3 +235,27 @@ def test_the_mouse_cancels(disarmed: KeyGate, station: Recorder, clock: Clock) -
     hold_r(disarmed, clock, 0.9)
     disarmed.cancel_hold()
     assert disarmed.hold is None
+
+
+def test_the_event_loop_need_not_see_each_repeat_of_a_drive_key(station: Recorder) -> None:
+    clock = Clock()
+    gate = KeyGate(station, STANDARD, clock)
+    gate.set_closure(None)
+    assert not gate.is_repeat("i")
+    clock.now += SHOW_PERIOD / 2
+    assert gate.is_repeat("i")
+    assert not gate.is_repeat("k"), "a stop key"
+    assert not gate.is_repeat("i"), "another key came between"
+    clock.now += 2 * SHOW_PERIOD
+    assert not gate.is_repeat("i")
+    gate.handle_keys([KeyEvent("i", release=True)])
+    assert not gate.is_repeat("i"), "it was released"
+    gate.set_closure(SMALL)
+    assert not gate.is_repeat("i"), "it does not drive"
+
+
+def test_each_repeat_still_reaches_the_station(gate: KeyGate, station: Recorder) -> None:
+    parser = KeyEventParser(gate)
+    shown = [len(list(parser.feed("i"))) for _ in range(3)]
+    assert shown == [1, 0, 0]
+    assert len(station.of(DriveKeyDown)) == 3

@@ -42,6 +42,66 @@ def test_a_terminal_that_has_gone_swallows_the_rest() -> None:
     os.close(slave)
 
 
+def test_a_terminal_that_accepts_a_frame_gets_it_at_once() -> None:
+    master, slave = pty.openpty()
+    os.set_blocking(slave, False)
+    file = TerminalFile(slave, slave)
+    assert file.write_at_once("frame") is None
+    assert os.read(master, 100) == b"frame"
+    os.close(master)
+    os.close(slave)
+
+
+def test_one_that_accepts_a_part_gets_the_rest_in_order_from_the_thread() -> None:
+    receiving, sending = os.pipe()
+    os.set_blocking(sending, False)
+    file = TerminalFile(sending, sending)
+    frames = ["a" * 100_000, "b" * 1000, "c"]
+    left = [file.write_at_once(frame) for frame in frames]
+    assert left == ["", *frames[1:]], "the thread has not written the first one yet"
+
+    def write() -> None:
+        for each in left:
+            file.write(each or "")
+        file.flush()
+
+    writer = Thread(target=write, daemon=True)
+    writer.start()
+    received = b""
+    while len(received) < 101_001:
+        received += os.read(receiving, 4096)
+    assert received.decode() == "".join(frames)
+    writer.join(LIMIT)
+    assert file.write_at_once("d") is None, "the thread has caught up"
+    assert os.read(receiving, 10) == b"d"
+    os.close(receiving)
+    os.close(sending)
+
+
+def test_one_that_blocks_is_left_to_the_thread() -> None:
+    master, slave = pty.openpty()
+    file = TerminalFile(slave, slave)
+    assert file.write_at_once("frame") == "frame"
+    file.write("frame")
+    file.flush()
+    assert os.read(master, 100) == b"frame"
+    os.close(master)
+    os.close(slave)
+
+
+def test_what_is_put_before_all_else_stays_there() -> None:
+    master, slave = pty.openpty()
+    os.set_blocking(slave, False)
+    file = TerminalFile(slave, slave)
+    file.prepend("first ")
+    assert file.write_at_once("then") == "then"
+    file.write("then")
+    file.flush()
+    assert os.read(master, 100) == b"first then"
+    os.close(master)
+    os.close(slave)
+
+
 def test_what_is_printed_meanwhile_goes_to_the_log(tmp_path: Path) -> None:
     log = tmp_path / "log"
     with redirect_output(log):
