@@ -317,8 +317,10 @@ class Runner:
         self._guard(self._run_tick)
         loop = asyncio.get_running_loop()
         # Absolute deadlines do not drift. After a pause missed ticks are skipped.
-        rests = self._resting is not None and self._resting.may_rest
-        self._tick_due = max(self._tick_due + (REST_PERIOD if rests else self._period), loop.time())
+        if self._resting is not None and self._resting.may_rest:
+            self._tick_due = next_multiple(REST_PERIOD, loop.time())
+        else:
+            self._tick_due = max(self._tick_due + self._period, loop.time())
         self._timer = loop.call_at(self._tick_due, self._tick)
 
     def _run_tick(self) -> None:
@@ -401,6 +403,14 @@ class Runner:
             self._refused(message, next(filter(None, refusals)), now)
         if self._log_tap and (taken or self._log_tap.unsent):
             self._log_tap.record_sent(type(message).id, payload, now)
+
+
+def next_multiple(period: float, now: float) -> float:
+    """Return the next time that is a multiple of a period: what is done at the same rate is then done at one waking.
+
+    A timer may be a moment early: then it is the one after that.
+    """
+    return ((now + period / 100) // period + 1) * period
 
 
 def _way(link: Link) -> tuple[bool, Hashable | None]:

@@ -37,7 +37,7 @@ from groundstation.station_socket import names, relay
 from groundstation.station_socket.hello import NAMES, SCREEN, VERB
 from groundstation.watchdog.feed import WatchdogFeed
 from link.protocol.sent_frames import SentFrames
-from link.runner import Runner
+from link.runner import Runner, next_multiple
 from link.transport.local_addresses import LocalAddresses
 from link.transport.transport import Link
 
@@ -172,14 +172,13 @@ class StationHost:
     async def _send_snapshots(self) -> None:
         """Send snapshots at absolute deadlines, and do what is due for the links."""
         loop = asyncio.get_running_loop()
-        due = loop.time()
         while not self._broken:
             try:
                 self._keep_up(loop.time())
             except Exception as error:  # nothing awaits this task, so the exception would be lost
                 self._handle_crash(error)
-            due = max(due + SNAPSHOT_PERIOD, loop.time())
-            await asyncio.sleep(due - loop.time())
+            now = loop.time()
+            await asyncio.sleep(next_multiple(SNAPSHOT_PERIOD, now) - now)
 
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""
