@@ -25,7 +25,7 @@ def test_each_point_is_drawn_where_its_figures_say_and_told_in_words() -> None:
 
 def test_only_benchmarks_of_the_run_are_drawn(tmp_path: Path) -> None:
     rows = [{"further vehicles": 0, "CPU %": 9.0}, {"further vehicles": 99, "CPU %": 60.0}]
-    machine = {"date": "2026-11-23T04:00:00", "cpu": "any", "cores": 2, "load_before": "0.1"}
+    machine = {"date": "2026-11-23T04:00:00", "cpu": "any", "cores": 2, "load_before": "0.1", "commit": "abc"}
     run = {"quick": True, "machine": machine, "results": {"fleet": {"tables": [{"rows": rows}]}}}
     (file,) = write_pictures(run, tmp_path / "new")
     assert file.name == "cost_fleet.svg"

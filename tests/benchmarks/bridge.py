@@ -30,9 +30,9 @@ from tests.benchmarks.procfs import cpu_seconds, family, memory
 from tests.benchmarks.programs import Program, free_port, on_pipe, python, scratch
 from tests.benchmarks.watch import Watch
 
-SECONDS, QUICK_SECONDS = 2.5, 1.0
+SECONDS, QUICK_SECONDS = 2.0, 1.0
 """s of one measurement of throughput."""
-LATENCY_SECONDS, QUICK_LATENCY_SECONDS = 8.0, 2.0
+LATENCY_SECONDS, QUICK_LATENCY_SECONDS = 6.0, 2.0
 TOGETHER = (1, 8)
 """Frames in one datagram of the load."""
 

@@ -17,9 +17,9 @@ from tests.benchmarks.programs import Program, free_port, on_pipe, on_terminal, 
 from tests.benchmarks.traffic import mix
 from tests.benchmarks.watch import Watch
 
-WINDOW, QUICK_WINDOW = 6.0, 2.0
+WINDOW, QUICK_WINDOW = 5.0, 2.0
 """s over which CPU time is counted."""
-WARM_UP = 2.0
+WARM_UP = 1.5
 """s before that, because what a program does once at its start is start-up time."""
 
 STARTS = 3

@@ -18,7 +18,7 @@ from tests.benchmarks.programs import on_pipe, python
 OTHERS = (0, 15, 99)
 """Numbers of vehicles beside the driven one."""
 
-KEYS, QUICK_KEYS = 50, 10
+KEYS, QUICK_KEYS = 40, 10
 SETTLE = 3.0
 """s from the first messages of the others until all of them are known."""
 

@@ -23,7 +23,7 @@ from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Repo
 from tests.benchmarks.programs import free_port, scratch
 from tests.e2e.fleet_programs import RouterProcess, make_fleet
 
-FRAMES, QUICK_FRAMES = 700, 100
+FRAMES, QUICK_FRAMES = 500, 100
 RATE = 50
 """Frames/s, as a driver who holds a key with copies."""
 READY_WITHIN = 10.0

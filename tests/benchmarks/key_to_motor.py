@@ -20,8 +20,8 @@ from tests.benchmarks.programs import Program, free_port, on_pipe, on_terminal, 
 from tests.benchmarks.watch import Watch
 from tests.groundstation.held_key import DELAY, GAP
 
-KEYS = 100
-"""Keys of one contender in one round: of 300 the third longest is the p99."""
+KEYS = 80
+"""Keys of one contender in one round: of 240 the third longest is the p99."""
 QUICK_KEYS = 14
 
 DRIVE_KEYS = (b"i", b"w")

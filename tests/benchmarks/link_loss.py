@@ -20,7 +20,7 @@ NETWORKS = {
 LIMITS = {"10 +- 3 ms, 10 % loss": 20, "10 +- 3 ms, 20 % loss": 30}
 """Network -> ms that the p99 may take: the delay and 10 ms, or 20 ms at 20 % loss."""
 
-KEYS, QUICK_KEYS = {OURS_NARROW: 80, HOBBY: 25}, {OURS_NARROW: 10, HOBBY: 5}
+KEYS, QUICK_KEYS = {OURS_NARROW: 80, HOBBY: 15}, {OURS_NARROW: 10, HOBBY: 5}
 """Keys of a path in one round."""
 
 

@@ -24,7 +24,7 @@ from tests.benchmarks.ticking import PERIOD, read
 from tests.benchmarks.traffic import framed
 from tests.benchmarks.watch import Watch
 
-SECONDS, QUICK_SECONDS = 3.2, 0.8
+SECONDS, QUICK_SECONDS = 2.6, 0.8
 """s of one contender under one load in one round."""
 SKIPPED = 0.3
 """s after a change of the load, in which the scheduler moves the processes."""

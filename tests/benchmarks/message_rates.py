@@ -15,7 +15,7 @@ from tests.benchmarks.watch import Watch
 
 RATES = (100, 300, 1000, 2000)
 """Messages a second."""
-WINDOW, QUICK_WINDOW = 6.0, 2.0
+WINDOW, QUICK_WINDOW = 5.0, 2.0
 """s over which CPU time is counted."""
 
 

@@ -67,7 +67,8 @@ def caption(run: Mapping[str, Any]) -> str:
     machine = run["machine"]
     kind = "quick run" if run["quick"] else "full run"
     day = machine["date"][:16].replace("T", " ")
-    return f"{kind}, {day}, {machine['cpu']}, {machine['cores']} cores, load {machine['load_before']}"
+    where = f"{machine['cpu']}, {machine['cores']} cores, load {machine['load_before']}"
+    return f"{kind}, {day}, commit {machine['commit']}, {where}"
 
 
 def draw(picture: Picture, points: Sequence[tuple[float, float]], below: str) -> str:
@@ -95,7 +96,7 @@ def draw(picture: Picture, points: Sequence[tuple[float, float]], below: str) ->
     ]
     for x, y in points:
         parts.append(f'<circle cx="{xs.at(x):.1f}" cy="{ys.at(y):.1f}" r="4" fill="{LINE}"/>')
-        parts.append(_text(xs.at(x), ys.at(y) - 9, brief(y)))
+        parts.append(_text(xs.at(x), ys.at(y) + 20, brief(y)))  # below: the dashed line is above
     return "\n".join([*parts, "</svg>", ""])
 
 

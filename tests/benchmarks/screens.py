@@ -20,10 +20,10 @@ TITLES = {
 
 GO_TO, DRIVE = b"\x07", b"\x1bOP"
 MENU_TITLE, DRIVE_TITLE = "go to", "motion"
-CHANGES, QUICK_CHANGES = 6, 2
+CHANGES, QUICK_CHANGES = 5, 2
 """Openings of each screen in each round, with the first one."""
-KEYS, QUICK_KEYS = 70, 8
-"""Keys for each pane in each round: of 210 the third longest is the p99."""
+KEYS, QUICK_KEYS = 40, 8
+"""Keys for each pane in each round: of 120 the second longest is the p99."""
 SETTLE = 0.15
 """s from a picture to the next key: a drawing of the last snapshot, and half a snapshot's period."""
 WITHIN = 5.0

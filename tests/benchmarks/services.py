@@ -23,7 +23,7 @@ from tests.benchmarks.station import Station, connected
 from tests.benchmarks.watch import Watch
 
 BAUD = 57600
-LOG, WIRE_LOG, QUICK_WIRE_LOG = 1_000_000, 400_000, 50_000
+LOG, WIRE_LOG, QUICK_WIRE_LOG = 1_000_000, 250_000, 50_000
 """Bytes on the network and on the wire, where a megabyte takes four minutes."""
 ARMED = "parameter list, armed"
 ARDUROVER = 30.9

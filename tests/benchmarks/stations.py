@@ -29,7 +29,7 @@ from tests.benchmarks.watch import Watch
 COUNTS = (1, 4, 16, 64)
 CPU, MEMORY = ((1, 2.0), (16, 2.5), (64, 4.0)), 34.0
 """Stations and % of a core; MiB."""
-WINDOW, QUICK_WINDOW = 6.0, 2.0
+WINDOW, QUICK_WINDOW = 5.0, 2.0
 """s over which CPU time is counted."""
 WARM_UP = 2.0
 COMPONENT = 190

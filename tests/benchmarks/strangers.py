@@ -25,7 +25,7 @@ from tests.benchmarks.stranger_flood import FLOODS
 from tests.benchmarks.watch import Watch
 
 NOBODY = "nobody"
-WINDOW, QUICK_WINDOW = 5.0, 2.0
+WINDOW, QUICK_WINDOW = 4.0, 2.0
 """s over which CPU time and log are counted."""
 CHANGE = 0.4
 """s between two changes of the demand, whose way to the motors is measured."""

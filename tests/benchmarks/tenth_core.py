@@ -24,9 +24,9 @@ from tests.benchmarks.programs import Program, free_port, on_pipe, python, scrat
 from tests.benchmarks.ticking import PERIOD, read
 from tests.benchmarks.watch import Watch
 
-SECONDS, QUICK_SECONDS = 7.0, 2.0
+SECONDS, QUICK_SECONDS = 5.0, 2.0
 """s of driving in one round under one limit."""
-KEYS, QUICK_KEYS = 50, 14
+KEYS, QUICK_KEYS = 40, 14
 """Keys in one round under one limit."""
 PACE = (0.1, 0.4)
 """s, random, from settled outputs to the next key: the keys of a driver are part of the load."""
