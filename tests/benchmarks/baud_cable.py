@@ -21,9 +21,10 @@ import tty
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+from dialects import codec
 from dialects.messages import RoverOperatorPresence
-from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from tests.benchmarks.line_load import Asker
 
@@ -31,9 +32,8 @@ BITS_PER_BYTE = 10
 """8 data bits, one start and one stop bit."""
 CHUNK = 0.001
 """s of wire time that passes in one piece: a wake-up for each byte costs too much, more would blur where frames end."""
-DEMANDS = frozenset({RoverOperatorPresence.id})
-"""Carries a demand to a vehicle of this project, with the time it was made at: only a copy has the same payload."""
-REMEMBERED = 8
+COPIED_WITHIN = 35
+"""ms from a change to its last copy; the next regular demand follows after 50 ms."""
 HEAD, FRAME, SIGNATURE = 3, 12, 13
 """Bytes of a MAVLink 2 frame: up to its flags, around its payload, of a signature."""
 
@@ -65,28 +65,33 @@ class Boundary:
 
 
 class Copies:
-    """Counts the bytes of frames that repeat what a frame just before them had: copies of a changed demand."""
+    """Counts the bytes of the copies of changed demands: the same demand again, made just after it was changed."""
 
     def __init__(self) -> None:
         self._framer = Framer(stream=True)
-        self._payloads: deque[bytes] = deque(maxlen=REMEMBERED)
+        self._demand: tuple[int, ...] = ()
+        self._changed_at = 0
+        """When the demand was made first, by the sender's clock, ms."""
         self._found: deque[tuple[float, int]] = deque()
-        """Time and bytes of those within the last second."""
+        """Time and bytes of the copies within the last second."""
         self.most = 0
         """Bytes within any second, since this was last set to 0."""
 
     def follow(self, data: bytes, now: float) -> None:
         """Follow these bytes."""
         for message_id, *_, raw in self._framer.feed(data, now):
-            if message_id not in DEMANDS:
-                continue
-            payload = bytes(payload_of(raw))
-            if payload in self._payloads:
+            if message_id == RoverOperatorPresence.id and self._is_copy(codec.decode_frame(message_id, raw)):
                 self._found.append((now, len(raw)))
-            self._payloads.append(payload)
         while self._found and now - self._found[0][0] >= 1.0:
             self._found.popleft()
         self.most = max(self.most, sum(size for _, size in self._found))
+
+    def _is_copy(self, sent: Any) -> bool:
+        demand = (sent.x, sent.y, sent.z, sent.r)
+        if demand != self._demand:
+            self._demand, self._changed_at = demand, sent.time_boot_ms
+            return False
+        return bool(sent.time_boot_ms - self._changed_at < COPIED_WITHIN)
 
 
 class Direction:
