@@ -29,11 +29,12 @@ def replace(file: Path, part: str) -> None:
 def _head(run: Mapping[str, Any]) -> Iterator[str]:
     machine = run["machine"]
     kind = "`--quick` run (few samples: tails mean nothing)" if run["quick"] else "Full run"
+    taken = [f"{name} {each['seconds']:.0f}" for name, each in run["results"].items()]
     took = sum(each["seconds"] for each in run["results"].values()) / 60
     loads = f"load {machine['load_before']} before and {machine.get('load_after', '?')} after"
     yield f"{kind}, {machine['date'][:16].replace('T', ' ')}, commit {machine['commit']}, {took:.0f} minutes, {loads}."
     yield f"{machine['cpu']}, {machine['cores']} cores, {machine['system']}, Python {machine['python']}."
-    yield ""
+    yield f"Seconds: {', '.join(taken)}.\n"
     for word, reasons in (("Not run", run["failed"]), ("Left out", run["skipped"]), ("Run again", run["again"])):
         for name, reason in reasons.items():
             yield f"- {word}: `{name}`, {' '.join(reason.split())}."
@@ -65,7 +66,6 @@ def _tables(run: Mapping[str, Any]) -> Iterator[str]:
         for table in each["tables"]:
             if table["rows"]:
                 yield from _table(table)
-        yield f"Took {each['seconds']:.0f} s.\n"
 
 
 def _table(table: Mapping[str, Any]) -> Iterator[str]:
