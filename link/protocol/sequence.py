@@ -6,6 +6,9 @@ on purpose. Only within one message id does the order tell which state is the ne
 A sender counts its frames, and it cannot count faster than it sends. So a frame whose number is too far from those
 before it belongs to another run of numbers, a `Numbering`: of a program that has restarted, of a second program with
 the same ids, or of copies of old frames. The runs are kept apart, so that a vehicle can let one of them drive.
+
+A program that has restarted may begin a little behind the last number of its former run. A number that the silent
+former run has used for another frame shows that: no copy and no late frame of that run has one.
 """
 
 from __future__ import annotations
@@ -49,13 +52,17 @@ NEW = FrameOrder.NEW
 
 
 class Numbering:
-    """One run of packet numbers. `index` counts the numberings of their sender."""
+    """One run of packet numbers. `index` counts the numberings of their sender.
 
-    __slots__ = ("_digests", "_kinds", "_rate", "_seen", "_window_at", "_window_count", "heard_at", "index", "newest",
-                 "received")  # fmt: skip
+    `former`: index of the silent run in whose numbers this one has begun; 0: none.
+    """
 
-    def __init__(self, index: int, sequence: int, message_id: int, digest: int, now: float) -> None:
+    __slots__ = ("_digests", "_kinds", "_rate", "_seen", "_window_at", "_window_count", "former", "heard_at", "index",
+                 "newest", "received")  # fmt: skip
+
+    def __init__(self, index: int, sequence: int, message_id: int, digest: int, now: float, *, former: int = 0) -> None:
         self.index = index
+        self.former = former
         self.newest = sequence
         self.heard_at = now
         self.received = 1
@@ -94,10 +101,12 @@ class Numbering:
 
     def fill(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder | None:
         """Take a frame behind the newest; None if another frame had its number."""
-        behind = (self.newest - sequence) & 0xFF
-        if self._seen >> behind & 1:
-            return FrameOrder.DUPLICATE if self._digests[sequence % _RING] == digest else None
-        self._seen |= 1 << behind
+        if self.has_taken(sequence, digest):
+            return FrameOrder.DUPLICATE
+        bit = 1 << ((self.newest - sequence) & 0xFF)
+        if self._seen & bit:
+            return None
+        self._seen |= bit
         self._digests[sequence % _RING] = digest
         last = self._kinds.get(message_id)
         if last is not None and (last - sequence) & 0xFF <= LATE_WINDOW:
@@ -109,6 +118,11 @@ class Numbering:
         if now - self._window_at >= 1.0:
             self._begin_window(now)
         return NEW
+
+    def has_taken(self, sequence: int, digest: int) -> bool:
+        """Return whether this frame was received before, byte for byte, as one of the newest LATE_WINDOW + 1."""
+        bit = 1 << ((self.newest - sequence) & 0xFF)
+        return self._seen & bit != 0 and self._digests[sequence % _RING] == digest
 
     def _begin_window(self, now: float) -> None:
         """Measure the rate of the frames before this one, which is the first of the next window."""
@@ -176,22 +190,24 @@ class SequenceTracker:
         self.lost += distance - 1
         self.received += 1
         self.numbering.advance(sequence, message_id, digest, now)
-        self.clash = self._is_crossed(now)
+        self.clash = self._is_crossed(now) or self._is_of_former(sequence, digest)
         return NEW
 
     def _accept_old(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder:
         order = self.numbering.fill(sequence, message_id, digest, now)
-        self.clash = order is None or (order is NEW and self._is_crossed(now))
+        if order is None and not self.numbering.is_in_use(now):
+            return self._begin(sequence, message_id, digest, now, former=self.numbering.index)
+        self.clash = order is None or (order is NEW and (self._is_crossed(now) or self._is_of_former(sequence, digest)))
         if order is not FrameOrder.DUPLICATE and order is not None:
             self.lost = max(0, self.lost - 1)
         self.received += order is None or order is NEW
         return NEW if order is None else order
 
-    def _begin(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder:
+    def _begin(self, sequence: int, message_id: int, digest: int, now: float, *, former: int = 0) -> FrameOrder:
         if len(self._numberings) >= NUMBERINGS_MAX:
             self._numberings.remove(min(self._numberings, key=lambda each: each.received))
         self._begun += 1
-        self.numbering = Numbering(self._begun, sequence, message_id, digest, now)
+        self.numbering = Numbering(self._begun, sequence, message_id, digest, now, former=former)
         self._numberings.append(self.numbering)
         self.received += 1
         self.clash = False
@@ -204,4 +220,11 @@ class SequenceTracker:
             (each.newest - newest + CLOSE) & 0xFF <= 2 * CLOSE
             for each in self._numberings
             if each is not self.numbering and each.is_in_use(now)
+        )
+
+    def _is_of_former(self, sequence: int, digest: int) -> bool:
+        """Return whether the run before this one had the frame: a copy of it passes for a frame of this one."""
+        former = self.numbering.former
+        return former > 0 and any(
+            each.index == former and each.has_taken(sequence, digest) for each in self._numberings
         )

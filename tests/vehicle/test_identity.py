@@ -246,6 +246,52 @@ def test_a_driver_who_comes_back_is_ready_within_a_second(kind: type[Program], w
     assert max(ready) <= 1.0 + 10 * loss
 
 
+@pytest.mark.parametrize("behind", [0, 3, 20, 32])
+def test_a_program_that_restarts_a_little_behind_its_last_number_drives_again_at_once(behind: int) -> None:
+    wires, driver = driving()
+    driver.hold(0.5, NEUTRAL)
+    wires.wait(1.5)
+    held = Program(wires, number=driver.number - 1 - behind & 0xFF)
+    push, rest = Axes(throttle=0.9), Axes(steering=0.002)  # the former run has sent neither with these numbers
+    held.hold(0.5, push)
+    assert wires.said("drives from another program now: release the keys first") == 1
+    assert not wires.turning  # a stick that was held all the while
+    held.hold(0.1, rest)
+    held.hold(0.3, push)
+    assert wires.turning
+    assert not wires.said("Two programs count")
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.integers(0, 2**32), st.integers(0, 32), st.floats(0.75, 4.0), st.floats(0.0, 0.3))
+def test_frames_of_the_former_run_move_nothing_before_and_after_a_restart(
+    seed: int, behind: int, silence: float, loss: float
+) -> None:
+    """Copies of its last 33 frames, most with full throttle, while the driver is gone and the next program is idle."""
+    chance = random.Random(seed)
+    wires, driver = driving()
+    driver.hold(0.5, NEUTRAL)
+    old = [data for _, data in driver.frames[-33:]]
+    back: Program | None = None
+
+    def each(now: float) -> None:
+        if back is not None:
+            back.step(NEUTRAL, lost=chance.random() < loss)
+        if chance.random() < 0.3:
+            wires.put(chance.choice(old), driver.address)
+        assert not wires.turning
+
+    assert not wires.turning
+    wires.wait(silence, each)
+    back = Program(wires, number=driver.number - 1 - behind & 0xFF)
+    wires.wait(3.0, each)
+    back.hold(1.0, NEUTRAL)
+    assert back.set_mode(Mode.MANUAL) is Result.ACCEPTED  # silence may have ended in HOLD
+    back.hold(0.1, NEUTRAL)
+    back.hold(0.3, AHEAD)
+    assert wires.turning
+
+
 def test_a_tcp_client_that_connects_again_is_the_same_program_once_the_first_is_silent() -> None:
     wires, driver = driving()
     again = Program(wires, "gcs on a new connection", number=driver.number)

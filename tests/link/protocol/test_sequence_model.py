@@ -37,6 +37,8 @@ class Run:
     times: list[float]
     rate: float = 5.0
     received: int = 1
+    former: int = 0
+    """Index of the silent run in whose numbers this one has begun."""
 
     def place(self, frame: Sent) -> int | None:
         """The number of a frame here, without wrapping; None if it is of another run."""
@@ -48,6 +50,10 @@ class Run:
 
     def in_use(self, now: float) -> bool:
         return now - self.at <= 0.7
+
+    def has_taken(self, frame: Sent) -> bool:
+        behind = (self.newest - frame.sequence) % 256
+        return behind <= 32 and self.digests.get(self.newest - behind) == frame.digest
 
     def add(self, number: int, frame: Sent) -> None:
         self.newest = max(number, self.newest)
@@ -87,11 +93,13 @@ class Model:
         self.received += 1
         run.add(place, frame)
         run.count(frame.now)
-        self.clash = self.is_crossed(run, frame.now)
+        self.clash = self.is_crossed(run, frame.now) or self.is_of_former(run, frame)
         return NEW
 
     def accept_old(self, run: Run, place: int, frame: Sent) -> FrameOrder:
         if place in run.digests:
+            if run.digests[place] != frame.digest and not run.in_use(frame.now):
+                return self.begin(frame, former=run.index)
             self.clash = run.digests[place] != frame.digest
             self.received += self.clash
             return NEW if self.clash else DUPLICATE
@@ -103,15 +111,15 @@ class Model:
         run.add(place, frame)
         run.count(frame.now)
         self.received += 1
-        self.clash = self.is_crossed(run, frame.now)
+        self.clash = self.is_crossed(run, frame.now) or self.is_of_former(run, frame)
         return NEW
 
-    def begin(self, frame: Sent) -> FrameOrder:
+    def begin(self, frame: Sent, former: int = 0) -> FrameOrder:
         if len(self.runs) == 4:
             self.runs.remove(min(self.runs, key=lambda run: run.received))
         self.begun += 1
         number, kind, digest, now = frame
-        self.runs.append(Run(self.begun, number, now, {number: digest}, {kind: number}, [now]))
+        self.runs.append(Run(self.begun, number, now, {number: digest}, {kind: number}, [now], former=former))
         self.received += 1
         self.index, self.clash = self.begun, False
         return NEW
@@ -119,6 +127,9 @@ class Model:
     def is_crossed(self, run: Run, now: float) -> bool:
         others = [each for each in self.runs if each is not run and each.in_use(now)]
         return any((each.newest - run.newest + 8) % 256 <= 16 for each in others)
+
+    def is_of_former(self, run: Run, frame: Sent) -> bool:
+        return any(each.index == run.former and each.has_taken(frame) for each in self.runs)
 
 
 def traffic(chance: random.Random, steps: int) -> Iterator[Sent]:
