@@ -58,12 +58,15 @@ class Signing:
         return SigningMemory(self.clock.own(now), dict(streams.newest), dict(streams.floors), ended)
 
     def hash_of(self, key: SigningKey | None) -> SecretHash | None:
-        """Return what signs with a key of the ring; None without a key, or if the ring no longer has it."""
-        return None if key is None else self._hashes.get(key.name)
+        """Return what signs with a key of the ring; None without a key, or if the ring no longer has its secret.
+
+        A key that has the name of one that was removed is another key.
+        """
+        return None if key is None else self._hashes.get(key.secret)
 
 
-def _hash_all(ring: KeyRing) -> dict[str, SecretHash]:
-    return {key.name: SecretHash(key.secret) for key in ring.keys}
+def _hash_all(ring: KeyRing) -> dict[bytes, SecretHash]:
+    return {key.secret: SecretHash(key.secret) for key in ring.keys}
 
 
 class FrameSigner:

@@ -15,7 +15,7 @@ from link.protocol.peer_table import MAX_PEERS
 from link.protocol.sent_frames import SentFrames
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.role import Role
-from link.signing.signature import link_and_stamp
+from link.signing.signature import SecretHash, link_and_stamp
 from tests.link.frames import demand, frame, heartbeat
 from tests.link.signing.signed import (
     ARM,
@@ -242,6 +242,22 @@ def test_a_system_whose_key_was_withdrawn_is_not_verified() -> None:
     assert channel.report().verified == {255}
     signing.set_ring(keep(WATCHER).ring)
     assert channel.report().verified == frozenset()
+
+
+def test_a_system_whose_key_was_replaced_under_its_name_is_not_verified_and_gets_nothing_of_the_new_key() -> None:
+    signing = keep(DRIVER, WATCHER)
+    signing.set_ring(signing.ring.choose(WATCHER.name))
+    channel = guarded(signing)
+    channel.receive(signed(), HERE, 0.0)
+    (before, _, _), *_ = channel.send(Outgoing(HEARTBEAT), now=0.0)
+    assert SecretHash(DRIVER.secret).matches(before)
+    signing.set_ring(signing.ring.remove(DRIVER.name).add(STRANGER))
+    assert channel.report().verified == frozenset()
+    (after, _, _), *_ = channel.send(Outgoing(HEARTBEAT), now=0.0)
+    assert SecretHash(WATCHER.secret).matches(after), "ours, as to a peer that has not signed"
+    way = channel.signing_way(HERE)
+    assert way is not None
+    assert way.key == WATCHER.name
 
 
 def test_a_wanted_stop_without_a_place_is_handed_on() -> None:

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from link.signing.clock import TICKS, to_stamp
-from link.signing.keys import SigningKey
+from link.signing.keys import KeyRing, SigningKey
 from link.signing.role import Role
 from link.signing.signature import STAMP_MAX
 from link.signing.signing import Signing, SigningMemory
@@ -157,6 +157,27 @@ def test_a_key_that_is_withdrawn_is_unknown_at_once() -> None:
     signing.set_ring(signing.ring.remove(WATCHER.name))
     assert check(signing, signed(key=WATCHER, stamp=NOW + 1)) is Refusal.BAD_SIGNATURE
     assert check(signing, signed()) is DRIVER
+
+
+def test_a_key_with_the_name_of_one_that_was_removed_is_another_one() -> None:
+    signing = keep(DRIVER, WATCHER)
+    assert signing.hash_of(DRIVER) is not None
+    assert STRANGER.name == DRIVER.name
+    signing.set_ring(signing.ring.remove(DRIVER.name).add(STRANGER))
+    assert signing.hash_of(DRIVER) is None
+    assert signing.hash_of(WATCHER) is not None
+    found = signing.hash_of(STRANGER)
+    assert found is not None
+    assert found.matches(signed(key=STRANGER))
+    assert signing.hash_of(None) is None
+
+
+def test_a_key_whose_name_or_role_has_changed_signs_as_before() -> None:
+    signing = keep(DRIVER)
+    signing.set_ring(KeyRing((SigningKey("renamed", Role.WATCH, DRIVER.secret),), "renamed"))
+    found = signing.hash_of(DRIVER)
+    assert found is not None
+    assert found.matches(signed())
 
 
 def test_a_sender_that_signs_has_its_ids_for_itself() -> None:
