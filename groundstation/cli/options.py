@@ -47,7 +47,7 @@ dialect file (--dialect mine.xml): MAVLink definitions in XML, read at each star
 the definitions that come with pymavlink, such as common.xml; --dialect ardupilotmega.xml names one of them.
 
 status line: link: four bars up to 2 % loss, three up to 10 %, two up to 25 %; loss: lost frames of the last 5 s;
-rtt: round trip to the vehicle; sent: demands per second; cmd: age of the demand that the motors obey;
+rtt: round trip to the vehicle; sent: demands per second; cmd: age of the newest demand it has taken;
 key→motor: time from a changed demand to the vehicle that applies it; tty: round trip to this terminal;
 pre-arm: the vehicle's checks before arming; gps: fix and satellites; batt: voltage and charge
 

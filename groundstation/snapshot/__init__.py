@@ -88,7 +88,7 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     limits: tuple[str, ...] = ()
     """Why outputs differ from the demand: "slew", "neutral first" ..."""
     command_age: float | None = None
-    """Age of the demand that the motors obey, s."""
+    """Age of the newest demand that the vehicle has taken, s; from some age on it is not obeyed any more."""
     command_age_estimated: bool = False
     """Not reported by the vehicle: time since the newest demand was sent, and half a round trip."""
     speed_demand: float | None = None

@@ -72,7 +72,7 @@ class DriveReadings:
         return demand[0] * float(info.speed_max)
 
     def command_age(self, sent_age: float | None, round_trip: float | None, now: float) -> tuple[float | None, bool]:
-        """Return the age of the demand in use, s, and whether it is an estimate.
+        """Return the age of the newest demand that the vehicle has taken, s, and whether it is an estimate.
 
         `sent_age` is that of the newest demand that was sent; half a round trip later the vehicle has received it.
         """

@@ -233,7 +233,7 @@ class VehicleState:
         return self.foreign.demand(now) if drive is None else drive_demand(drive)
 
     def command_age(self, now: float) -> float | None:
-        """Return the age of the demand in use as ROVER_DRIVE_STATUS reports it, s. An old report adds its own age."""
+        """Return the age of the newest demand as ROVER_DRIVE_STATUS reports it, s. An old report adds its own age."""
         drive = self._drive
         if drive is None or drive.demand_age_ms == UNKNOWN_U16:
             return None

@@ -33,8 +33,8 @@ STATION_FIELDS: dict[str, FieldInfo] = {
         ("round_trip", "ms", 1), ("loss", "%", 1), ("command_age", "ms", 0), ("key_to_motor", "ms", 1),
     )
 }  # fmt: skip
-"""What this station measures of the selected vehicle: TIMESYNC round trip, lost frames, age of the demand that the
-motors obey, and the time from a sent demand to the motors."""
+"""What this station measures of the selected vehicle: TIMESYNC round trip, lost frames, age of the newest demand
+that it has taken, and the time from a sent demand to the motors."""
 
 
 def build_ready(find: Callable[[str], FieldId | None]) -> tuple[ReadyView, ...]:

@@ -28,7 +28,7 @@ STATUS_LINE = (
     ("loss", "frames of the vehicle lost over the last 5 s"),
     ("rtt", "round trip to the vehicle and back (TIMESYNC)"),
     ("sent", "MANUAL_CONTROL frames sent per second"),
-    ("cmd", "age of the demand that the motors obey; from 450 ms on our vehicle stops"),
+    ("cmd", "age of the newest demand that the vehicle has taken; from 450 ms on our vehicle stops"),
     ("key→motor", "time from a changed demand to the vehicle that applies it"),
     ("tty", "round trip to this terminal; without answers keys do not drive"),
     ("pre-arm", "the vehicle's checks before arming; the log has the reasons"),

@@ -30,6 +30,8 @@ class WayValue:
     estimated: bool = False
     limit: float | None = None
     """From this age on the vehicle no longer obeys; None: not known, or never."""
+    obeyed: bool = False
+    """The motors turn, and the demand asks for it."""
 
     @classmethod
     def from_snapshot(cls, snapshot: Snapshot) -> WayValue:
@@ -43,6 +45,7 @@ class WayValue:
             None if age is None or age > 99.0 else round(1000 * age),
             vehicle.command_age_estimated,
             command_limit(vehicle),
+            _turns_by_demand(vehicle),
         )
 
 
@@ -50,6 +53,12 @@ def command_limit(vehicle: VehicleView) -> float | None:
     """Return the age in ms from which on the vehicle no longer obeys a demand, by its own parameters."""
     bound = next((stop.bound for stop in vehicle.stops if stop.name == "no command" and not stop.never), None)
     return None if bound is None else 1000 * bound
+
+
+def _turns_by_demand(vehicle: VehicleView) -> bool:
+    """Return whether motors turn while a demand for motion is in force."""
+    turning = any(output.value for output in vehicle.outputs)
+    return vehicle.armed and vehicle.drivable and turning and any(vehicle.demand or ())
 
 
 def _rounded_way(way: KeyToMotor) -> KeyToMotor:
@@ -122,7 +131,10 @@ class WayPanel(Instrument[WayValue]):
             return "no demand is in use"
         if self.value.estimated:
             return "~ an estimate: the vehicle does not tell"
-        return f"the motors obey a demand {_ms(self.value.age)} ms old"
+        age = f"{_ms(self.value.age)} ms old"
+        if self.value.limit is not None and self.value.age >= self.value.limit:
+            return f"the demand is {age}: not obeyed"
+        return f"the motors obey a demand {age}" if self.value.obeyed else f"the newest demand is {age}"
 
 
 def _ms(value: float) -> str:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import OutputView, Snapshot
 from groundstation.snapshot.drive import HealthLine, KeyToMotor, MissionProgress, StopBound, Timing
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.look.colours import AMBER, DIM, GREEN, RED
@@ -112,6 +112,33 @@ def test_the_parts_of_the_way_and_the_age_against_its_limit() -> None:
     assert "42 ━" in lines[5]
     assert lines[5].endswith("┤450")
     assert lines[6] == "the motors obey a demand 42 ms old"
+
+
+STILL = (OutputView(name="left wheel", value=0.0), OutputView(name="right wheel", value=0.0))
+UNKNOWN = (OutputView(name="servo 1", value=None),)
+
+
+@pytest.mark.parametrize(
+    ("changes", "note"),
+    [
+        ({}, "the motors obey a demand 42 ms old"),
+        ({"command_age": 0.449}, "the motors obey a demand 449 ms old"),
+        ({"command_age": 0.45}, "the demand is 450 ms old: not obeyed"),
+        ({"command_age": 2.24, "outputs": STILL, "demand": (0.0, 0.0)}, "the demand is 2240 ms old: not obeyed"),
+        ({"outputs": STILL}, "the newest demand is 42 ms old"),  # neutral first, for example
+        ({"outputs": UNKNOWN}, "the newest demand is 42 ms old"),
+        ({"outputs": ()}, "the newest demand is 42 ms old"),
+        ({"demand": (0.0, 0.0)}, "the newest demand is 42 ms old"),  # a ramp to neutral
+        ({"demand": (0.0, 0.2)}, "the motors obey a demand 42 ms old"),
+        ({"demand": None}, "the newest demand is 42 ms old"),
+        ({"armed": False}, "the newest demand is 42 ms old"),
+        ({"mode": "AUTO", "drivable": False}, "the newest demand is 42 ms old"),
+        ({"command_age": 2.24, "stops": ()}, "the motors obey a demand 2240 ms old"),  # no limit is known
+        ({"command_age": None}, "no demand is in use"),
+    ],
+)
+def test_the_motors_obey_only_while_they_turn_by_a_demand_that_counts(changes: dict[str, object], note: str) -> None:
+    assert texts(way(**changes).draw(40, 7))[6] == note
 
 
 def test_estimates_are_marked() -> None:
