@@ -202,7 +202,7 @@ class Control:
     def _use(self, demand: Demand, now: float, *, proof: bool = True) -> bool:
         self.expire_stale_demand(now)
         self.demand = demand
-        if proof and not self.neutral_seen and demand.is_neutral(self.deadband):
+        if proof and demand.is_neutral(self.deadband):
             self.neutral_seen = True
         return True
 

@@ -50,4 +50,4 @@ class OperatorPresence:
 
         An echo of 0 after others is old, else a program that stopped echoing would switch the check off.
         """
-        return echo_age(echo, since_boot) if echo or self._has_echoed else -math.inf
+        return echo_age(echo, since_boot) if self._has_echoed else -math.inf

@@ -243,3 +243,35 @@ class TestSuccession:
         rig.now += 5.1
         assert [rig.stick(AHEAD) for _ in range(3)] == [False, False, True]
         assert not rig.control.neutral_seen
+
+
+class TestWithoutAGoodProof:
+    """A ground station that has proven late only: its demands have the bound of a driver that echoes."""
+
+    def late(self) -> Sessions:
+        rig = Sessions()
+        rig.prove(age=2.0)
+        rig.control.take(rig.source, rig.now)
+        assert rig.control.ownership.session is None
+        return rig
+
+    def test_its_demands_wait_for_another_proof(self) -> None:
+        rig = self.late()
+        assert rig.stick(NEUTRAL)
+        assert not rig.control.neutral_seen
+        assert not rig.stick(AHEAD)
+
+    def test_one_that_has_proven_nothing_need_not(self) -> None:
+        rig = Sessions()
+        rig.control.take(rig.source, rig.now)
+        assert rig.stick(NEUTRAL)
+        assert rig.control.neutral_seen
+        assert rig.stick(AHEAD)
+
+    def test_its_demands_end_when_what_it_has_seen_is_that_old(self) -> None:
+        rig = self.late()
+        rig.presence(echo=round((rig.now - BOOT - 0.2) * 1000))
+        assert rig.stick(NEUTRAL)
+        assert rig.control.demand is not None
+        assert rig.control.demand.lifetime == pytest.approx(ECHO_MAX - 0.2)
+        assert rig.control.demand_timeout == pytest.approx(ECHO_MAX - 0.2)

@@ -238,3 +238,16 @@ def test_a_drivers_demand_has_a_dead_band_and_softness(
 def test_an_axis_without_a_demand_is_zero() -> None:
     assert shape_demand(Demand(None, None, 0.0, 255, 0), Params()) == (0.0, 0.0, 0.0)
     assert shape_demand(demand(None, None), Params()) == (0.0, 0.0, 0.0)
+
+
+def test_a_sideways_demand_that_is_no_number_stops_a_drive_that_has_no_use_for_it() -> None:
+    rig = Rig(DRIVE_TYPE=DriveType.SKID)
+    assert rig.update(demand(0.5)).throttles == (0.5, 0.5)
+    assert rig.update(demand(0.5, sideways=math.nan)) == OFF
+    assert rig.drive.rejected_cycles == 1
+
+
+def test_the_trim_of_a_steering_servo_counts_beside_a_motor_without_settings() -> None:
+    rig = Rig(DRIVE_TYPE=DriveType.ACKERMANN, MOT2_TRIM=10.0)
+    assert rig.update(demand(0.5)).throttles == (0.5, 0.1)
+    assert rig.drive.wheels == (0.5, 0.0)

@@ -11,7 +11,7 @@ from link.core import Outgoing, Received
 from tests.vehicle.bench import BEAT, NEUTRAL
 from tests.vehicle.conversations import conversation
 from vehicle.drive.conversation import Conversation
-from vehicle.drive.operator_session import DrivingSession, Proof
+from vehicle.drive.operator_session import SENDERS_MAX, DrivingSession, Proof
 from vehicle.drive.ownership import CLASH_REPORT_AGAIN, REPORT_AGAIN, Ownership
 from vehicle.params import Params
 from vehicle.statustext import StatusTextQueue
@@ -21,6 +21,7 @@ GCS, OTHER = conversation(255, numbering=1), conversation(254, numbering=1)
 TWIN = GCS._replace(peer=GCS.peer._replace(address="elsewhere"), numbering=3)
 DEMAND = build_manual_control(NEUTRAL, 1)
 ARM = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
+ASK = m.CommandLong(1, 1, Command.REQUEST_MESSAGE, 0, 0, 0, 0, 0, 0, 0, 0)
 PROOF = Proof(session=7, clock=1, age=0.1)
 
 
@@ -99,6 +100,30 @@ class TestQuestions:
         scene.ownership.take(GCS, scene.now)
         assert scene.ownership.denial_reason(GCS, scene.now) is None
         assert scene.ownership.denial_reason(GCS, scene.now + 1.5) == "no proof on this link for 1.5 s"
+
+    def test_a_link_with_proofs_as_old_as_may_be_is_not_late(self) -> None:
+        scene = Scene(None)
+        scene.prove(GCS, PROOF._replace(age=0.45))
+        scene.ownership.take(GCS, scene.now)
+        assert scene.ownership.denial_reason(GCS, scene.now + 1.5) == "no proof on this link for 1.5 s"
+
+    def test_a_driver_proves_for_a_second_after_a_proof_good_or_not(self) -> None:
+        scene = Scene(None)
+        scene.prove(GCS, good=False)
+        assert not scene.ownership.driver_proves(scene.now)
+        scene.ownership.take(GCS, scene.now)
+        assert scene.ownership.driver_proves(scene.now + 1.0)
+        assert not scene.ownership.driver_proves(scene.now + 1.01)
+
+    def test_of_the_senders_of_proofs_the_one_that_is_silent_longest_is_forgotten(self) -> None:
+        scene = Scene()
+        others = [conversation(system, numbering=1) for system in range(1, SENDERS_MAX)]
+        for sender in (GCS, *others, GCS, conversation(99, numbering=1)):
+            scene.prove(sender, good=False)
+        assert scene.ownership.driver_proves(scene.now)
+        for system in range(100, 99 + SENDERS_MAX):
+            scene.prove(conversation(system, numbering=1), good=False)
+        assert not scene.ownership.driver_proves(scene.now)
 
     def test_only_the_configured_ids(self) -> None:
         scene = Scene(None, MAV_GCS_SYSID=254)
@@ -250,6 +275,13 @@ class TestSuccession:
         copies = TWIN._replace(numbering=9)
         assert not any(scene.hear(copies, digest=digest) for digest in (901, 902, 903, 901))
         assert scene.ownership.is_driver(GCS, scene.now)
+
+    def test_not_by_commands_that_only_ask(self) -> None:
+        scene = Scene()
+        scene.hear(GCS)
+        scene.wait(0.8)
+        assert not any(scene.hear(TWIN, ASK) for _ in range(9))
+        assert scene.hear(TWIN, ARM)
 
     def test_not_while_the_driver_speaks(self) -> None:
         scene = Scene()
