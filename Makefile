@@ -25,7 +25,7 @@ format:  ## Format the code and sort the imports.
 test-fast:  ## Test the cores and the safety code, in less than 20 s.
 	$(PYTEST) -q $(PARALLEL) -m 'not slow' $(FAST)
 
-test:  ## Run the tests that README.md runs: everything but the slow ones, in less than 4 minutes.
+test:  ## Run the tests that README.md runs: everything but the slow ones.
 	$(PYTEST) $(PARALLEL) -m 'not slow'
 
 test-all:  ## Run every test, as CI does.

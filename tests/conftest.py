@@ -21,7 +21,7 @@ settings.register_profile(
     "mavhelm",
     deadline=None,  # a pause of the machine must not fail an example
     suppress_health_check=[HealthCheck.too_slow],
-    max_examples=int(os.environ.get("MAVHELM_EXAMPLES", "100")),  # .ci/coverage needs few
+    max_examples=int(os.environ.get("MAVHELM_EXAMPLES", "100")),  # .ci/run and .ci/coverage need fewer
     derandomize="MAVHELM_CI" in os.environ,  # CI tries the same examples each time; new ones are found on laptops
 )
 settings.load_profile("mavhelm")

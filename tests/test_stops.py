@@ -243,11 +243,11 @@ def test_a_hiccup_needs_the_key_let_go_once() -> None:
 
 
 @pytest.mark.slow
-def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
+def test_ten_percent_loss_for_three_minutes_drives_on() -> None:
     drive = Drive(loss=0.10, delay=0.010, seed=5)
     drive.get_going()
     drive.moved.clear()
-    drive.run(600.0)
+    drive.run(180.0)
     driving = sum(power > 0.5 for _, power in drive.moved) / len(drive.moved)
     assert driving > 0.99
 
@@ -258,16 +258,19 @@ def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
 def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
     drive = Drive(loss=0.30, delay=0.010, seed=seed)
     drive.until(lambda: drive.station.snapshot(drive.world.now, 0).vehicle is not None)
-    for _ in range(8):
+    turned = 0.0
+    for _ in range(3):
         drive.tell(Arm(held=1.0))
         drive.run(2.0)
         drive.held = "i"
         drive.run(3.0)
         drive.held = None
         drive.run(0.25 + NEUTRAL_WITHIN + 0.05)
+        turned = max(turned, *(power for _, power in drive.moved))
         drive.moved.clear()
         drive.run(1.0)
         assert max(power for _, power in drive.moved) == 0.0
+    assert turned > 0.0
 
 
 def test_emergency_stop_is_at_once_and_stays() -> None:

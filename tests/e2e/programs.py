@@ -51,6 +51,9 @@ class Vehicle:
     def __init__(self, folder: Path, port: int | str, *options: str, within: Sequence[str] = ()) -> None:
         """`within`: the command that runs it in a network namespace."""
         self.motor_log = folder / "motors.log"
+        self._outputs: list[Output] = []
+        self._read = 0
+        """Bytes of the motor log that are in _outputs: waits ask many times a second."""
         self.errors = folder / "vehicle.err"
         endpoint = port if isinstance(port, str) else f"udpout:127.0.0.1:{port}"
         command = [*within, sys.executable, "-m", "vehicle", "--sim", endpoint, "--param", PATIENT_LOOP, *options]
@@ -61,11 +64,14 @@ class Vehicle:
 
     def outputs(self) -> list[Output]:
         """Return all changes of the motor outputs so far."""
-        if not self.motor_log.exists():
-            return []
-        lines = self.motor_log.read_text().rpartition("\n")[0].splitlines()
-        rows = (line.split() for line in lines)
-        return [Output(int(at) / 1e9, tuple(map(float, values))) for at, *values in rows]
+        if self.motor_log.exists():
+            with self.motor_log.open("rb") as log:
+                log.seek(self._read)
+                lines, end, _ = log.read().rpartition(b"\n")
+            self._read += len(lines) + len(end)
+            rows = (line.split() for line in lines.splitlines())
+            self._outputs += [Output(int(at) / 1e9, tuple(map(float, values))) for at, *values in rows]
+        return self._outputs[:]
 
     def turning(self) -> bool:
         """Return whether the wheels turn now."""

@@ -106,11 +106,10 @@ def hold(rig: Rig, seconds: float) -> None:
     rig.station.hold("i", lambda: time.monotonic() > start + seconds)
 
 
-def test_key_released(rig: Rig) -> None:
+def test_key_released_and_then_a_stop_key_in_a_burst(rig: Rig) -> None:
     assert_stops(rig, time.monotonic(), HOLD_TIMEOUT)
-
-
-def test_a_stop_key_in_a_burst_wins(rig: Rig) -> None:
+    drive_on(rig.station, rig.vehicle)
+    rig.waits = Waits(rig.vehicle.process.pid, rig.station.process.pid)
     rig.station.type("iik")
     assert_stops(rig, time.monotonic())
 

@@ -132,14 +132,14 @@ def test_ground_station_frozen_with_its_children(rig: Build) -> None:
     assert not world.vehicle.moved_since(back)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_ground_station_told_to_end(rig: Build, number: signal.Signals) -> None:
+def test_ground_station_told_to_end(rig: Build) -> None:
+    """tests/groundstation/ui/test_exit.py has the other signals, which have the same handler."""
     world = rig()
     world.drive()
     told = time.monotonic()
-    os.kill(world.station.process.pid, number)
+    os.kill(world.station.process.pid, signal.SIGTERM)
     assert_stops(world)
-    assert world.station.ended() == 128 + number  # as in a shell
+    assert world.station.ended() == 128 + signal.SIGTERM  # as in a shell
     assert_said_neutral(world, told)
 
 
@@ -177,14 +177,14 @@ def test_link_cut_and_back_with_the_key_held_all_along(rig: Build) -> None:
     drive_on(world.station, world.vehicle)
 
 
-HOLDS = 9
-"""Key presses in a lossy minute; with little loss all but one must drive."""
+HOLDS = 4
+"""Key presses on a lossy link; with little loss all but one must drive."""
 
 
 @pytest.mark.parametrize(("loss", "keeps_driving"), [(0.10, True), (0.30, False)])
 @pytest.mark.slow
-def test_a_lossy_minute(rig: Build, loss: float, keeps_driving: bool) -> None:
-    """Hold and release the key for one minute. Motion follows the key or ends; it never comes late."""
+def test_a_lossy_link(rig: Build, loss: float, keeps_driving: bool) -> None:
+    """Hold and release the key some times. Motion follows the key or ends; it never comes late."""
     world = rig(loss=loss, delay=0.010)
     world.drive()
     drove = sum(drives_for_5_s(world) for _ in range(HOLDS))
