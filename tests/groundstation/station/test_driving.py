@@ -40,6 +40,19 @@ def test_a_copy_follows_a_change_and_none_its_repeats() -> None:
     assert [at for at, x, _ in cockpit.demands(before) if x] == [first, *repeats], "a copy is the proof alone"
 
 
+def test_a_key_that_is_pressed_in_the_moment_of_a_stop_drives_only_after_a_neutral_was_sent() -> None:
+    cockpit = driving_cockpit()
+    station, now = cockpit.station, cockpit.now
+    station.messages_to_send()
+    for intent in (Stop(), FORWARD):  # as the station reads them, before it sends
+        station.handle_intent(intent, now)
+    sent = [each.message for each in station.messages_to_send()]
+    assert {message.x for message in sent if isinstance(message, (m.ManualControl, m.RoverOperatorPresence))} == {0}
+    station.act(now + 0.01)
+    later = [each.message for each in station.messages_to_send()]
+    assert [message.x for message in later if isinstance(message, m.ManualControl)] == [600]
+
+
 def test_a_copy_carries_what_the_keys_demand_when_it_is_sent() -> None:
     cockpit = driving_cockpit()
     released = cockpit.now
