@@ -265,9 +265,7 @@ class Runner:
 
     def _plan_early(self) -> None:
         """Set the timer for what the core has to do before the next tick."""
-        if self._early is None:
-            return
-        due = self._early.due_at
+        due = self._early.due_at if self._early is not None else None
         if self._early_timer is not None and self._early_timer.when() != due:
             self._early_timer.cancel()
             self._early_timer = None
@@ -328,8 +326,7 @@ class Runner:
     def _run_tick(self) -> None:
         now = asyncio.get_running_loop().time()
         for link in self.links:
-            if found := link.channel.tick(now):
-                self._hand_over(found, now)
+            self._hand_over(link.channel.tick(now), now)
         if self._router:
             self._forward(self._router.tick(now))
         if now >= self._report_due:

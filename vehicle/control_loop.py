@@ -3,8 +3,8 @@
 It is a core like the rover inside it, so that tests run it in virtual time. Its rules:
 - what the rover decides when a message arrives is written to the motors before `receive` returns, not at the next tick;
 - a motor driver that fails is stopped first, and reported to the rover after that;
-- the emergency-stop input is read and the motors are written each cycle, and an input that cannot be read counts as
-  pressed; sensors and all that follows from them may be left out in a short cycle (Controller.tick_outputs);
+- the emergency-stop input is read each cycle, and one that cannot be read counts as pressed; the rest of a cycle may be
+  left out while the motors have no power;
 - an exception of any kind stops the motors before it propagates;
 - once closed, no motor turns again, whatever the outputs of the rover are.
 """
@@ -48,10 +48,10 @@ class Controller(Core, Protocol):
     def motor_repaired(self, now: float) -> None:
         """Handle a motor driver that works again; the motors are still stopped."""
 
-    def tick_outputs(self, now: float, *, powered: bool) -> bool:
-        """Bring the outputs up to date and return True if `sense` and `tick` can wait for a later cycle.
+    def may_skip(self, now: float) -> bool:
+        """Return whether `sense` and `tick` may be left out in this cycle, as they would find nothing to do.
 
-        False: nothing was done, and this cycle is a whole one. `powered`: the motors have power, or may have it.
+        Only asked while the motors have no power.
         """
 
     def shutdown(self, now: float) -> None:
@@ -216,7 +216,7 @@ class ControlLoop:
 
     def _cycle(self, now: float) -> None:
         self._controller.update_estop_input(self._stop_reason(), now)
-        self._whole = not self._controller.tick_outputs(now, powered=self._drivetrain.powered)
+        self._whole = self._drivetrain.powered or not self._controller.may_skip(now)
         if self._whole:
             self._controller.sense(self._sensors.read(now), now)
             self._controller.tick(now)

@@ -22,7 +22,7 @@ from vehicle.drive.drive import Drive
 from vehicle.drive.gate import DRIVE, Outputs
 from vehicle.modes import MODES
 from vehicle.outbox import Outbox
-from vehicle.pace import PERIOD, ROUTINE, Activity, Pace
+from vehicle.pace import ROUTINE, Activity, Pace
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety.failsafe import FailsafeAction
@@ -44,8 +44,6 @@ from vehicle.telemetry.view import TelemetryView
 
 _LIMIT, _DEMAND, _MOTION, _OFF = FailsafeAction.LIMIT, Effect.DEMAND, Effect.MOTION, SafetyState.OFF
 """Shortcuts for what runs with each demand: a lookup in an enum costs as much as three comparisons."""
-_STEADY_MODES = frozenset({Mode.MANUAL, Mode.HOLD})
-"""Modes that need no sensor to drive."""
 
 
 class Rover:
@@ -78,10 +76,6 @@ class Rover:
         self._readings = NO_READINGS
         self._activity = Activity(now)
         self._cycles = Pace(self._activity)
-        self._moved_at = now
-        """When a wheel was last given another value."""
-        self._driven = False
-        """The wheels followed the demand when the outputs were computed last."""
         self._texts = texts = StatusTextQueue(on_text)
         self._health_notices = HealthNotices(texts)
         self._control = Control(params, texts, system=int(params["MAV_SYSID"]), boot=now)
@@ -157,7 +151,7 @@ class Rover:
         replies = route.handle(received, message, now)
         if replies:
             self._outbox.add(replies)
-        if effect is _MOTION or (effect is _DEMAND and before is not None and self._has_changed(before, now)):
+        if effect is _MOTION or (effect is _DEMAND and self._motion_inputs() != before):
             self._act(effect, now)
 
     def tick(self, now: float) -> None:
@@ -211,19 +205,9 @@ class Rover:
         """Allow arming again: the motor driver has passed its self-test."""
         self._safety.motor_repaired(now)
 
-    def tick_outputs(self, now: float, *, powered: bool) -> bool:
-        """Run a short cycle and return True, or return False: a whole one is due.
-
-        A short one is enough while nothing is under way, and the rover is disarmed, or drives as steadily as before.
-        Late cycles, stale demands and the last gate are checked in it as in a whole one.
-        """
-        if self._actuator_test.running or self._cycles.is_due(now) or self._monitor.is_late(now):
-            return False
-        if self._safety.armed:
-            if not self._is_steady(now):
-                return False
-            self._update_outputs(now, late=False)
-        elif powered:
+    def may_skip(self, now: float) -> bool:
+        """Return whether this cycle may be left out: disarmed, nothing under way, and not late."""
+        if self._safety.armed or self._actuator_test.running or self._cycles.is_due(now) or self._monitor.is_late(now):
             return False
         self._monitor.skip_cycle(now)
         return True
@@ -251,36 +235,9 @@ class Rover:
         reporting = Reporting(self._telemetry, self._links, self._build_view)
         return Dispatcher(context, reporting, stores, self._rack)
 
-    def _is_steady(self, now: float) -> bool:
-        """Return whether the armed rover drives on as it did in the last PERIOD, without a stale demand or a hazard.
-
-        A fence, and the modes that need a sensor, need it in each cycle.
-        """
-        return (
-            now - self._moved_at > PERIOD
-            and self._safety.mode in _STEADY_MODES
-            and self._safety.failsafes.quiet
-            and not self._control.is_demand_stale(now)
-            and not self._navigator.fence_avoidance.fence.enabled
-        )
-
     def _motion_inputs(self) -> tuple[Demand | None, SafetyState, int]:
         """Return what a demand or a button may have changed."""
         return self._control.demand, self._safety.state, self._safety.mode_generation
-
-    def _has_changed(self, before: tuple[Demand | None, SafetyState, int], now: float) -> bool:
-        """Return whether a demand must be acted upon at once; one that repeats the last one waits for the cycle."""
-        old, state, generation = before
-        if self._safety.state is not state or self._safety.mode_generation != generation:
-            self._activity.stir(now)
-            return True
-        new = self._control.demand
-        if new is old:
-            return False
-        if new is None or old is None or new.axes != old.axes:
-            return True
-        steady = self._driven and self._control.neutral_seen and now - self._moved_at > PERIOD
-        return not steady or self._monitor.is_late(now)
 
     def _act(self, effect: Effect, now: float) -> None:
         """Bring outputs and telemetry up to date with what a message has changed."""
@@ -298,12 +255,8 @@ class Rover:
         test = self._actuator_test.current_test(now, late=late)
         clearance = self._monitor.build_clearance(now, self._navigator.demand, late=late, trial=test)
         limited = self._safety.failsafes.lasting_action(now) >= _LIMIT
-        before = self._drive.wheels
         self._drive.update(self._demand_in_use(now), clearance, limited=limited, now=now)
-        if self._drive.wheels != before:
-            self._moved_at = now
-        self._driven = clearance.permit is DRIVE
-        if not self._driven:
+        if clearance.permit is not DRIVE:
             self._navigator.reset_controller()
 
     def _demand_in_use(self, now: float) -> Demand | None:

@@ -60,8 +60,8 @@ class Script:
     def motor_repaired(self, now: float) -> None:
         self.calls.append("repaired")
 
-    def tick_outputs(self, now: float, *, powered: bool) -> bool:
-        return self.idle and not powered
+    def may_skip(self, now: float) -> bool:
+        return self.idle
 
     def shutdown(self, now: float) -> None:
         self.calls.append("shutdown")
