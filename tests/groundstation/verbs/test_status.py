@@ -108,5 +108,6 @@ def test_links_show_what_arrives_with_and_without_a_vehicle(capsys: Capture) -> 
 def test_a_vehicle_is_chosen_by_its_printed_name(capsys: Capture) -> None:
     with ForeignVehicle() as vehicle:
         assert run_verb(capsys, "status", "-v", "ArduPilot rover 1", "-e", vehicle.endpoint).code == 0
-        wrong = run_verb(capsys, "status", "-v", "Rover", "-e", vehicle.endpoint)
-        assert (wrong.code, "nor a name as 'Rover 1'" in wrong.err) == (ExitCode.USAGE, True), wrong.err
+        wrong = run_verb(capsys, "status", "-v", "Rover", "--wait", "2", "-e", vehicle.endpoint)
+        assert (wrong.code, "no vehicle Rover on" in wrong.err) == (ExitCode.NO_VEHICLE, True), wrong.err
+        assert "but 1" in wrong.err, "what was heard is listed"
