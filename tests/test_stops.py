@@ -243,11 +243,11 @@ def test_a_hiccup_needs_the_key_let_go_once() -> None:
 
 
 @pytest.mark.slow
-def test_ten_percent_loss_for_three_minutes_drives_on() -> None:
+def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
     drive = Drive(loss=0.10, delay=0.010, seed=5)
     drive.get_going()
     drive.moved.clear()
-    drive.run(180.0)
+    drive.run(600.0)  # demands that become stale too early have ended such a drive only after 400 s
     driving = sum(power > 0.5 for _, power in drive.moved) / len(drive.moved)
     assert driving > 0.99
 
