@@ -117,7 +117,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m tests.benchmarks",
         description="Measure both programs beside a reference in the same run.",
-        epilog=f"benchmarks:\n{names}\n\nA full run takes about 50 minutes and wants the machine for itself.",
+        epilog=f"benchmarks:\n{names}\n\nA full run takes about 57 minutes and wants the machine for itself.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )

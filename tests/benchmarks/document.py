@@ -30,7 +30,7 @@ def _head(run: Mapping[str, Any]) -> Iterator[str]:
     machine = run["machine"]
     kind = "`--quick` run (few samples: tails mean nothing)" if run["quick"] else "Full run"
     taken = [f"{name} {each['seconds']:.0f}" for name, each in run["results"].items()]
-    took = sum(each["seconds"] for each in run["results"].values()) / 60
+    took = machine.get("seconds", 0.0) / 60
     loads = f"load {machine['load_before']} before and {machine.get('load_after', '?')} after"
     yield f"{kind}, {machine['date'][:16].replace('T', ' ')}, commit {machine['commit']}, {took:.0f} minutes, {loads}."
     yield f"{machine['cpu']}, {machine['cores']} cores, {machine['system']}, Python {machine['python']}."

@@ -30,6 +30,7 @@ class Run:
     def __init__(self, benchmarks: Mapping[str, Benchmark], options: Options, out: Path | None = None) -> None:
         """`out`: file that has the results after each benchmark."""
         self._benchmarks, self._options, self._out = benchmarks, options, out
+        self._began = time.monotonic()
         self.results: dict[str, Any] = {
             "quick": options.quick,
             "machine": machine.facts(),
@@ -76,7 +77,7 @@ class Run:
                 traceback.print_exception(error)
         else:
             self._options.say(f"{name}: {self.results['results'][name]['seconds']:.0f} s")
-        self.results["machine"]["load_after"] = machine.load()
+        self.results["machine"] |= {"load_after": machine.load(), "seconds": time.monotonic() - self._began}
         self._keep()
 
     def _keep(self) -> None:
