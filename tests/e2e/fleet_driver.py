@@ -18,6 +18,7 @@ from link.endpoint import parse_endpoint
 from link.fleet.config import load_config
 from tests.e2e.fleet_programs import LOCALHOST, FleetWires, RouterProcess, make_fleet
 from tests.e2e.namespaces import Namespaces
+from tests.e2e.programs import PATIENCE
 from tests.vehicle.wires import SessionProgram
 
 AHEAD, NEUTRAL = Axes(throttle=1.0), Axes()
@@ -79,9 +80,13 @@ class Fleet:
             yield RouterProcess(self.folder, stack, within=networks.within(name), link=link)
 
     def drive(self) -> None:
-        """Begin a test: armed, at full throttle."""
+        """Begin a test: armed, at full throttle, whatever the one before has left."""
+        for router in self.routers:
+            router.restore()
         self.rest()
+        deadline = self.wires.now + PATIENCE
         while not self.armed():
+            assert self.wires.now < deadline, "it does not arm"
             self.driver.arm()
             self.wires.wait(0.3, lambda now: self.driver.step(NEUTRAL))
         self.regain()
@@ -94,7 +99,9 @@ class Fleet:
     def regain(self) -> float:
         """Choose MANUAL, as a person does after a stop; return when the vehicle obeyed."""
         before, due = len(self.wires.sent), 0.0
+        deadline = self.wires.now + PATIENCE
         while not any(_accepts(each) for who, each in self.wires.sent[before:] if who == "alice"):
+            assert self.wires.now < deadline, "it is not obeyed"
             if self.wires.now >= due:
                 due = self.wires.now + 0.1
                 self.driver.set_mode(Mode.MANUAL)

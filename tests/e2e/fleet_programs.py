@@ -72,6 +72,13 @@ class RouterProcess:
         self.process.kill()
         self.process.wait(PATIENCE)
 
+    def restore(self) -> None:
+        """Let it run again, if a test has stopped or killed it and failed."""
+        if self.process.poll() is None:
+            self.thaw()
+        else:
+            self.start()
+
 
 class FleetWires:
     """A vehicle process in a fleet, and a transport for each operator, as tests/vehicle/wires.py has addresses."""
