@@ -171,6 +171,11 @@ def hide_key(message: Message) -> Message:
     return SetupSigning(message.target_system, message.target_component, bytes(32), 0)
 
 
+def target_system(message: Message) -> int:
+    """Return the system that a message is for; 0: all. MANUAL_CONTROL has another name for the field."""
+    return int(getattr(message, "target_system", getattr(message, "target", 0)))
+
+
 def printable(text: str) -> str:
     """Return `text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
     if text.isprintable():

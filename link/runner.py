@@ -185,6 +185,8 @@ class Runner:
         link.channel.log_tap = self._log_tap
         if self._refused and isinstance(link.transport, RoleTransport):
             link.refusal = link.transport.refusal
+        if self._onlooker and isinstance(link.transport, SelectiveTransport):
+            link.look_at = link.transport.look_at
         if self._signing is not None:
             link.channel.guard = self._signing.guard(link.channel.index)
         self._look_at(link)
@@ -333,16 +335,23 @@ class Runner:
             self._report_due = now + REPORT_PERIOD
             self._observe(now)
         self._core.tick(now)
-        if self._onlooker is not None and (systems := self._onlooker.looked_at) != self._looked_at:
-            self._looked_at = systems
-            for link in self.links:
-                self._look_at(link)
+        self._update_looks()
         self._flush()
 
+    def _update_looks(self) -> None:
+        """Tell the links that can choose which vehicles are looked at, if that has changed."""
+        links = [link for link in self._links.values() if link.look_at is not None]
+        if self._onlooker is None or not links:
+            return
+        systems = self._onlooker.looked_at
+        if systems != self._looked_at:
+            self._looked_at = systems
+            for link in links:
+                self._look_at(link)
+
     def _look_at(self, link: Link) -> None:
-        """Tell a link that can choose which vehicles are looked at."""
-        if isinstance(link.transport, SelectiveTransport):
-            link.transport.look_at(self._looked_at)
+        if link.look_at is not None:
+            link.look_at(self._looked_at)
             link.channel.look_at(self._looked_at, time.monotonic())
 
     def _observe(self, now: float) -> None:
@@ -378,7 +387,7 @@ class Runner:
             log.error("a message could not be encoded and was not sent: %s", error)
 
     def _send(self, outgoing: Outgoing) -> None:
-        payload, taken = encode_payload(outgoing.message), False
+        payload, taken, refusal = encode_payload(outgoing.message), False, None
         for link in self._links.values():
             if link.watch_only:
                 continue
@@ -387,22 +396,20 @@ class Runner:
                 now = asyncio.get_running_loop().time()
                 if self._may_send and not self._may_send(outgoing.message, now):
                     return
-                taken |= link.send(data, address)
+                why = link.send(data, address)
+                taken, refusal = taken or why is None, refusal or why
                 if self._sent:
                     self._sent(outgoing.message, sequence, now)
                 if self._on_sent:
                     self._on_sent(link, address, outgoing.message, sequence, now)
-        if self._log_tap or self._refused:
-            self._note_sent(outgoing.message, payload, taken=taken)
+        self._note_sent(outgoing.message, payload, None if taken else refusal, taken=taken)
 
-    def _note_sent(self, message: Message, payload: bytes, *, taken: bool) -> None:
+    def _note_sent(self, message: Message, payload: bytes, refusal: str | None, *, taken: bool) -> None:
         """Record what was sent, and tell the core of what its role does not allow."""
-        now = asyncio.get_running_loop().time()
-        refusals = [link.pop_refusal() for link in self._links.values()] if self._refused else []
-        if self._refused and not taken and any(refusals):
-            self._refused(message, next(filter(None, refusals)), now)
+        if refusal and self._refused:
+            self._refused(message, refusal, asyncio.get_running_loop().time())
         if self._log_tap and (taken or self._log_tap.unsent):
-            self._log_tap.record_sent(type(message).id, payload, now)
+            self._log_tap.record_sent(type(message).id, payload, asyncio.get_running_loop().time())
 
 
 def next_multiple(period: float, now: float) -> float:

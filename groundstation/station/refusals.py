@@ -29,7 +29,7 @@ class Refusals:
         """Take that `message` was not sent."""
         if self._relay.handle_refused(message, why):
             return
-        contact = self._fleet.get(getattr(message, "target_system", getattr(message, "target", 0)))
+        contact = self._fleet.get(m.target_system(message))
         if contact is None or not _is_wanted(message, contact):
             return
         self._commander.handle_refused(message, why, now)

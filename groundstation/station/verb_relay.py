@@ -223,7 +223,7 @@ class VerbRelay:
 
     def _may_demand(self, verb: Verb, message: m.Message, now: float) -> bool:
         """Return whether to send a demand or a proof; refuse one that moves while somebody else drives."""
-        contact = self._fleet.get(getattr(message, "target_system", getattr(message, "target", 0)))
+        contact = self._fleet.get(m.target_system(message))
         if contact is None:
             return False
         if not moves(message, contact):

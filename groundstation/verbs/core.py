@@ -72,7 +72,7 @@ class VerbCore:
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:
         """Take that a message was not sent, because the role of this program does not allow it."""
-        contact = self.contacts.get(getattr(message, "target_system", getattr(message, "target", 0)))
+        contact = self.contacts.get(m.target_system(message))
         if contact is not None:
             contact.handle_refused(message, why)
             self._look()

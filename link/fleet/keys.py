@@ -44,9 +44,17 @@ def _read_word(word: str) -> int | None:
     return None if number is None or message_word(number) != word else number
 
 
-def read_frame(data: bytes) -> Frame | None:
-    """Return the frame if `data` is exactly one whole frame with a good checksum, or of an unknown id."""
-    frames = Framer(stream=False, unknown=True).feed(data, 0.0)
+def new_framer() -> Framer:
+    """Return what read_frame() reads with."""
+    return Framer(stream=False, unknown=True)
+
+
+def read_frame(data: bytes, framer: Framer | None = None) -> Frame | None:
+    """Return the frame if `data` is exactly one whole frame with a good checksum, or of an unknown id.
+
+    `framer`: one of new_framer() that reads many, in one thread.
+    """
+    frames = (framer or new_framer()).feed(data, 0.0)
     return frames[0] if len(frames) == 1 and frames[0][4] == data else None
 
 
@@ -106,7 +114,8 @@ class FleetKeys(msgspec.Struct, frozen=True):
     def place(self, frame: Frame, address: str) -> str:
         """Return the key under which to publish a frame for an address."""
         base = f"fleet/{self.fleet}/{address}/down/{self.me}" if self.me else f"{self._base}/up/{address}"
-        return f"{base}/{self._suffix(frame, to_vehicle=bool(self.me))}"
+        role = f"{needed_role(frame).word}/" if self.me else ""
+        return f"{base}/{role}{traffic_class(frame[0]).word}/{message_word(frame[0])}"
 
     def parse(self, key: str) -> Place | None:
         """Return what a key says of the frame under it; None if it is the key of no frame to this program."""
@@ -124,11 +133,6 @@ class FleetKeys(msgspec.Struct, frozen=True):
     def _base(self) -> str:
         return f"fleet/{self.fleet}/{self.vehicle or '*'}"
 
-    @staticmethod
-    def _suffix(frame: Frame, *, to_vehicle: bool) -> str:
-        role = f"{needed_role(frame).word}/" if to_vehicle else ""
-        return f"{role}{traffic_class(frame[0]).word}/{message_word(frame[0])}"
-
 
 class KeyReader:
     """Compares frames with their keys. Keys are kept parsed, because a sender has few and uses them again and again."""
@@ -136,7 +140,7 @@ class KeyReader:
     def __init__(self, keys: FleetKeys) -> None:
         self._keys = keys
         self._places: dict[str, Place | None] = {}
-        self._framer = Framer(stream=False, unknown=True)
+        self._framer = new_framer()
 
     def find(self, key: str) -> Place | None:
         """Return what a key says, as FleetKeys.parse(); may be called from any thread."""
@@ -149,7 +153,5 @@ class KeyReader:
 
     def read(self, key: str, data: bytes) -> tuple[Place, Frame] | None:
         """Return what arrived; None unless `data` is exactly the one frame that its key names."""
-        place, frames = self.find(key), self._framer.feed(data, 0.0)
-        if place is None or len(frames) != 1 or frames[0][4] != data or not place.fits(frames[0]):
-            return None
-        return place, frames[0]
+        place, frame = self.find(key), read_frame(data, self._framer)
+        return None if place is None or frame is None or not place.fits(frame) else (place, frame)

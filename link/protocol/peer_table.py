@@ -6,6 +6,7 @@ import re
 from collections.abc import Hashable, Iterable, Iterator
 from itertools import count
 
+from dialects.messages import target_system
 from dialects.traits import LOG_ONLY
 from link.core import Outgoing, Peer
 from link.endpoint import FLEET_NAME
@@ -130,7 +131,7 @@ class PeerTable:
             return self.known((peer,))
         if among is not None:
             return self.known(among)
-        target = getattr(message, "target_system", getattr(message, "target", 0))
+        target = target_system(message)
         return [state for state in self if state.accepts_target(target)]
 
     def _is_reserved(self, frames: Iterable[Frame]) -> bool:

@@ -95,24 +95,19 @@ class Link(msgspec.Struct):
     bytes_sent: int = 0
     refusal: Callable[[bytes], str | None] | None = None
     """That of a RoleTransport, for a core that wants to know."""
-    _refused: str = ""
+    look_at: Callable[[frozenset[int] | None], None] | None = None
+    """That of a SelectiveTransport, for a core that says what it looks at."""
 
-    def send(self, data: bytes, address: Hashable) -> bool:
-        """Send one frame and count it; return False if it may not be sent, as on a link that only watches."""
+    def send(self, data: bytes, address: Hashable) -> str | None:
+        """Send one frame and count it. Return None, or why it may not be sent."""
         if self.watch_only:
-            return False
+            return "this link only watches"
         if self.refusal is not None and (why := self.refusal(data)):
-            self._refused = why
-            return False
+            return why
         self.frames_sent += 1
         self.bytes_sent += len(data)
         self.transport.send(data, address)
-        return True
-
-    def pop_refusal(self) -> str:
-        """Return once why a frame was not sent; "" if all were."""
-        refused, self._refused = self._refused, ""
-        return refused
+        return None
 
     @property
     def endpoint(self) -> Endpoint:

@@ -52,7 +52,7 @@ class FakeVehicle:
     def receive(self, received: Received, now: float) -> None:
         """Record the message, and answer commands and requests; ignore messages to other vehicles."""
         message = received.message
-        if getattr(message, "target_system", getattr(message, "target", 0)) not in (0, self.system):
+        if m.target_system(message) not in (0, self.system):
             return
         self.received.append((now, message))
         match message:

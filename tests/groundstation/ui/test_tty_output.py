@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import pty
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
 
@@ -13,22 +15,30 @@ from groundstation.ui.terminal.tty_output import TerminalFile, redirect_output
 LIMIT = 60.0
 
 
-def test_a_terminal_that_takes_nothing_is_stuck_until_it_is_given_up() -> None:
+@contextmanager
+def opened(*, blocks: bool = False) -> Iterator[tuple[int, TerminalFile]]:
+    """The other end of a pseudo-terminal, and the file that leads to it."""
     master, slave = pty.openpty()
-    os.set_blocking(slave, False)
-    file = TerminalFile(slave, slave)
-    file.write("x" * 1_000_000)
-    writer = Thread(target=file.flush, daemon=True)
-    writer.start()
-    writer.join(0.2)
-    assert writer.is_alive()
-    assert not file.is_stuck(time.monotonic())
-    assert file.is_stuck(time.monotonic() + 1.0)
-    file.abandon()
-    writer.join(LIMIT)
-    assert not writer.is_alive()
-    os.close(master)
-    os.close(slave)
+    os.set_blocking(slave, blocks)
+    try:
+        yield master, TerminalFile(slave, slave)
+    finally:
+        os.close(master)
+        os.close(slave)
+
+
+def test_a_terminal_that_takes_nothing_is_stuck_until_it_is_given_up() -> None:
+    with opened() as (_, file):
+        file.write("x" * 1_000_000)
+        writer = Thread(target=file.flush, daemon=True)
+        writer.start()
+        writer.join(0.2)
+        assert writer.is_alive()
+        assert not file.is_stuck(time.monotonic())
+        assert file.is_stuck(time.monotonic() + 1.0)
+        file.abandon()
+        writer.join(LIMIT)
+        assert not writer.is_alive()
 
 
 def test_a_terminal_that_has_gone_swallows_the_rest() -> None:
@@ -43,13 +53,9 @@ def test_a_terminal_that_has_gone_swallows_the_rest() -> None:
 
 
 def test_a_terminal_that_accepts_a_frame_gets_it_at_once() -> None:
-    master, slave = pty.openpty()
-    os.set_blocking(slave, False)
-    file = TerminalFile(slave, slave)
-    assert file.write_at_once("frame") is None
-    assert os.read(master, 100) == b"frame"
-    os.close(master)
-    os.close(slave)
+    with opened() as (master, file):
+        assert file.write_at_once("frame") is None
+        assert os.read(master, 100) == b"frame"
 
 
 def test_one_that_accepts_a_part_gets_the_rest_in_order_from_the_thread() -> None:
@@ -79,27 +85,20 @@ def test_one_that_accepts_a_part_gets_the_rest_in_order_from_the_thread() -> Non
 
 
 def test_one_that_blocks_is_left_to_the_thread() -> None:
-    master, slave = pty.openpty()
-    file = TerminalFile(slave, slave)
-    assert file.write_at_once("frame") == "frame"
-    file.write("frame")
-    file.flush()
-    assert os.read(master, 100) == b"frame"
-    os.close(master)
-    os.close(slave)
+    with opened(blocks=True) as (master, file):
+        assert file.write_at_once("frame") == "frame"
+        file.write("frame")
+        file.flush()
+        assert os.read(master, 100) == b"frame"
 
 
 def test_what_is_put_before_all_else_stays_there() -> None:
-    master, slave = pty.openpty()
-    os.set_blocking(slave, False)
-    file = TerminalFile(slave, slave)
-    file.prepend("first ")
-    assert file.write_at_once("then") == "then"
-    file.write("then")
-    file.flush()
-    assert os.read(master, 100) == b"first then"
-    os.close(master)
-    os.close(slave)
+    with opened() as (master, file):
+        file.prepend("first ")
+        assert file.write_at_once("then") == "then"
+        file.write("then")
+        file.flush()
+        assert os.read(master, 100) == b"first then"
 
 
 def test_what_is_printed_meanwhile_goes_to_the_log(tmp_path: Path) -> None:
