@@ -225,6 +225,4 @@ class SequenceTracker:
     def _is_of_former(self, sequence: int, digest: int) -> bool:
         """Return whether the run before this one had the frame: a copy of it passes for a frame of this one."""
         former = self.numbering.former
-        return former > 0 and any(
-            each.index == former and each.has_taken(sequence, digest) for each in self._numberings
-        )
+        return any(each.index == former and each.has_taken(sequence, digest) for each in self._numberings)

@@ -224,5 +224,18 @@ def test_from_then_on_they_are_lost_again() -> None:
     sender = Sender()
     sender.tracker.expect_gaps(sender.now + 1.0)
     sender.take(50, wait=1.0)
+    assert sender.numbering == 1
     sender.take(53, wait=0.1)
     assert sender.tracker.lost == 2
+
+
+def test_among_expected_gaps_a_late_frame_is_found_again_and_a_jump_is_no_loss() -> None:
+    sender = Sender().stream(1, 60, 20)
+    sender.take(63)
+    sender.take(200)
+    assert (sender.tracker.lost, sender.numbering) == (2, 2)
+    sender.tracker.expect_gaps(sender.now + 10.0)
+    assert sender.take(62) is LATE
+    assert sender.tracker.lost == 1
+    assert sender.take(70) is NEW
+    assert (sender.tracker.lost, sender.numbering) == (1, 1)
