@@ -84,6 +84,8 @@ class Channel:
         self._bytes_received = 0
         self._duplicates = self._late = self._rate_limited = 0
         self._own_id = False
+        self._proven: set[int] = set()
+        """Ids of messages that have arrived damaged and whole, so that the damage is no mismatch of dialects."""
         self._looked_at: frozenset[int] | None = None
         if target is not None:
             self._peers.add_fixed(target)
@@ -292,6 +294,7 @@ class Channel:
         )
         frames, noisy = counts.frames + counts.unknown, self._capacity is not None
         hint = noise_hint(self.name, self._bytes_received, frames) if noisy else None
+        self._proven.update(filter(self._has_received, counts.mismatches))
         return LinkReport(
             name=self.name,
             index=self.index,
@@ -306,7 +309,7 @@ class Channel:
             late=self._late,
             rate_limited=self._rate_limited,
             refused_peers=self._peers.refused,
-            dialect_mismatch=find_mismatches(counts),
+            dialect_mismatch=find_mismatches(counts, self._proven),
             signing=find_signing(self._peers),
             verified=self.guard.find_verified(self._peers) if self.guard else frozenset(),
             refused=self.guard.counts() if self.guard else None,
@@ -319,3 +322,7 @@ class Channel:
             sources=count_sources(self._peers),
             audience=tuple(state.peer for state in self._peers if state.accepts_target(0)),
         )
+
+    def _has_received(self, message_id: int) -> bool:
+        """Return whether a message has arrived with the right checksum, from anybody who still sends."""
+        return any(source.has_received(message_id) for state in self._peers for source in state.sources.values())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from typing import NamedTuple
 
 import msgspec
@@ -106,9 +106,18 @@ def sum_counts(several: Iterable[FramerCounts]) -> FramerCounts:
     return total
 
 
-def find_mismatches(counts: FramerCounts) -> tuple[str, ...]:
-    """Return the names of the messages that arrive complete but with the checksum of another definition."""
-    return tuple(sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER))
+def find_mismatches(counts: FramerCounts, proven: Container[int] = ()) -> tuple[str, ...]:
+    """Return the names of the messages that arrive complete but with the checksum of another definition.
+
+    `proven`: ids of messages that have arrived with the right checksum, too: their wrong ones are damage.
+    """
+    return tuple(
+        sorted(
+            MESSAGES[each].msgname
+            for each, times in counts.mismatches.items()
+            if times >= MISMATCH_AFTER and each not in proven
+        )
+    )
 
 
 def noise_hint(name: str, received: int, frames: int) -> str | None:

@@ -119,6 +119,10 @@ class Numbering:
             self._begin_window(now)
         return NEW
 
+    def has_received(self, message_id: int) -> bool:
+        """Return whether it has had this message."""
+        return message_id in self._kinds
+
     def has_taken(self, sequence: int, digest: int) -> bool:
         """Return whether this frame was received before, byte for byte, as one of the newest LATE_WINDOW + 1."""
         bit = 1 << ((self.newest - sequence) & 0xFF)
@@ -153,6 +157,10 @@ class SequenceTracker:
     def expect_gaps(self, until: float) -> None:
         """Take the time until which the sender leaves frames out on purpose: missing numbers are not lost."""
         self._gaps_until = until
+
+    def has_received(self, message_id: int) -> bool:
+        """Return whether a run of numbers that is not forgotten has had this message."""
+        return any(each.has_received(message_id) for each in self._numberings)
 
     def accept(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder:
         """Count a frame and return its order; `numbering` and `clash` are then those of this frame."""

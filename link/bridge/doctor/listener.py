@@ -8,9 +8,9 @@ import msgspec
 from msgspec.structs import replace
 
 from dialects import codec
-from dialects.messages import MESSAGES, Heartbeat
+from dialects.messages import Heartbeat
 from link.bridge.doctor.facts import Heard, Route, Source
-from link.protocol.frame import MAX_UNKNOWN, MISMATCH_AFTER, Frame, FramerCounts
+from link.protocol.frame import MAX_UNKNOWN, Frame, FramerCounts, find_mismatches
 from link.protocol.framer import Framer
 from link.routing.router import Router
 from link.signing.signature import is_signed
@@ -69,9 +69,7 @@ class EndpointListener:
             noise=counts.resync_bytes,
             unknown=counts.unknown,
             unknown_ids=tuple(sorted(endpoint.unknown_ids)),
-            mismatched=tuple(
-                sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
-            ),
+            mismatched=find_mismatches(counts),
             sources=tuple(endpoint.sources[key] for key in sorted(endpoint.sources)),
         )
 

@@ -413,6 +413,19 @@ def test_a_foreign_dialect_is_named_after_three_frames() -> None:
     assert channel.report().dialect_mismatch == ("HEARTBEAT",)
 
 
+def test_damage_of_a_message_that_also_arrives_whole_is_no_foreign_dialect() -> None:
+    channel = vehicle()
+    damaged = bytearray(heartbeat(0))
+    damaged[-1] ^= 0x55
+    for times in range(3):
+        channel.receive(heartbeat(times), HERE, float(times))
+        channel.receive(bytes(damaged), HERE, float(times))
+    assert channel.report().dialect_mismatch == ()
+    channel.expire_peers(100.0)
+    assert not list(channel._peers)
+    assert channel.report().dialect_mismatch == (), "still known after the sender has gone"
+
+
 def test_a_stream_gives_up_a_forged_header_while_nothing_arrives() -> None:
     channel = vehicle(stream=True, target="serial")
     channel.receive(heartbeat(0), "serial", 0.0)

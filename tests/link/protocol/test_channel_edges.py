@@ -61,7 +61,7 @@ def test_each_field_of_a_report_is_filled() -> None:
     sent = SentFrames()
     channel = guarded(keep(DRIVER), SigningPolicy(Role.WATCH), 3, stream=True, capacity=5760.0, sent=sent, places=1)
     numbers = count()
-    bad = bytearray(heartbeat(0))
+    bad = bytearray(demand(0))
     bad[-1] ^= 0x55
     foreign = bytes([0xFD, 4, 0, 0, 9, 255, 190, 0xAF, 0xB3, 0xEE]) + b"123412"
     channel.receive(b"\x80" + (bytes(bad) + foreign) * 3 + signed(ARM), HERE, 0.0)

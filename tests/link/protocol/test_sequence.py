@@ -153,6 +153,13 @@ def test_a_numbering_is_forgotten_after_its_silence() -> None:
     assert sender.numbering == 2
 
 
+def test_it_knows_which_messages_any_run_of_numbers_has_had() -> None:
+    sender = Sender().stream(1, 20, 20)
+    sender.take(200, OTHER)
+    assert sender.numbering == 2
+    assert [sender.tracker.has_received(number) for number in (ONE, OTHER, 0)] == [True, True, False]
+
+
 def test_two_programs_with_one_number_clash() -> None:
     sender = Sender().stream(1, 20, 20)
     assert sender.take(20, digest=5) is NEW
