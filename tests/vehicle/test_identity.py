@@ -6,6 +6,7 @@ A twin is another program with the driver's system and component id. "Ours" is a
 
 from __future__ import annotations
 
+import itertools
 import random
 
 import pytest
@@ -290,6 +291,32 @@ def test_frames_of_the_former_run_move_nothing_before_and_after_a_restart(
     back.hold(0.1, NEUTRAL)
     back.hold(0.3, AHEAD)
     assert wires.turning
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_still_older_frames_after_a_restart_move_it_once_at_most(kind: type[Program]) -> None:
+    """U3: copies more than 32 numbers old, on the address of a program that has just restarted."""
+    for seed in (14, 19, 43, *range(5)):  # the first three move a rover without sessions for 0.1 to 0.44 s
+        chance = random.Random(seed)
+        wires, driver = driving(kind)
+        driver.hold(8.0, AHEAD)
+        old = [data for _, data in driver.frames[:-40]]
+        driver.hold(1.5, NEUTRAL)
+        assert not wires.turning
+        wires.wait(chance.uniform(0.75, 2.0))
+        back, turned = kind(wires, number=driver.number - 1 - chance.randrange(33) & 0xFF), [False]
+
+        def each(now: float, chance: random.Random = chance, wires: Wires = wires, back: Program = back,
+                 turned: list[bool] = turned, old: list[bytes] = old) -> None:  # fmt: skip
+            back.step(NEUTRAL)
+            if chance.random() < 0.3:
+                wires.put(chance.choice(old), "gcs")
+            turned.append(wires.throttle > 0.0)
+
+        wires.wait(5.0, each)
+        begins = sum(after and not before for before, after in itertools.pairwise(turned))
+        assert begins <= (kind is Program)
+        assert sum(turned) * 0.02 <= 0.45 + 0.4
 
 
 def test_a_tcp_client_that_connects_again_is_the_same_program_once_the_first_is_silent() -> None:
