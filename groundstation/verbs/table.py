@@ -48,6 +48,7 @@ if TYPE_CHECKING:
         mode,
         motor,
         param,
+        param_files,
         ping,
         plan,
         reboot,
@@ -76,6 +77,7 @@ else:
     mode = LaterModule("mode")
     motor = LaterModule("motor")
     param = LaterModule("param")
+    param_files = LaterModule("param_files")
     ping = LaterModule("ping")
     plan = LaterModule("plan")
     reboot = LaterModule("reboot")
@@ -284,16 +286,16 @@ VERBS: dict[str, dict[str, VerbAction]] = {
             (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})), takes_part=True,
             many=True),
         "save": VerbAction(
-            "write parameters to a file", param.save,
+            "write parameters to a file", param_files.save,
             (_FILE, _PATTERNS, ("--changed", {"action": "store_true", "help": "only those not at the default"}),
              _FORMAT, _YES), watches=True,
         ),
         "load": VerbAction(
-            "set what differs from a file; stop at the first refusal", param.load,
+            "set what differs from a file; stop at the first refusal", param_files.load,
             (_FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
-            takes_part=True, many=True, only_reads=param.only_prints,
+            takes_part=True, many=True, only_reads=param_files.only_prints,
         ),
-        "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,), watches=True,
+        "diff": VerbAction("print where a file and the vehicle differ", param_files.diff, (_FILE,), watches=True,
                            many=True),
         "store": VerbAction("have the vehicle store all parameters", param.store, takes_part=True,
                             many=True),
