@@ -198,13 +198,17 @@ class PlaceKeeper(Protocol):
         """System and component id of the ground station in control, or None."""
 
 
+REST_PERIOD = 0.1
+"""s between two ticks of a core that rests."""
+
+
 @runtime_checkable
 class RestingCore(Protocol):
     """A core that has nothing to do for some time."""
 
     @property
     def may_rest(self) -> bool:
-        """Whether ticks every 0.1 s are enough until the next message arrives."""
+        """Whether ticks every REST_PERIOD are enough until the next message arrives, after which it is asked again."""
 
 
 @runtime_checkable

@@ -14,6 +14,7 @@ from dialects.codec import EncodeError, encode_payload
 from dialects.enums import Severity
 from dialects.messages import Message
 from link.core import (
+    REST_PERIOD,
     Core,
     EarlyActor,
     LinkReport,
@@ -39,8 +40,6 @@ from link.transport.transports import open_transports
 
 log = logging.getLogger(__name__)
 
-REST_PERIOD = 0.1
-"""s between two ticks of a core that rests."""
 REPORT_PERIOD = 1.0
 """s between two calls of core.observe()."""
 SEQUENCES_PER_SECOND = 40
@@ -151,6 +150,7 @@ class Runner:
         self._on_sent = sent
         self._keeper = core if isinstance(core, PlaceKeeper) else None
         self._resting = core if isinstance(core, RestingCore) else None
+        self._rests = False
         self._onlooker = core if isinstance(core, Onlooker) else None
         self._looked_at: frozenset[int] | None = None
         self._early = core if isinstance(core, EarlyActor) else None
@@ -267,7 +267,9 @@ class Runner:
 
     def _plan_early(self) -> None:
         """Set the timer for what the core has to do before the next tick."""
-        due = self._early.due_at if self._early is not None else None
+        if self._early is None:
+            return
+        due = self._early.due_at
         if self._early_timer is not None and self._early_timer.when() != due:
             self._early_timer.cancel()
             self._early_timer = None
@@ -303,6 +305,8 @@ class Runner:
             )  # of each, so that a change behind a repeat moves the ramps in this call, not a cycle later
             self._hand_over(self._links[index].channel.receive(data, address, now), now)
         self._flush()
+        if self._rests:
+            self._end_rest()
         if self._router:  # after our own replies, which go first
             self._forward(self._router.receive(index, received, loop.time()))
 
@@ -319,16 +323,27 @@ class Runner:
         self._guard(self._run_tick)
         loop = asyncio.get_running_loop()
         # Absolute deadlines do not drift. After a pause missed ticks are skipped.
-        if self._resting is not None and self._resting.may_rest:
+        self._rests = self._resting is not None and self._resting.may_rest
+        if self._rests:
             self._tick_due = next_multiple(REST_PERIOD, loop.time())
         else:
             self._tick_due = max(self._tick_due + self._period, loop.time())
         self._timer = loop.call_at(self._tick_due, self._tick)
 
+    def _end_rest(self) -> None:
+        """Tick as soon as the loop is free if a message has given the core something to do."""
+        if self._resting is None or self._resting.may_rest or self._timer is None:
+            return
+        self._rests = False
+        self._timer.cancel()
+        self._tick_due = asyncio.get_running_loop().time()
+        self._timer = asyncio.get_running_loop().call_at(self._tick_due, self._tick)
+
     def _run_tick(self) -> None:
         now = asyncio.get_running_loop().time()
         for link in self.links:
-            self._hand_over(link.channel.tick(now), now)
+            if found := link.channel.tick(now):
+                self._hand_over(found, now)
         if self._router:
             self._forward(self._router.tick(now))
         if now >= self._report_due:
@@ -340,8 +355,10 @@ class Runner:
 
     def _update_looks(self) -> None:
         """Tell the links that can choose which vehicles are looked at, if that has changed."""
+        if self._onlooker is None:
+            return
         links = [link for link in self._links.values() if link.look_at is not None]
-        if self._onlooker is None or not links:
+        if not links:
             return
         systems = self._onlooker.looked_at
         if systems != self._looked_at:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.core import Core, EarlyActor, Outgoing, RestingCore, SendListener
+from link.core import REST_PERIOD, Core, EarlyActor, Outgoing, RestingCore, SendListener
 from link.protocol.channel import Channel
-from link.runner import REPORT_PERIOD, REST_PERIOD
+from link.runner import REPORT_PERIOD
 from link.transport.memory import LossyPipe
 
 
@@ -32,6 +32,8 @@ class Host:
     """The core, if it may have something to do between two ticks."""
     resting: RestingCore | None = field(init=False)
     """The core, if it may need fewer ticks."""
+    rests: bool = False
+    """It needs fewer ticks now."""
 
     def __post_init__(self) -> None:
         self.listener = self.core if isinstance(self.core, SendListener) else None
@@ -51,8 +53,8 @@ class Host:
             self.channel.expire_peers(now)
             self.core.observe([self.channel.report()], now)
         self.core.tick(now)
-        rests = self.resting is not None and self.resting.may_rest
-        self.tick_due = max(self.tick_due + (REST_PERIOD if rests else self.period), now)
+        self.rests = self.resting is not None and self.resting.may_rest
+        self.tick_due = max(self.tick_due + (REST_PERIOD if self.rests else self.period), now)
 
     def receive(self, data: bytes, address: Hashable, now: float) -> None:
         """Do what the runner does when data arrives."""
@@ -60,6 +62,8 @@ class Host:
             return
         for received in self.channel.receive(data, address, now):
             self.core.receive(received, now)
+        if self.rests and self.resting is not None and not self.resting.may_rest:
+            self.rests, self.tick_due = False, now
 
     def pop_frames(self, now: float, to: Hashable) -> list[bytes]:
         """Return the frames to send to an address; those to others are lost."""

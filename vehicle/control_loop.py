@@ -3,8 +3,9 @@
 It is a core like the rover inside it, so that tests run it in virtual time. Its rules:
 - what the rover decides when a message arrives is written to the motors before `receive` returns, not at the next tick;
 - a motor driver that fails is stopped first, and reported to the rover after that;
-- the emergency-stop input is read each cycle, and one that cannot be read counts as pressed; the rest of a cycle may be
-  left out while the motors have no power;
+- the emergency-stop input is read and the motors are written each cycle, and an input that cannot be read counts as
+  pressed; sensors and all that follows from them may be left out in a short cycle (Controller.tick_outputs);
+- while no motor has power cycles may be left out (`may_rest`), but not before a message that may need them;
 - an exception of any kind stops the motors before it propagates;
 - once closed, no motor turns again, whatever the outputs of the rover are.
 """
@@ -15,12 +16,16 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from link.core import Core, LinkReport, Outgoing, Received
+from link.core import REST_PERIOD, Core, LinkReport, Outgoing, Received
 from vehicle.drive.gate import Outputs
 from vehicle.motors import MotorError, Motors, StopPressedError
 from vehicle.readings import Readings
 from vehicle.sensors import Sensors
 
+CYCLE = 0.02
+"""s between two cycles, unless the controller rests: 50 Hz is the rate of servos and motor controllers of this size."""
+LONGEST_REST = REST_PERIOD + CYCLE
+"""s from which on a pause is not a rest but a late cycle, which the controller must see."""
 MOTOR_RETRY_TIME = 1.0
 """s after a motor failure until the motors are tested again, at neutral: a driver may recover from a short loss of its
 bus, and must not be tried so often that the bus stays busy."""
@@ -48,11 +53,14 @@ class Controller(Core, Protocol):
     def motor_repaired(self, now: float) -> None:
         """Handle a motor driver that works again; the motors are still stopped."""
 
-    def may_skip(self, now: float) -> bool:
-        """Return whether `sense` and `tick` may be left out in this cycle, as they would find nothing to do.
+    def tick_outputs(self, now: float, *, powered: bool) -> bool:
+        """Bring the outputs up to date and return True if `sense` and `tick` can wait for a later cycle.
 
-        Only asked while the motors have no power.
+        False: nothing was done, and this cycle is a whole one. `powered`: the motors have power, or may have it.
         """
+
+    def may_rest(self, now: float) -> bool:
+        """Return whether a cycle every REST_PERIOD is enough until the next message, as long as no motor has power."""
 
     def shutdown(self, now: float) -> None:
         """Queue the last messages; the motors are stopped by now."""
@@ -156,10 +164,19 @@ class ControlLoop:
         self._retry_due: float | None = None
         self._whole = True
         """Whether the newest cycle was a whole one."""
+        self._cycled = 0.0
+        """Time of the newest cycle."""
         self._closed = False
 
+    @property
+    def may_rest(self) -> bool:
+        """Whether a cycle every REST_PERIOD is enough until the next message: without power, and with nothing to do."""
+        return not self._drivetrain.powered and self._retry_due is None and self._controller.may_rest(self._cycled)
+
     def receive(self, received: Received, now: float) -> None:
-        """Act on one message, down to the motors."""
+        """Act on one message, down to the motors. A cycle that a rest has left out comes before it."""
+        if CYCLE < now - self._cycled < LONGEST_REST and self.may_rest:
+            self._guard(lambda: self._cycle(now), now)
         self._guard(lambda: self._controller.receive(received, now), now)
 
     def tick(self, now: float) -> None:
@@ -215,8 +232,9 @@ class ControlLoop:
             raise
 
     def _cycle(self, now: float) -> None:
+        self._cycled = now
         self._controller.update_estop_input(self._stop_reason(), now)
-        self._whole = self._drivetrain.powered or not self._controller.may_skip(now)
+        self._whole = not self._controller.tick_outputs(now, powered=self._drivetrain.powered)
         if self._whole:
             self._controller.sense(self._sensors.read(now), now)
             self._controller.tick(now)

@@ -18,8 +18,8 @@ from vehicle.telemetry.view import TelemetryView
 class Outbox:
     """Collects replies, telemetry, texts and the messages of services.
 
-    A change of the demand is reported in each cycle. Services run, and other changes are reported, in each cycle while
-    something is under way, and else every PERIOD.
+    A change of the demand is reported in each cycle, and steady streams are sent when they are due. Services run, and
+    other changes are reported, in each cycle while something is under way, and else every PERIOD.
     """
 
     def __init__(
@@ -43,6 +43,7 @@ class Outbox:
         self._outgoing: list[Outgoing] = []
         self._demanded: float | None = None  # when a demand came whose telemetry is not built yet
         self._ticked: float | None = None  # when the cycle ran whose messages are not built yet
+        self._shortened: float | None = None  # when a short cycle ran, or a demand was repeated, after the last pop()
         self._condition: tuple[object, ...] = ()
         """State, mode and failsafes of the newest cycle whose messages were built."""
 
@@ -53,6 +54,10 @@ class Outbox:
     def note_demand(self, now: float) -> None:
         """Note a changed demand: its telemetry follows."""
         self._demanded = now
+
+    def note_short_cycle(self, now: float) -> None:
+        """Note that time has passed and nothing has changed: only steady streams follow, which carry the clock."""
+        self._shortened = now
 
     def note_cycle(self, now: float) -> None:
         """Note a control cycle: the messages that are due follow."""
@@ -65,7 +70,9 @@ class Outbox:
             self._demanded = None
         if self._ticked is not None and self._safety.state is not SafetyState.OFF:
             self._follow_cycle(self._ticked)
-        self._ticked = None
+        elif self._shortened is not None and self._telemetry.is_steady_due(self._shortened):
+            self._outgoing += self._telemetry.build_steady(self._build_view(self._shortened))
+        self._ticked = self._shortened = None
         outgoing, self._outgoing = self._outgoing, []
         return outgoing
 

@@ -30,6 +30,7 @@ from vehicle.safety.health_notices import HealthNotices, fence_notices, sensor_n
 from vehicle.safety.monitor import SafetyMonitor
 from vehicle.safety.state_machine import Safety
 from vehicle.safety.states import SafetyState
+from vehicle.safety.steady_driving import SteadyDriving
 from vehicle.statustext import StatusTextQueue
 from vehicle.storage.logbook import LogRecorder
 from vehicle.storage.param_store import ParamStore
@@ -83,6 +84,7 @@ class Rover:
         self._navigator = Navigator(params, self._drive.kind)
         self._safety = Safety(params, self._control, texts, now, self._navigator)
         self._monitor = SafetyMonitor(params, self._safety, self._control, self._texts, now)
+        self._steady = SteadyDriving(self._safety, self._control, self._monitor, now)
         self._telemetry = Telemetry(self._control.system, now, logged=recording is not None)
         self._bandwidth = Bandwidth(self._safety, lambda peer: self._telemetry.has_level(peer, DialectLevel.ROVER))
         self._links = LinkStatusReporter(self._control, self._texts, (self._control.system, COMPONENT))
@@ -151,7 +153,7 @@ class Rover:
         replies = route.handle(received, message, now)
         if replies:
             self._outbox.add(replies)
-        if effect is _MOTION or (effect is _DEMAND and self._motion_inputs() != before):
+        if effect is _MOTION or (effect is _DEMAND and before is not None and self._has_changed(before, now)):
             self._act(effect, now)
 
     def tick(self, now: float) -> None:
@@ -205,12 +207,27 @@ class Rover:
         """Allow arming again: the motor driver has passed its self-test."""
         self._safety.motor_repaired(now)
 
-    def may_skip(self, now: float) -> bool:
-        """Return whether this cycle may be left out: disarmed, nothing under way, and not late."""
-        if self._safety.armed or self._actuator_test.running or self._cycles.is_due(now) or self._monitor.is_late(now):
+    def tick_outputs(self, now: float, *, powered: bool) -> bool:
+        """Run a short cycle and return True, or return False: a whole one is due.
+
+        A short one is enough while nothing is under way, and the rover is disarmed, or drives as steadily as before.
+        Late cycles, the age of the demand and the last gate are checked in it as in a whole one.
+        """
+        if self._actuator_test.running or self._cycles.is_due(now) or self._monitor.is_late(now):
+            return False
+        if self._safety.armed:
+            if self._navigator.fence_avoidance.fence.enabled or not self._steady.lasts(now):
+                return False
+            self._update_outputs(now, late=False)
+            self._outbox.note_short_cycle(now)
+        elif powered:
             return False
         self._monitor.skip_cycle(now)
         return True
+
+    def may_rest(self, now: float) -> bool:
+        """Return whether a cycle every PERIOD is enough until the next message: disarmed, nothing under way."""
+        return not (self._safety.armed or self._actuator_test.running or self._activity.is_busy(now))
 
     def shutdown(self, now: float) -> None:
         """Set neutral outputs, disarm, and queue one HEARTBEAT with MAV_STATE_POWEROFF. The last call."""
@@ -239,6 +256,19 @@ class Rover:
         """Return what a demand or a button may have changed."""
         return self._control.demand, self._safety.state, self._safety.mode_generation
 
+    def _has_changed(self, before: tuple[Demand | None, SafetyState, int], now: float) -> bool:
+        """Return whether a demand must be acted upon at once; one that repeats the last one waits for the cycle."""
+        demand, state, generation = before
+        if self._safety.state is not state or self._safety.mode_generation != generation:
+            self._activity.stir(now)
+            return True
+        if self._control.demand is demand:
+            return False
+        if self._steady.repeats(demand, now):
+            self._outbox.note_short_cycle(now)
+            return False
+        return True
+
     def _act(self, effect: Effect, now: float) -> None:
         """Bring outputs and telemetry up to date with what a message has changed."""
         if effect is _DEMAND:
@@ -256,7 +286,9 @@ class Rover:
         clearance = self._monitor.build_clearance(now, self._navigator.demand, late=late, trial=test)
         limited = self._safety.failsafes.lasting_action(now) >= _LIMIT
         self._drive.update(self._demand_in_use(now), clearance, limited=limited, now=now)
-        if clearance.permit is not DRIVE:
+        driven = clearance.permit is DRIVE
+        self._steady.note_outputs(self._drive.wheels, driven=driven, now=now)
+        if not driven:
             self._navigator.reset_controller()
 
     def _demand_in_use(self, now: float) -> Demand | None:

@@ -60,7 +60,10 @@ class Script:
     def motor_repaired(self, now: float) -> None:
         self.calls.append("repaired")
 
-    def may_skip(self, now: float) -> bool:
+    def tick_outputs(self, now: float, *, powered: bool) -> bool:
+        return self.idle and not powered
+
+    def may_rest(self, now: float) -> bool:
         return self.idle
 
     def shutdown(self, now: float) -> None:

@@ -1,55 +1,21 @@
-"""A disarmed rover with nothing under way does the work of a control cycle every 0.1 s, and else in each cycle."""
+"""A disarmed rover with nothing under way works every 0.1 s, and else in each control cycle."""
 
 from __future__ import annotations
 
 import pytest
 
 from dialects import messages as m
-from dialects.axes import Axes
 from dialects.enums import Command, Result
-from link.core import LinkReport, Received
-from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL, Bench
-from vehicle.control_loop import ControlLoop
-from vehicle.motors.simulated import SimulatedMotors
+from link.core import LinkReport
+from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL, logged
+from tests.vehicle.pacing import Machine, idle_machine
 from vehicle.pace import BUSY_TIME, PERIOD
-from vehicle.readings import Readings
 from vehicle.safety.states import SafetyState
-
-
-class Machine(Bench):
-    """The bench with the control loop around the rover. The emergency stop is a plain attribute."""
-
-    loop: ControlLoop | None = None
-    pressed: str | None = None
-    sensed = 0
-    """Whole cycles so far."""
-
-    @property
-    def body(self) -> ControlLoop:
-        self.loop = self.loop or ControlLoop(self.rover, SimulatedMotors(), self, stop_input=lambda: self.pressed)
-        return self.loop
-
-    def read(self, now: float) -> Readings:
-        self.sensed += 1
-        return self.readings
-
-    def _tick(self) -> None:
-        self.body.tick(self.now)
-
-    def _receive(self, received: Received) -> None:
-        self.body.receive(received, self.now)
-
-    def whole_cycles(self, seconds: float, axes: Axes | None = None) -> int:
-        before = self.sensed
-        self.wait(seconds, axes)
-        return self.sensed - before
 
 
 @pytest.fixture
 def idle() -> Machine:
-    machine = Machine(FS_GCS_ENABLE=0)
-    machine.wait(BUSY_TIME + 1.0)
-    return machine
+    return idle_machine()
 
 
 def test_an_idle_rover_works_every_tenth_of_a_second(idle: Machine) -> None:
@@ -81,12 +47,42 @@ def test_the_emergency_stop_is_read_in_each_cycle(idle: Machine, after: int) -> 
     assert idle.rover.state is SafetyState.ESTOP
 
 
-def test_an_armed_rover_works_in_each_cycle_and_drives_at_once(idle: Machine) -> None:
+def test_a_rover_that_was_just_armed_works_in_each_cycle_and_drives_at_once(idle: Machine) -> None:
     assert idle.arm() is Result.ACCEPTED
     assert idle.whole_cycles(1.0, NEUTRAL) == 50
     idle.stick(AHEAD)
     assert idle.turning
-    assert idle.whole_cycles(BUSY_TIME + 1.0, AHEAD) == round((BUSY_TIME + 1.0) / CYCLE)
+
+
+def test_a_rover_rests_until_something_is_under_way(idle: Machine) -> None:
+    assert idle.body.may_rest
+    assert idle.arm() is Result.ACCEPTED
+    assert not idle.body.may_rest
+    assert idle.command(Command.COMPONENT_ARM_DISARM, 0) is Result.ACCEPTED
+    assert not idle.body.may_rest
+    idle.wait(BUSY_TIME + 1.0)
+    assert idle.body.may_rest
+
+
+def test_a_message_during_a_rest_finds_the_emergency_stop_as_it_is(idle: Machine) -> None:
+    idle.freeze(0.09)
+    idle.pressed = "pressed"
+    assert idle.arm() is not Result.ACCEPTED
+    assert idle.rover.state is SafetyState.ESTOP
+
+
+def test_a_rover_that_is_armed_during_a_rest_is_not_late(idle: Machine) -> None:
+    idle.freeze(0.099)
+    assert idle.arm() is Result.ACCEPTED
+    idle.wait(0.5, NEUTRAL)
+    assert idle.armed
+
+
+def test_a_rest_that_was_too_long_is_a_late_cycle(idle: Machine) -> None:
+    idle.freeze(0.5)
+    idle.arm()
+    assert not idle.armed
+    assert logged(idle, "late")
 
 
 def test_a_motor_test_runs_in_each_cycle_to_its_end(idle: Machine) -> None:

@@ -37,6 +37,9 @@ class Drive:
         self._driven = self.mixer.driven_count
         self._gate = Gate(len(self._slews), self._driven)
         self._load_params()
+        self._wanted: tuple[object, ...] = ()
+        """What the wanted values of the wheels were computed of last, and what came out, with the limits."""
+        self._wheels_wanted: tuple[tuple[float, ...], int] = (), 0
         self._tested: int | None = None
         """Index of the motor that a motor test turns, or None."""
         self._at = now
@@ -89,6 +92,14 @@ class Drive:
     def _targets(self, demand: Demand | None, limited: bool) -> tuple[float, ...]:
         if demand is None:
             return (0.0,) * len(self._slews)
+        asked = demand.throttle, demand.steering, demand.sideways, demand.direct, limited
+        if asked != self._wanted:  # a demand is repeated 20 times a second, and used in each cycle
+            self._wheels_wanted = self._mixed(demand, limited), self._limits
+            self._wanted = asked
+        wheels, self._limits = self._wheels_wanted
+        return wheels
+
+    def _mixed(self, demand: Demand, limited: bool) -> tuple[float, ...]:
         throttle, steering, sideways = shape_demand(demand, self._params)
         largest = min(self._largest, LIMITED_THROTTLE_MAX) if limited else self._largest
         if abs(throttle) > largest or abs(sideways) > largest:
@@ -121,6 +132,7 @@ class Drive:
     def _load_params(self) -> None:
         """Cache what depends on parameters, until one of them changes."""
         params, self._params_generation = self._params, self._params.generation
+        self._wanted = ()
         self._scalings = build_output_scaling(params)
         self._unscaled = self._driven == len(self._slews) and is_unscaled(self._driven, self._scalings)
         self._largest, self._pivot = params["MOT_THR_MAX"] / 100, params["MOT_PIVOT_MAX"] / 100

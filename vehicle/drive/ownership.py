@@ -84,6 +84,12 @@ class Ownership:
         """Return the s since the last message of the driver, or since boot if there was none."""
         return now - (self.driver.last_heard if self.driver else self._boot)
 
+    @property
+    def lost_at(self) -> float:
+        """From when on the driver is lost if it sends nothing more."""
+        last: float = self.driver.last_heard if self.driver else self._boot
+        return last + self._params["FS_GCS_TIMEOUT"]
+
     def is_lost(self, now: float) -> bool:
         """Return True if the driver has sent nothing for FS_GCS_TIMEOUT."""
         return self.silence_duration(now) > self._params["FS_GCS_TIMEOUT"]

@@ -27,7 +27,7 @@ from link.transport.transport import Link, LinkError
 from vehicle.commands.context import COMPONENT
 from vehicle.commands.signing import Pairing
 from vehicle.config.run_settings import RunSettings, SettingsError
-from vehicle.control_loop import ControlLoop
+from vehicle.control_loop import CYCLE, ControlLoop
 from vehicle.motors import MotorError, UnknownDriverError
 from vehicle.params import ParamError
 from vehicle.rover import Rover
@@ -46,9 +46,6 @@ from vehicle.storage.store import Store
 from vehicle.telemetry.host import HostInfo
 
 log = logging.getLogger(__name__)
-
-PERIOD = 0.02
-"""s, the control cycle: 50 Hz is the rate of servos and motor controllers of this size."""
 
 LEVELS: dict[Severity, int] = {
     Severity.EMERGENCY: logging.CRITICAL,
@@ -193,7 +190,7 @@ async def _drive(
     cycles: CycleObserver,
     log_tap: LogTap | None,
 ) -> int:
-    runner = Runner(control_loop, links, period=PERIOD, log_tap=log_tap)
+    runner = Runner(control_loop, links, period=CYCLE, log_tap=log_tap)
     shutdown = Shutdown(control_loop, runner, notifier.stopping)
     cycles.shutdown = shutdown
     shutdown.install_handlers(asyncio.get_running_loop())

@@ -27,6 +27,11 @@ class BatteryMonitor:
         """True if there is a battery sensor, or the configuration names one."""
         return self._expected or self._seen is not None
 
+    @property
+    def counting(self) -> bool:
+        """Whether the voltage is below a limit, so that a timer runs or has ended."""
+        return self._low is not None or self._critical is not None
+
     def update(self, voltage: float | None, now: float, *, expected: bool = False) -> None:
         """Handle a reading; None and values that are not finite are no reading.
 

@@ -41,6 +41,11 @@ class Failsafes:
         self._since: dict[Failsafe, float] = {}
         self._done: dict[Failsafe, tuple[FailsafeStep, ...]] = {}
 
+    @property
+    def quiet(self) -> bool:
+        """Whether no condition held at the last check, not even one that has reached no step yet."""
+        return not (self._began or self._since)
+
     def check(self, inputs: FailsafeInputs, now: float, *, armed: bool) -> list[TriggeredStep]:
         """Evaluate the conditions of RULES and return the steps reached since the last call.
 

@@ -6,6 +6,8 @@ vehicle/safety/failsafe.py; vehicle/drive/drive.py turns a Clearance into motor 
 
 from __future__ import annotations
 
+import math
+
 from dialects.enums import Severity
 from dialects.modes import Mode
 from vehicle.drive.control import Control
@@ -35,6 +37,8 @@ class SafetyMonitor:
         self._control = control
         self._texts = texts
         self._last_cycle = self._last_activity = now
+        self._quiet_until = -math.inf
+        """Until when `update` finds nothing in a rover whose demand is fresh, without another reading of a sensor."""
 
     def is_late(self, now: float) -> bool:
         """Return True if the last cycle is older than LATE_CYCLE_TIME; disarm if older than FS_LOOP_TIMEOUT."""
@@ -44,8 +48,18 @@ class SafetyMonitor:
         return gap > LATE_CYCLE_TIME
 
     def skip_cycle(self, now: float) -> None:
-        """Note a cycle that came in time and was left out because nothing was under way."""
+        """Note a cycle that came in time and needed no `update`."""
         self._last_cycle = now
+
+    def has_deadline(self, now: float) -> bool:
+        """Return whether the time of a failsafe runs, or one that needs no sensor is due; not that of a stale demand.
+
+        Messages only put these times off, but for the operator's input, which is asked for here.
+        """
+        control = self._control
+        return now >= self._quiet_until or (
+            control.presence.is_lost(self._params["OPR_TIMEOUT"], now) and control.requests_motion()
+        )
 
     def update(self, now: float, refused: int, motion: MotionInputs, *, driving: bool) -> None:
         """Evaluate the failsafes of this cycle and take their actions.
@@ -65,6 +79,7 @@ class SafetyMonitor:
         if driving:
             self._last_activity = now
         self._disarm_idle(now)
+        self._quiet_until = self._find_deadline()
         if not safety.armed:
             safety.free_lost_owner(now)
 
@@ -125,9 +140,20 @@ class SafetyMonitor:
             safety.disarm(label, now)
 
     def _disarm_idle(self, now: float) -> None:
-        delay = self._params["DISARM_DELAY"]
         demand = self._control.demand
         if demand and self._control.requests_motion():
             self._last_activity = demand.time
-        if delay and now - max(self._safety.armed_at, self._last_activity) > delay:
-            self._safety.disarm(f"no demand for {delay:g} s", now)
+        if now > self._idle_until:
+            self._safety.disarm(f"no demand for {self._params['DISARM_DELAY']:g} s", now)
+
+    @property
+    def _idle_until(self) -> float:
+        """When the vehicle is disarmed without another demand for motion."""
+        delay: float = self._params["DISARM_DELAY"]
+        return max(self._safety.armed_at, self._last_activity) + delay if delay else math.inf
+
+    def _find_deadline(self) -> float:
+        """Return when the first failsafe that needs no sensor may be due; -infinite while the time of any runs."""
+        if not self._safety.failsafes.quiet or self._safety.battery.counting:
+            return -math.inf
+        return min(self._idle_until, self._control.ownership.lost_at)

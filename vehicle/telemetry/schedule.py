@@ -73,6 +73,7 @@ class StreamSchedule:
         self.level = DialectLevel.COMMON
         """The highest level that the peer has shown to understand."""
         self._clocks = {each.message.id: _Clock(each, boot + n * PHASE) for n, each in enumerate(STREAMS)}
+        self._steady = [clock for clock in self._clocks.values() if clock.stream.steady]
         self._next = math.inf
         self._share = BandwidthShare()
         self._messages = TokenBucket(PEER_MESSAGE_RATE_MAX, PEER_MESSAGE_RATE_MAX * BURST)
@@ -88,6 +89,14 @@ class StreamSchedule:
         if level > self.level:
             self._begin([each for each in DialectLevel if self.level < each <= level], now)
             self.level = level
+
+    @property
+    def steady_due(self) -> float:
+        """When the first steady stream is due."""
+        due = math.inf
+        for clock in self._steady:
+            due = min(due, clock.due)
+        return due
 
     @property
     def shortest(self) -> float:

@@ -21,6 +21,7 @@ MAX_PEERS = 64
 
 _CHANGING = tuple(stream for stream in STREAMS if stream.change_key is not None)
 _STEADY = tuple(stream for stream in _CHANGING if stream.steady)
+_STEADY_IDS = tuple(stream.message.id for stream in STREAMS if stream.steady)
 _FOLLOWING_DEMAND = tuple(stream for stream in STREAMS if stream.follows_demand)
 
 
@@ -116,7 +117,17 @@ class Telemetry:
     def build_after_demand(self, view: TelemetryView) -> list[Outgoing]:
         """Build what follows a changed demand at once; the rest waits for the next tick."""
         self._expedite_changes(_FOLLOWING_DEMAND, view)
-        numbers = [stream.message.id for stream in _FOLLOWING_DEMAND]
+        return self._build_those_due([stream.message.id for stream in _FOLLOWING_DEMAND], view)
+
+    def is_steady_due(self, now: float) -> bool:
+        """Return whether a steady stream is due."""
+        return any(now >= schedule.steady_due for schedule in self._schedules.values())
+
+    def build_steady(self, view: TelemetryView) -> list[Outgoing]:
+        """Build the steady streams that are due, without a look for changes."""
+        return self._build_those_due(_STEADY_IDS, view)
+
+    def _build_those_due(self, numbers: Iterable[int], view: TelemetryView) -> list[Outgoing]:
         wanted = [
             (n, [peer for peer, each in self._schedules.items() if each.pop_if_due(n, view.now)]) for n in numbers
         ]

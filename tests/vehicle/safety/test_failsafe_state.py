@@ -32,3 +32,13 @@ def test_a_condition_that_returns_restarts_its_steps() -> None:
     assert failsafes.active == 0
     assert failsafes.latched == Failsafe.GCS_LOSS
     assert [step.action for step in failsafes.update({Failsafe.GCS_LOSS: 2.0}, 2.0)] == [FailsafeAction.HOLD]
+
+
+def test_a_condition_before_its_first_step_is_not_quiet() -> None:
+    failsafes = Failsafes(Params())
+    assert failsafes.quiet
+    failsafes.update({Failsafe.TILT: 10.0}, 10.1)  # acts after 0.5 s
+    assert not failsafes.active
+    assert not failsafes.quiet
+    failsafes.update({}, 10.2)
+    assert failsafes.quiet
