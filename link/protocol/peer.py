@@ -18,7 +18,7 @@ MAX_SOURCES = 64
 """Systems and components tracked behind one peer."""
 
 
-FILE_RATE, FILE_BURST = 12_000, 2_000
+FILE_RATE, FILE_BURST = 14_000, 2_000
 """Frames/s of files that a ground station accepts, and at once; it has requested them."""
 
 

@@ -14,8 +14,8 @@ from link.protocol.rate import TokenBucket
 DEFAULT_RATE = 400_000.0
 """bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/protocol/channel.py accepts from a
 peer."""
-LOCAL_FILE_RATE = 2_800_000.0
-"""bytes/s of files to a station of this project on the same machine: 10,500 frames a second, seven in eight of what
+LOCAL_FILE_RATE = 3_100_000.0
+"""bytes/s of files to a station of this project on the same machine: 11,600 frames a second, five in six of what
 such a station accepts (link/protocol/peer.py)."""
 MAX_FRAME_RATE = 1600.0
 """frames/s to any peer with DEFAULT_RATE or less, however short: decoding a short one takes as long. MAVProxy lost one

@@ -51,7 +51,7 @@ def test_link_ids_of_a_byte_are_shared_by_32_links_and_their_watchdogs() -> None
 
 @pytest.mark.parametrize(
     ("kind", "rate", "burst"),
-    [("demand", 200, 50), ("command", 200, 100), ("file", 12_000, 2_000), ("rest", 2500, 1000)],
+    [("demand", 200, 50), ("command", 200, 100), ("file", 14_000, 2_000), ("rest", 2500, 1000)],
 )
 def test_each_kind_of_message_has_its_rate_and_burst(kind: str, rate: int, burst: int) -> None:
     bucket = _buckets()[kind]
