@@ -128,7 +128,7 @@ class Ros2Node:
                 self._topics[plan.name] = _Topic(endpoint, gid_of(endpoint.token))
         assert self._wire is not None
         self._wire.declare(node.domain, [node.token, *(each.token for each in endpoints)], endpoints)
-        self.ready = True
+        self.ready, self._told = True, ""
         self.note(f"node {node.resolve(node.name)} at {self.names.router.locator}, domain {node.domain}")
 
     def _tell(self, problem: str) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import zenoh
 
-from link.fleet.config import apply_settings
+from link.fleet.config import OPEN_TIMEOUT, apply_settings
 from link.transport.transport import LinkError
 
 SETTINGS: dict[str, Any] = {
@@ -18,9 +18,9 @@ SETTINGS: dict[str, Any] = {
     "listen/endpoints": [],
     "connect/timeout_ms": 0,
     "connect/exit_on_failure": True,
-    "connect/retry": {"period_init_ms": 200, "period_max_ms": 500, "period_increase_factor": 1.5},
     "transport/shared_memory/enabled": False,
     "transport/link/tx/lease": 3000,
+    "transport/unicast/open_timeout": OPEN_TIMEOUT,
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
 }

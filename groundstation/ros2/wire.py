@@ -51,7 +51,7 @@ class WireEvents:
     """Called in the event loop."""
 
     opened: Callable[[str], None]
-    """The session is open, with this id: now declare()."""
+    """A session is open, with this id: now declare()."""
     problem: Callable[[str], None]
     """Why there is no session; another attempt follows."""
     message: Callable[[Arrived], None]
@@ -70,7 +70,7 @@ class Wire:
         """Declarations live as long as they are held."""
         self._lock = threading.Lock()
         self._waiting: dict[object, Arrived | Request] = {}
-        self._router = RouterSession("ros2", router.locator, router.config, self._opened, self._failed)
+        self._router = RouterSession("ros2", router.config, self._opened, self._failed)
 
     def start(self) -> None:
         """Connect, and try again until it succeeds."""
@@ -78,8 +78,9 @@ class Wire:
 
     def declare(self, domain: int, tokens: Sequence[str], endpoints: Sequence[Endpoint]) -> None:
         """Show the tokens; take the messages and requests of the endpoints."""
-        session = self._router.session
-        assert session is not None
+        session, self._held = self._router.session, []
+        if session is None:  # lost meanwhile
+            return
         with self._router.quiet("declare"):
             for each in endpoints:
                 if each.kind is Kind.SUBSCRIPTION:

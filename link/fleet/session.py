@@ -29,11 +29,11 @@ class SessionEvents(Protocol):
     def handle_token(self, key: str, is_there: bool) -> None:
         """Take that a token is there, or has gone."""
 
-    def handle_routers(self, routers: int) -> None:
-        """Take the number of routers that are connected."""
+    def handle_connected(self) -> None:
+        """Take that there is a session; who is there follows."""
 
     def handle_problem(self, problem: str) -> None:
-        """Take why no session could be opened; another attempt follows."""
+        """Take why there is no session; another attempt follows. Tokens of the one before count no more."""
 
 
 class FleetSession:
@@ -45,8 +45,9 @@ class FleetSession:
         self._keys_in_use: dict[str, zenoh.KeyExpr] = {}
         self._declared: list[Any] = []
         """Subscribers live as long as they are held."""
-        self._tokens: dict[str, zenoh.LivelinessToken] = {}
-        self._router = RouterSession("fleet", config.routers[0], config.zenoh, self._opened, events.handle_problem)
+        self._tokens: dict[str, tuple[zenoh.Session, zenoh.LivelinessToken]] = {}
+        """Key -> the session in which the token was shown, and the token."""
+        self._router = RouterSession("fleet", config.zenoh, self._opened, events.handle_problem)
 
     def start(self) -> None:
         """Connect, and try again until it succeeds."""
@@ -71,15 +72,16 @@ class FleetSession:
         return True
 
     def show_token(self, key: str) -> None:
-        """Tell others that this program is here, until close()."""
-        session = self._router.session
-        if session is not None and key not in self._tokens:
+        """Tell others that this program is here, until the session ends."""
+        session, shown = self._router.session, self._tokens.get(key)
+        if session is not None and (shown is None or shown[0] is not session):
             with self._router.quiet("declare a token"):
-                self._tokens[key] = session.liveliness().declare_token(key)
+                self._tokens[key] = session, session.liveliness().declare_token(key)
 
     def hide_token(self, key: str) -> None:
         """Take back what show_token() has told."""
-        if token := self._tokens.pop(key, None):
+        session, token = self._tokens.pop(key, (None, None))
+        if token is not None and session is self._router.session:
             with self._router.quiet("undeclare a token"):
                 token.undeclare()  # type: ignore[no-untyped-call]
 
@@ -101,15 +103,13 @@ class FleetSession:
             events.handle_frame(str(sample.key_expr), bytes(sample.payload))
 
         def note(sample: zenoh.Sample) -> None:
-            events.handle_token(str(sample.key_expr), sample.kind == put)
+            if self._router.session is session:  # one that is lost says late who has gone
+                events.handle_token(str(sample.key_expr), sample.kind == put)
 
+        events.handle_connected()
         self._declared = [
-            session.info.declare_transport_events_listener(lambda _: self._count_routers(session), history=True),
             session.declare_subscriber(keys.frames, take),
             live.declare_subscriber(keys.others, note, history=True),
         ]
         if keys.me is None:
             self.show_token(keys.token(""))
-
-    def _count_routers(self, session: zenoh.Session) -> None:
-        self._events.handle_routers(len(session.info.routers_zid()))

@@ -19,7 +19,7 @@ from link.fleet.arrivals import PACE, Arrivals
 from link.fleet.brevity import BriefTelemetry
 from link.fleet.config import VEHICLE_ROLE, FleetConfig, load_config
 from link.fleet.inbox import BATCH, Inbox
-from link.fleet.keys import FleetKeys, KeyReader, Place, read_frame
+from link.fleet.keys import FleetKeys, KeyReader, Place, new_framer, read_frame
 from link.fleet.presence import Presence
 from link.fleet.roles import needed_role
 from link.fleet.session import FleetSession
@@ -56,6 +56,9 @@ class FleetTransport:
         self._keys = FleetKeys(endpoint.fleet, endpoint.vehicle, me)
         self._session = FleetSession(config, self._keys, self)
         self._reader = KeyReader(self._keys)
+        self._framer = new_framer()
+        self._newest: tuple[bytes, Frame | None] = (b"", None)
+        """What was asked about or sent last, and the frame that it is: most frames are both."""
         self._arrivals = Arrivals()
         self._inbox = Inbox()
         self._delivered_at = -math.inf
@@ -94,7 +97,7 @@ class FleetTransport:
 
     def refusal(self, data: bytes) -> str | None:
         """Return which role this program lacks to send a frame; None if it may, or its role is not known."""
-        frame = read_frame(data) if self._role not in (None, Role.SET_UP) else None
+        frame = self._read(data) if self._role not in (None, Role.SET_UP) else None
         return None if frame is None else self._role_missing(frame)
 
     def look_at(self, systems: frozenset[int] | None) -> None:
@@ -114,8 +117,13 @@ class FleetTransport:
         self._loop = None
         self._session.close()
 
+    def _read(self, data: bytes) -> Frame | None:
+        if data is not self._newest[0]:
+            self._newest = data, read_frame(data, self._framer)
+        return self._newest[1]
+
     def _send_frame(self, data: bytes, address: str) -> None:
-        frame = read_frame(data)
+        frame = self._read(data)
         if frame is None:
             self._unsent += 1
             return
@@ -152,11 +160,10 @@ class FleetTransport:
         if self._loop is not None and brief is not None:
             self._call(self._loop, partial(self._brief.set, brief, is_brief=is_there))
 
-    def handle_routers(self, routers: int) -> None:
-        """Tell the loop whether a router is connected."""
-        problem = None if routers else "connection to the router lost; trying again"
+    def handle_connected(self) -> None:
+        """Tell the loop that a router is connected."""
         if self._loop is not None:
-            self._call(self._loop, partial(self._note_problem, problem))
+            self._call(self._loop, partial(self._note_problem, None))
 
     def handle_problem(self, problem: str) -> None:
         """Tell the loop why no router is connected."""
@@ -231,7 +238,7 @@ class FleetTransport:
             self._presence.remove(address, self._loop.time())
             return
         if self._keys.me:
-            if self._looked_at is not None and address not in self._presence.present:
+            if self._looked_at is not None and address not in self._presence.find_owners(self._looked_at):
                 self._session.show_token(self._keys.brief_token(address))  # before it can send anything
             self._session.show_token(self._keys.token(address))
         if self._presence.add(address):
@@ -249,6 +256,9 @@ class FleetTransport:
 
     def _note_problem(self, problem: str | None) -> None:
         self.problem = None if problem is None else f"{self.endpoint.text}: {problem}"
+        if problem is not None and self._loop is not None:  # without a session nobody is seen
+            for address in self._presence.present:
+                self._presence.remove(address, self._loop.time())
 
     def _tick(self, loop: asyncio.AbstractEventLoop) -> None:
         for address in self._presence.expire(loop.time()):

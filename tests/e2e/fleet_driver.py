@@ -54,6 +54,14 @@ class Driver(SessionProgram):
         proof.echo_time_boot_ms = self.wires.boot_ms[1] if self.wires.boot_ms else 0  # type: ignore[attr-defined]
         return proof
 
+    def step(self, axes: Axes | None, rate: float = 20.0, *, lost: bool = False) -> None:
+        """As SessionProgram; a vehicle that comes back is greeted, as by our ground station."""
+        met: set[object] = self.wires.met  # type: ignore[attr-defined]
+        if self.address in met:
+            met.discard(self.address)
+            self.beat()
+        super().step(axes, rate, lost=lost)
+
 
 class Fleet:
     """One vehicle that alice drives."""

@@ -96,6 +96,8 @@ class FleetWires:
         """Newest time of the vehicle, and when it came."""
         self.longest_silence = 0.0
         """s between two frames of the vehicle, to any operator; set it to 0 to measure from then on."""
+        self.met: set[Hashable] = set()
+        """Operators to whom the vehicle is new: it has come, or come back."""
         self._heard_at = time.monotonic()
         self._loop = asyncio.new_event_loop()
         stack.callback(self._loop.close)
@@ -141,6 +143,8 @@ class FleetWires:
         self.longest_silence = max(self.longest_silence, self.now - self._heard_at)
         self._heard_at = self.now
         for data, _ in pieces:
+            if not data:
+                self.met.add(operator)
             for number, _, _, _, raw in self._framer.feed(data, self.now):
                 message = codec.decode(number, payload_of(raw))
                 self.sent.append((operator, message))

@@ -20,7 +20,7 @@ from tests.waits import Waits
 pytestmark = [pytest.mark.slow, pytest.mark.e2e, pytest.mark.xdist_group("fleet")]  # one fleet for all tests
 
 RECONNECTED_WITHIN = 1.0
-"""s from a router that listens to the next frame; programs try again every 0.5 s (RETRY in link/fleet/config.py)."""
+"""s from a router that listens to the next frame; programs ask for it every 0.2 s (link/fleet/probe.py)."""
 BACK_WITHIN = 1.0
 """s from the next frame to a command that is obeyed."""
 

@@ -34,6 +34,7 @@ ROUTER_SETTINGS: dict[str, Any] = {
     "mode": "router",
     "connect/timeout_ms": -1,  # the other router may start later, or again
     "connect/exit_on_failure": False,
+    "connect/retry": {"period_init_ms": 200, "period_max_ms": 500, "period_increase_factor": 1.5},  # Zenoh's go to 4 s
     "transport/unicast/max_sessions": 10_000,  # Zenoh's own limit is 1000
     "transport/unicast/accept_pending": 1_000,  # after a restart all come at once
     "transport/link/protocols": ["tls", "quic"],
@@ -133,8 +134,11 @@ def _log_link(fleet: FleetFile) -> Any:
     owners = {ROUTER_NAME: "router"}
     owners |= {each.certificate: f"vehicle {name}" for name, each in fleet.vehicles.items()}
     owners |= {each.certificate: f"operator {name} ({each.role})" for name, each in fleet.operators.items()}
+    second = load_zenoh().Reliability.BEST_EFFORT
 
     def note(event: Any) -> None:
+        if event.link.reliability == second:  # a session over QUIC has two links; Zenoh tells the end of both
+            return
         certificate = event.link.auth_identifier
         who = owners.get(certificate, f"{certificate}, who is not in the file and may do nothing,")
         log.info("%s %s %s", who, "from" if str(event.kind).endswith("PUT") else "has gone from", event.link.dst)

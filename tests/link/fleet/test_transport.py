@@ -161,7 +161,20 @@ async def test_without_a_router_the_link_says_why_and_connects_when_there_is_one
     with open_router(port):
         await until(lambda: station.received and rover.received)
         assert station.transport.problem is None
-    await until(lambda: "connection to the router lost" in (station.transport.problem or ""))
+    await until(lambda: "connection to the router lost; no router at" in (station.transport.problem or ""))
+    station.transport.look_at(frozenset())
+    station.transport.send(heartbeat(0), "rover1")
+    assert station.transport.dropped == 2
+    with open_router(port):
+        await until(lambda: station.transport.problem is None and rover.transport.problem is None)
+        me, before = rover.received[0][1], len(rover.received)
+        await until(lambda: rover.received[before:], lambda: station.transport.send(heartbeat(1), "rover1"))
+        assert rover.received[before] == (heartbeat(1), me)
+        await until(lambda: rover.transport._brief._sent)
+        await until(
+            lambda: (VEHICLE_BEAT, "rover1") in station.received, lambda: rover.transport.send(VEHICLE_BEAT, me)
+        )
+    assert station.gone == rover.gone == []
     for each in (station, rover):
         each.transport.close()
 
