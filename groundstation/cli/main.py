@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
 from groundstation.verbs.mavproxy_words import describe_action
-from link.runtime import asyncio_without_ssl, startup_gc, stdio
+from link.runtime import startup_gc, stdio, without_openssl
 
 FLAGS = ("--json", "-q", "--quiet")
 """Options of all verbs that may also stand before the verb."""
@@ -29,13 +29,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"groundstation: {hint}", file=sys.stderr)
         return 2
     if verb in VERB_HELP:
-        asyncio_without_ssl.load()
+        without_openssl.load()
         from groundstation.verbs.main import run as run_verb  # loads the dialect, which the screen does without
 
         return run_verb(arguments)
     if verb in LOCAL_HELP:
         return _run_local(verb, arguments[1:])
-    asyncio_without_ssl.load()
+    without_openssl.load()
     with startup_gc.paused():
         from groundstation.cli.console import run as run_console
 

@@ -1,5 +1,5 @@
 """The processes of the station and of a replay: the loop around each, and their ends of the pipes to screens."""
 
-from link.runtime import asyncio_without_ssl
+from link.runtime import without_openssl
 
-asyncio_without_ssl.load()
+without_openssl.load()

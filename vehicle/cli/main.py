@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from link.runtime import asyncio_without_ssl, startup_gc, stdio
+from link.runtime import startup_gc, stdio, without_openssl
 from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
 from vehicle.cli.options import (
@@ -49,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace, parser: CommandLineParser) -> int:
-    asyncio_without_ssl.load()
+    without_openssl.load()
     from vehicle.runtime import daemon
     from vehicle.runtime.log import DaemonLog
 
