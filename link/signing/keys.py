@@ -85,7 +85,9 @@ def key_from_passphrase(text: str, kind: PassphraseKind = PassphraseKind.SHA256)
 
 
 def _derive_pbkdf2(text: bytes) -> bytes:
-    return hashlib.pbkdf2_hmac("sha256", text, PBKDF2_SALT, PBKDF2_ROUNDS, SECRET_SIZE)
+    from _hashlib import pbkdf2_hmac  # hashlib may be without it: link/runtime/without_openssl.py
+
+    return pbkdf2_hmac("sha256", text, PBKDF2_SALT, PBKDF2_ROUNDS, SECRET_SIZE)
 
 
 _DERIVATIONS: Mapping[PassphraseKind, Callable[[bytes], bytes]] = {

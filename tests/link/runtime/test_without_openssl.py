@@ -18,12 +18,22 @@ HASHES = (
     "assert hashlib.sha256(text).digest() == _hashlib.openssl_sha256(text).digest(); "
     "assert hmac.digest(b'key', text, 'sha256') == _hashlib.hmac_digest(b'key', text, 'sha256')"
 )
+PASSPHRASE = (
+    "from link.signing.keys import PassphraseKind, key_from_passphrase; "
+    "assert len(key_from_passphrase('text', PassphraseKind.PBKDF2)) == 32; "
+    "assert '_hashlib' in sys.modules"  # Python 3.12 has no other implementation
+)
 
 
 @pytest.mark.parametrize(
     "code",
-    [LOADED + AFTERWARDS + USABLE, LOADED + AFTERWARDS + HASHES, STATION + AFTERWARDS],
-    ids=["asyncio", "hashlib", "station"],
+    [
+        LOADED + AFTERWARDS + USABLE,
+        LOADED + AFTERWARDS + HASHES,
+        LOADED + AFTERWARDS + PASSPHRASE,
+        STATION + AFTERWARDS,
+    ],
+    ids=["asyncio", "hashlib", "passphrase", "station"],
 )
 def test_openssl_is_not_loaded(code: str) -> None:
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
