@@ -19,7 +19,7 @@ import zenoh
 from groundstation.ros.rmw.attachment import Attachment, decode, gid_of
 from groundstation.ros.rmw.names import Endpoint, Kind, publisher_tokens
 from groundstation.ros2.router import Router
-from link.fleet.router_session import RouterSession
+from link.fleet.router_session import RouterSession, direct
 
 CLOSE_WITHIN = 2.0
 MAX_WAITING = 64
@@ -87,7 +87,7 @@ class Wire:
                     self._subscribe(session, domain, each)
                 elif each.kind is Kind.SERVICE:
                     take = self._query_taker(each)
-                    self._held.append(session.declare_queryable(each.key, take, complete=True))
+                    self._held.append(session.declare_queryable(each.key, direct(take), complete=True))
             self._held += [session.liveliness().declare_token(token) for token in tokens]
 
     def publish(self, key: str, data: bytes, attachment: Attachment) -> None:
@@ -124,8 +124,8 @@ class Wire:
                 self._call(self._events.left, endpoint.name, gid_of(str(sample.key_expr)))
 
         tokens = publisher_tokens(domain, endpoint.name)
-        self._held.append(session.declare_subscriber(endpoint.key, take))
-        self._held.append(session.liveliness().declare_subscriber(tokens, note))
+        self._held.append(session.declare_subscriber(endpoint.key, direct(take)))
+        self._held.append(session.liveliness().declare_subscriber(tokens, direct(note)))
 
     def _query_taker(self, endpoint: Endpoint) -> Callable[[zenoh.Query], None]:
         def take(query: zenoh.Query) -> None:

@@ -12,7 +12,7 @@ import random
 import threading
 import time
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from link.fleet.config import OPEN_TIMEOUT, load_zenoh
 from link.fleet.explain import explain_failure
@@ -27,6 +27,15 @@ log = logging.getLogger(__name__)
 FIRST_RETRY, LONGEST_RETRY = 0.2, 1.0
 """s between attempts at a router that answers and refuses; each takes half of it to all of it, at random."""
 LOST = "connection to the router lost"
+
+
+def direct(callback: Callable[[Any], object]) -> Any:
+    """Return what a session calls `callback` by, in its own threads. It must be short, and wait for nothing.
+
+    Otherwise the package runs a thread of Python for each callback: that takes 0.1 ms, and aborts the program
+    ("FATAL: exception not rethrown") if it is not through when the program ends.
+    """
+    return load_zenoh().handlers.Callback(callback, indirect=False)
 
 
 class RouterSession:
@@ -53,6 +62,8 @@ class RouterSession:
         self._wake = threading.Event()
         """The session is lost, or shall be closed."""
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._ending: threading.Thread | None = None
+        """Closes the session that was lost last."""
 
     def start(self) -> None:
         """Connect, and try again until it succeeds."""
@@ -82,7 +93,8 @@ class RouterSession:
             if self._closing.is_set():
                 return
             lost, self.session = self.session, None
-            threading.Thread(target=self._end, args=(lost,), name=f"{self._name} lost", daemon=True).start()
+            self._ending = threading.Thread(target=self._end, args=(lost,), name=f"{self._name} lost", daemon=True)
+            self._ending.start()
             self._problem(LOST)
             told = self._tell_since_lost
 
@@ -115,7 +127,7 @@ class RouterSession:
         if self._closing.is_set():
             return
         with self.quiet("watch the router"):
-            listener = session.info.declare_transport_events_listener(note)
+            listener = session.info.declare_transport_events_listener(direct(note))
             if session.info.transports():
                 self._opened(session)
                 self._wake.wait()
@@ -126,6 +138,8 @@ class RouterSession:
 
     def _close(self) -> None:
         self._thread.join()
+        if self._ending is not None:
+            self._ending.join()
         session, self.session = self.session, None
         if session is not None:
             self._end(session)

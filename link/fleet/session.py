@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from link.fleet.config import FleetConfig, load_zenoh
 from link.fleet.keys import FleetKeys
-from link.fleet.router_session import RouterSession
+from link.fleet.router_session import RouterSession, direct
 
 if TYPE_CHECKING:
     import zenoh
@@ -108,8 +108,8 @@ class FleetSession:
 
         events.handle_connected()
         self._declared = [
-            session.declare_subscriber(keys.frames, take),
-            live.declare_subscriber(keys.others, note, history=True),
+            session.declare_subscriber(keys.frames, direct(take)),
+            live.declare_subscriber(keys.others, direct(note), history=True),
         ]
         if keys.me is None:
             self.show_token(keys.token(""))

@@ -24,6 +24,7 @@ from link.bridge.fleet.fleet_file import (
 )
 from link.bridge.fleet.members import read_encoded
 from link.fleet.config import SETTINGS, apply_settings, load_zenoh
+from link.fleet.router_session import direct
 from link.runtime.command_line import CommandLineParser
 from link.runtime.toml_file import TomlError
 from link.transport.transport import LinkError
@@ -68,7 +69,7 @@ def _run(fleet: FleetFile, folder: Path, links: Sequence[str]) -> None:
     )  # Zenoh's threads inherit it, so that sigwait() gets them
     try:
         session = _open(fleet, folder, links)
-        watching = session.info.declare_link_events_listener(_log_link(fleet), history=True)
+        watching = session.info.declare_link_events_listener(direct(_log_link(fleet)), history=True)
         members = f"{len(fleet.vehicles)} vehicles, {len(fleet.operators)} operators"
         log.info("ready, fleet %s, %s, %s", fleet.fleet, " + ".join(fleet.listen), members)
         signal.sigwait(SIGNALS)

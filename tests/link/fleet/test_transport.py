@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import threading
 import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
 
@@ -67,6 +68,7 @@ def ends(port: int, *vehicles: str) -> tuple[End, ...]:
 
 
 async def test_frames_both_ways_and_what_is_refused(port: int) -> None:
+    others = set(threading.enumerate())
     station, rover = ends(port, "rover1")
     assert (station.transport.problem or "").endswith(": connecting")
     await until(lambda: station.received and rover.received)
@@ -90,8 +92,10 @@ async def test_frames_both_ways_and_what_is_refused(port: int) -> None:
     assert rover.received[before:] == []
     station.transport.send(b"no frame", vehicle)
     assert station.transport.dropped == 1
+    assert [each.name for each in set(threading.enumerate()) - others] == ["fleet"] * 2  # none for each callback
     for each in (station, rover):
         each.transport.close()
+    assert set(threading.enumerate()) <= others
 
 
 async def test_two_vehicles_with_one_system_id_are_not_taken_for_one(port: int) -> None:
