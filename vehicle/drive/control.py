@@ -7,6 +7,8 @@ ground station that repeats an old demand, moves nothing. The last gate (vehicle
 
 from __future__ import annotations
 
+import math
+
 from dialects.axes import FULL_DEFLECTION
 from dialects.enums import DriveType, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
@@ -85,13 +87,13 @@ class Control:
             return False
         if self.demand and self.demand.sequence == received.sequence:
             return False  # a replay of the same packet
-        demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
+        lifetime = self._params["OPR_ECHO_MAX"] - self.presence.echo_age(now)
+        demand = self._parse(received, message, now, lifetime)
         if _is_out_of_range(message.x) or _is_out_of_range(message.r):
             self._report_invalid(received, "axes outside -1000..1000 count as neutral", now)
         if demand is None:
             return False
-        lifetime = self._params["OPR_ECHO_MAX"] - self.presence.echo_age(now)
-        return self._use_old(demand, now) if lifetime < 0.0 else self._use(demand._replace(lifetime=lifetime), now)
+        return self._use_old(demand, now) if lifetime < 0.0 else self._use(demand, now)
 
     def handle_rc_override(self, received: Received, message: RcChannelsOverride, now: float) -> bool:
         """Handle an RC_CHANNELS_OVERRIDE; return True if it is the demand now."""
@@ -145,13 +147,10 @@ class Control:
             return False
         if good:
             self.presence.handle(message, now - self._boot, now)
-        demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
+        demand = self._parse(received, message, now, self._params["OPR_ECHO_MAX"] - proof.age)
         if demand is None or session.order(proof) is not DemandOrder.NEWEST:
             return False
-        if good:
-            used = self._use(demand._replace(lifetime=self._params["OPR_ECHO_MAX"] - proof.age), now)
-        else:
-            used = self._use_old(demand, now)
+        used = self._use(demand, now) if good else self._use_old(demand, now)
         if used:
             session.clock = proof.clock
         return used
@@ -198,6 +197,15 @@ class Control:
     def deadband(self) -> float:
         """Axis values up to this count as neutral."""
         return self._params["MAN_DEADBAND"] / 100
+
+    def _parse(
+        self, received: Received, message: ManualControl | RoverOperatorPresence, now: float, lifetime: float
+    ) -> Demand | None:
+        """Return the demand of a message; one that is too old on arrival has no lifetime of its own (`_use_old`)."""
+        lasting = math.inf if lifetime < 0.0 else lifetime
+        return from_manual_control(
+            message, received.system, received.sequence, now, sideways=self._sideways, lifetime=lasting
+        )
 
     def _use(self, demand: Demand, now: float, *, proof: bool = True) -> bool:
         self.expire_stale_demand(now)

@@ -54,17 +54,24 @@ class Demand(NamedTuple):
 
 
 def from_manual_control(
-    message: ManualControl | RoverOperatorPresence, system: int, sequence: int, now: float, *, sideways: bool = False
+    message: ManualControl | RoverOperatorPresence,
+    system: int,
+    sequence: int,
+    now: float,
+    *,
+    sideways: bool = False,
+    lifetime: float = math.inf,
 ) -> Demand | None:
     """Return the demand of a message with axes, None if no axis is valid. Axes: dialects/axes.py.
 
-    `sideways`: this vehicle can move sideways, which y requests (the specification calls it roll).
+    `sideways`: this vehicle can move sideways, which y requests (the specification calls it roll). `lifetime`: see
+    Demand.
     """
     throttle, steering = axes.parse_manual_control(message)
     side = message.y / axes.FULL_DEFLECTION if sideways and abs(message.y) <= axes.FULL_DEFLECTION else None
     if throttle is None and steering is None and side is None:
         return None
-    return Demand(throttle, steering, now, system, sequence, side)
+    return Demand(throttle, steering, now, system, sequence, side, lifetime)
 
 
 class OverrideChannel(msgspec.Struct, frozen=True):

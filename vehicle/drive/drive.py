@@ -150,8 +150,10 @@ def shape_demand(demand: Demand, params: Params) -> tuple[float, float, float]:
     if demand.direct:
         return throttle, steering, sideways
     band, softness = params["MAN_DEADBAND"] / 100, params["MANUAL_EXPO"]
+    steered = params["MANUAL_STR_EXPO"]
+    throttle, steering = deadband(throttle, band), deadband(steering, band)
     return (
-        expo(deadband(throttle, band), softness),
-        expo(deadband(steering, band), params["MANUAL_STR_EXPO"]),
+        expo(throttle, softness) if softness else throttle,
+        expo(steering, steered) if steered else steering,
         expo(deadband(sideways, band), softness) if sideways else 0.0,
     )

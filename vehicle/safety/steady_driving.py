@@ -48,10 +48,10 @@ class SteadyDriving:
         demand = self._control.demand
         return (
             self._driven
+            and now - self._moved_at > PERIOD
             and demand is not None
             and before is not None
             and demand.axes == before.axes
-            and now - self._moved_at > PERIOD
             and self._control.neutral_seen
             and not self._monitor.is_late(now)
         )
