@@ -41,6 +41,8 @@ class WatchdogFeed:
         """Link and address -> packet sequence of the newest frame."""
         self._routes: dict[tuple[int, int, Hashable], tuple[Link, float]] = {}
         """System, link and address -> the link, and when the newest demand went there."""
+        self._handed_over: list[tuple[int, object]] = []
+        """Descriptors that the watchdog has, and the socket or port of each."""
         self._flags: dict[str, Any] = {}
         self.alive = True
 
@@ -78,7 +80,7 @@ class WatchdogFeed:
         """Report that the station runs. Returns False once, when the watchdog's process has ended."""
         self._forget_old(now)
         routes: list[DemandRoute] = []
-        descriptors: list[int] = []
+        opened: list[tuple[int, object]] = []
         for number, vehicle in enumerate(vehicles):
             for (system, index, address), (link, _) in self._routes.items():
                 outlet = link.transport.outlet(address) if system == vehicle.system else None
@@ -86,9 +88,14 @@ class WatchdogFeed:
                     sequence = self._sequences.get((index, address), 0)
                     way = link.channel.signing_way(address)
                     routes.append(DemandRoute(number, outlet.destination, sequence, way))
-                    descriptors.append(outlet.descriptor)
-        report = StationReport(ids=self._ids, vehicles=tuple(vehicles), routes=tuple(routes), **self._flags)
-        return self._send(encode_report(report), descriptors)
+                    opened.append((outlet.descriptor, outlet.opened))
+        keeps = opened == self._handed_over
+        data = encode_report(
+            StationReport(
+                ids=self._ids, vehicles=tuple(vehicles), routes=tuple(routes), keeps_descriptors=keeps, **self._flags
+            )
+        )
+        return self._send(data, None if keeps else opened)
 
     def close(self) -> None:
         """Tell the watchdog that the station ends in order, and wait for its end."""
@@ -104,10 +111,15 @@ class WatchdogFeed:
         for key in [key for key, (_, at) in self._routes.items() if now - at > DEMAND_MEMORY]:
             del self._routes[key]
 
-    def _send(self, data: bytes, descriptors: Sequence[int]) -> bool:
+    def _send(self, data: bytes, opened: list[tuple[int, object]] | None) -> bool:
+        """Send a report, with the descriptors of `opened` unless that is None."""
         was_alive = self.alive
         try:
-            socket.send_fds(self._socket, [data], descriptors)
+            if opened is None:
+                self._socket.send(data)
+            else:
+                socket.send_fds(self._socket, [data], [descriptor for descriptor, _ in opened])
+                self._handed_over = opened  # not after an error: they travel with the next report then
         except OSError as error:  # among others: the watchdog stands still, and its queue is full
             self.alive = self.alive and error.errno not in GONE
             log.warning("no report to the watchdog: %s", error.strerror)

@@ -23,6 +23,10 @@ class Outlets:
         self._routes: tuple[DemandRoute, ...] = ()
         self._framers: dict[int, Framer] = {}
 
+    def update(self, routes: tuple[DemandRoute, ...]) -> None:
+        """Take the routes of a report that has the descriptors of the one before."""
+        self._routes = routes
+
     def replace(self, descriptors: Sequence[int], routes: tuple[DemandRoute, ...]) -> None:
         """Take the descriptors of a report and close those of the one before."""
         for descriptor in self._descriptors:

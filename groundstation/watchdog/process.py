@@ -94,7 +94,10 @@ class WatchdogProcess:
             self._handle_report(decode_report(data), descriptors)
 
     def _handle_report(self, report: StationReport, descriptors: list[int]) -> None:
-        self._outlets.replace(descriptors, report.routes)
+        if report.keeps_descriptors:
+            self._outlets.update(report.routes)
+        else:
+            self._outlets.replace(descriptors, report.routes)
         if self._read_keys is not None and report.keys_version != self._keys_version:
             self._keys_version = report.keys_version
             self._read_keys()

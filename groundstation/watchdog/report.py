@@ -1,4 +1,7 @@
-"""What the station process tells the watchdog ten times a second. Each report is complete: the newest one counts."""
+"""What the station process tells the watchdog ten times a second. The newest report counts.
+
+Each is complete but for the descriptors, which travel again only when they have changed.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ MAX_REPORT = 1 << 16
 
 
 class DemandRoute(msgspec.Struct, frozen=True):
-    """Where the demands to a vehicle leave. The descriptors of all routes travel with the report, in this order."""
+    """Where the demands to a vehicle leave. The descriptors of all routes are in this order."""
 
     vehicle: int
     """Index in `vehicles` of the report."""
@@ -34,6 +37,8 @@ class StationReport(msgspec.Struct, frozen=True, kw_only=True):
     """System and component id of the station."""
     vehicles: tuple[DrivenVehicle, ...] = ()
     routes: tuple[DemandRoute, ...] = ()
+    keeps_descriptors: bool = False
+    """The descriptors are those of the report before. Else they travel with this one."""
     screen_has_quit: bool = False
     """The screen ends in order, and leaves the terminal as it was."""
     screen_is_gone: bool = False

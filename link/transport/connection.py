@@ -51,7 +51,7 @@ class Connection:
     @property
     def outlet(self) -> Outlet:
         """The connected socket."""
-        return Outlet(self._socket.fileno(), None)
+        return Outlet(self._socket.fileno(), None, self._socket)
 
     def close(self) -> None:
         """Send what the socket accepts at once, and end the connection."""

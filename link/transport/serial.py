@@ -74,7 +74,7 @@ class SerialTransport:
 
     def outlet(self, address: Hashable) -> Outlet | None:
         """Return the port, while it is open."""
-        return Outlet(self._port.fileno(), None) if self._port else None
+        return Outlet(self._port.fileno(), None, self._port) if self._port else None
 
     def close(self) -> None:
         """Pass the last frames to the driver and free the port."""

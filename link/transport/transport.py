@@ -34,6 +34,8 @@ class Outlet(NamedTuple):
     descriptor: int
     destination: Any
     """The address for sendto(); None where the descriptor leads to one other end: write() sends."""
+    opened: object
+    """The socket or port of the descriptor: the next one that is opened may get the same number."""
 
 
 class Transport(Protocol):

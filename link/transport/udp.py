@@ -60,7 +60,8 @@ class UdpTransport:
 
     def outlet(self, address: Hashable) -> Outlet | None:
         """Return the socket, with the destination unless it is fixed."""
-        return Outlet(self._socket.fileno(), None if self.fixed_address is not None else address)
+        destination = None if self.fixed_address is not None else address
+        return Outlet(self._socket.fileno(), destination, self._socket)
 
     def close(self) -> None:
         """Stop listening and free the port."""
