@@ -34,6 +34,7 @@ from link.protocol.log_tap import LogTap
 from link.protocol.peer_table import MAX_PEERS
 from link.protocol.sent_frames import SentFrames
 from link.routing.router import Delivery, Router
+from link.runtime.multiples import next_multiple
 from link.signing_keeper import SigningKeeper
 from link.transport.transport import Link, RoleTransport, SelectiveTransport, Transport
 from link.transport.transports import open_transports
@@ -427,14 +428,6 @@ class Runner:
             self._refused(message, refusal, asyncio.get_running_loop().time())
         if self._log_tap and (taken or self._log_tap.unsent):
             self._log_tap.record_sent(type(message).id, payload, asyncio.get_running_loop().time())
-
-
-def next_multiple(period: float, now: float) -> float:
-    """Return the next time that is a multiple of a period: what is done at the same rate is then done at one waking.
-
-    A timer may be a moment early: then it is the one after that.
-    """
-    return ((now + period / 100) // period + 1) * period
 
 
 def _way(link: Link) -> tuple[bool, Hashable | None]:

@@ -14,7 +14,7 @@ import msgspec
 
 from dialects.enums import Severity
 from groundstation.host.screen_port import ScreenPort
-from groundstation.intents.driving import Stop
+from groundstation.intents.driving import DriveKeyDown, Stop
 from groundstation.intents.session import Detach, Quit, RenewLease
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
@@ -80,8 +80,8 @@ class ScreenSet:
         self._host = host
         self._lifetime = lifetime
         self._attached: dict[ScreenPort, _Attached] = {}
-        self._renewed_only = True
-        """What was read just now has renewed the lease in time and done nothing else."""
+        self._changed = False
+        """What was read just now has done more than to renew the lease in time, or to hold a key on."""
 
     # ---- screens come and go ----
 
@@ -107,7 +107,7 @@ class ScreenSet:
     def handle_screen_end(self, port: ScreenPort, now: float) -> None:
         """Go neutral if this screen drove."""
         attached = self._attached.get(port)
-        self._renewed_only = False
+        self._changed = True
         if attached is not None:
             if attached.owner:
                 self._host.note_screen(quits=False, now=now)
@@ -130,9 +130,9 @@ class ScreenSet:
         """Carry out the intents of one packet, but for those that are too old, or not for this screen to make."""
         attached = self._attached[port]
         for intent in batch.intents:
-            if self._renews(attached, batch, intent, now):
+            if self._renews(attached, batch, intent, now) or self._prolongs(attached, batch, intent, now):
                 continue
-            self._renewed_only = False
+            self._changed = True
             if now - batch.time > MAX_INTENT_AGE and not intent.valid_when_late:
                 self._log_late(intent, now - batch.time, now)
             elif isinstance(intent, Quit | Detach):
@@ -149,10 +149,16 @@ class ScreenSet:
         holds = self.lease.filter(attached.screen, intent, now) is not None
         return not holds or self._station.renew_lease(now)
 
+    def _prolongs(self, attached: _Attached, batch: IntentBatch, intent: AnyIntent, now: float) -> bool:
+        """Hold a key on that repeats 30 times a second: no message and no view follows from that."""
+        if not isinstance(intent, DriveKeyDown) or now - batch.time > MAX_INTENT_AGE:
+            return False
+        return attached.screen is self.lease.holder and self._station.prolong_key(intent, now)
+
     def finish_read(self, port: ScreenPort, now: float) -> None:
         """Send the messages of the intents, and the views that they have changed."""
-        renewed_only, self._renewed_only = self._renewed_only, True
-        if renewed_only:
+        changed, self._changed = self._changed, False
+        if not changed:
             return
         self._host.flush()
         if (attached := self._attached.get(port)) is not None:

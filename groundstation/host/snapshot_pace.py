@@ -3,35 +3,41 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 
-SNAPSHOT_PERIOD, REST_PERIOD = 0.1, 0.5
-"""s between snapshots: as fast as a person can read, and the screen draws no faster; and while the station rests, when
-only the readings of vehicles that stand change."""
+SLOT = 0.1
+"""s between two calls: within that a screen shows who drives, what is armed, what stops, and the keys that count."""
+
+STEADY_PERIOD, REST_PERIOD = 0.2, 0.5
+"""s between snapshots that only have other readings: faster than a person reads figures; and while the station stands
+idle, when only the readings of vehicles that stand change."""
 
 LIVELY = 1.0
-"""s after an intent of a screen, or a new line of the log, for which snapshots come at the fast rate."""
+"""s after an intent of a screen, or a new line of the log, for which a station that stands idle does not rest."""
 
 
 class SnapshotPace:
-    """Decides every SNAPSHOT_PERIOD whether to send one."""
+    """Decides every SLOT whether to send one."""
 
     def __init__(self) -> None:
         self._sent_at = self._lively_at = -math.inf
-        self._log_state = 0
+        self._decisive: Hashable = None
 
     def note(self, now: float) -> None:
         """Note that something was done, of which a screen waits to see the effect."""
         self._lively_at = now
 
-    def is_due(self, now: float, *, rests: bool, log_state: int) -> bool:
+    def is_due(self, now: float, *, rests: bool, decisive: Hashable) -> bool:
         """Return whether to send a snapshot now; it then counts as sent.
 
-        `rests`: nothing is armed or under way. `log_state`: a number that changes with each line of the log.
+        `rests`: nothing is armed or under way. `decisive`: what a driver must see in the next SLOT if it changes.
         """
-        if log_state != self._log_state:
-            self._log_state, self._lively_at = log_state, now
-        rests = rests and now - self._lively_at > LIVELY
-        if rests and now - self._sent_at < REST_PERIOD - SNAPSHOT_PERIOD / 2:  # the calls come a little early or late
+        if decisive != self._decisive:
+            self._decisive, self._lively_at = decisive, now
+        elif now - self._sent_at < self._period(now, rests=rests) - SLOT / 2:  # the calls come a little early or late
             return False
         self._sent_at = now
         return True
+
+    def _period(self, now: float, *, rests: bool) -> float:
+        return REST_PERIOD if rests and now - self._lively_at > LIVELY else STEADY_PERIOD

@@ -19,7 +19,7 @@ from groundstation.disk.desk import DiskDesk
 from groundstation.host.listener import Caller, ProgramListener
 from groundstation.host.names import answer_names
 from groundstation.host.screens import Lifetime, ScreenSet
-from groundstation.host.snapshot_pace import SNAPSHOT_PERIOD, SnapshotPace
+from groundstation.host.snapshot_pace import SLOT, SnapshotPace
 from groundstation.host.verbs import VerbSet
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import Stop
@@ -37,14 +37,15 @@ from groundstation.station_socket import names, relay
 from groundstation.station_socket.hello import NAMES, SCREEN, VERB
 from groundstation.watchdog.feed import WatchdogFeed
 from link.protocol.sent_frames import SentFrames
-from link.runner import Runner, next_multiple
+from link.runner import Runner
+from link.runtime.multiples import next_multiple
 from link.transport.local_addresses import LocalAddresses
 from link.transport.transport import Link
 
 log = logging.getLogger(__name__)
 
 TICK = 0.025
-"""s within which the end of a key hold and a due demand are noticed: half of the demands' period, which it keeps."""
+"""s between ticks while something is under way; demands, and what ends them, have times of their own (`due_at`)."""
 
 END_WITHIN = 1.0
 """s for the final neutral frames (0.25 s are needed); then the process exits in any case."""
@@ -170,7 +171,7 @@ class StationHost:
         return None
 
     async def _send_snapshots(self) -> None:
-        """Send snapshots at absolute deadlines, and do what is due for the links."""
+        """Send what is due to the screens at absolute deadlines, and do what is due for the links."""
         loop = asyncio.get_running_loop()
         while not self._broken:
             try:
@@ -178,7 +179,7 @@ class StationHost:
             except Exception as error:  # nothing awaits this task, so the exception would be lost
                 self._handle_crash(error)
             now = loop.time()
-            await asyncio.sleep(next_multiple(SNAPSHOT_PERIOD, now) - now)
+            await asyncio.sleep(next_multiple(SLOT, now) - now)
 
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""
@@ -193,13 +194,14 @@ class StationHost:
         if self._recording:
             self._recording.tick(now)
         self._disk.run()
-        if self._pace.is_due(now, rests=self._station.may_rest, log_state=self._station.log.state):
+        if self._pace.is_due(now, rests=self._station.stands_idle, decisive=self._station.decisive(now)):
             self._send_snapshot(now)
         self.screens.send_views(now)
 
     def _send_snapshot(self, now: float) -> None:
         self._station.surroundings.addresses = self._addresses.find(now)
-        self._last_snapshot = self._station.snapshot(now, time.time())
+        wall = time.time() - (asyncio.get_running_loop().time() - now)  # of the same moment as `now`
+        self._last_snapshot = self._station.snapshot(now, wall)
         for text in self._lasting_alerts.new_in(self._last_snapshot):
             log.warning(text)
         self.screens.show(self._last_snapshot, now)

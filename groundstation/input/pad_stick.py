@@ -38,6 +38,11 @@ class PadStick:
         return now < self._until
 
     @property
+    def until(self) -> float:
+        """When its newest demand ends, unless another one follows."""
+        return self._until
+
+    @property
     def axes(self) -> Axes:
         """The demand, -1..1; ask `held` first."""
         return self._axes

@@ -65,6 +65,18 @@ class Sticks:
             self._latched = Axes(float(push.throttle), float(push.steering))
         return True
 
+    def prolong(self, push: DriveKeyDown, now: float) -> bool:
+        """Handle a drive key that is held and repeats, which changes no axis. Returns False for any other event."""
+        self._expire(now)
+        held = self._held.get(push.key)
+        proves = push.repeat and not self.reports_releases
+        ignored = self._waits_for_quiet or push.key in self._blocked_until or self.pad.held(now)
+        if held is None or proves or ignored or (push.throttle, push.steering) != (held.throttle, held.steering):
+            return False
+        self._seen_at = self._last_event = now
+        self._extend_hold(held, now)
+        return True
+
     def push_pad(self, push: DrivePad, now: float) -> bool:
         """Handle a demand of the gamepad; keys that are held no longer count. Returns False as PadStick.push."""
         began = not self.pad.held(now)
@@ -160,6 +172,14 @@ class Sticks:
                 _within(self._latched.steering, self.steering_limit),
             )
         return Axes(throttle * self.throttle_limit, steering * self.steering_limit)
+
+    def changes_at(self, now: float) -> float | None:
+        """Return when a timer changes `axes` if nothing happens before; None: none does."""
+        if self.pad.held(now):
+            return self.pad.until
+        if self.reports_releases or not self._held:
+            return None
+        return min(self._last_event + self._windows.press_window, *(held.until for held in self._held.values()))
 
     def held_keys(self, now: float) -> tuple[str, ...]:
         """Return the keys that count as held; the gamepad is one of them while it drives."""

@@ -1,4 +1,4 @@
-"""Snapshot of everything the screen shows: built by the station at 10 Hz, or 2 Hz at rest, read by the UI.
+"""Snapshot of everything the screen shows: built by the station at 2 to 10 Hz, read by the UI.
 
 Units are SI without suffix (m, s, m/s, rad, V); fractions are 0..1 or -1..1; None means "not known".
 """

@@ -38,6 +38,8 @@ class DrivingController:
         """When the key was read that made it; None: a timer made it."""
         self.due_at: float | None = None
         """When `update` is due even if nothing happens before; None: at the next tick."""
+        self._reported: dict[int, tuple[object, ...]] = {}
+        """System id -> what its reports said of arming, mode, control and emergency stop."""
         self.key_read_at: float | None = None
         """When the key was read that is handled just now; None: there is none."""
 
@@ -45,7 +47,7 @@ class DrivingController:
         """Queue the demands that are due."""
         self.update_permission(now)
         demand = self._operator.demand(now)
-        self.due_at = None
+        due: list[float | None] = []
         for contact in self._fleet:
             self._update_ours(contact)
             chosen = contact is self._fleet.selected
@@ -54,9 +56,19 @@ class DrivingController:
             )
             if axes is not None:
                 self._queue_demand(contact, axes, now)
-            if (due := contact.demand_stream.due_at) is not None:
-                self.due_at = due if self.due_at is None else min(due, self.due_at)
+            due.append(contact.demand_stream.due_at)
+            if chosen and contact.demand_stream.streaming:
+                due.append(self._operator.changes_at(now))
+        self.due_at = min((at for at in due if at is not None), default=None)
         self._queue_idle_proof(now)
+
+    def handle_report(self, contact: Contact, now: float) -> None:
+        """Have `update` called at once if a vehicle has reported something that decides on its demands."""
+        state = contact.state
+        reported = (state.armed, state.mode, state.driver, state.emergency_stop)
+        if self._reported.get(state.system) != reported:
+            self._reported[state.system] = reported
+            self.due_at = now
 
     def update_permission(self, now: float) -> None:
         """Update whether keys may drive. Called before each intent is handled, and with each tick."""

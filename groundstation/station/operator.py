@@ -33,6 +33,9 @@ IDLE_PROOF_PERIOD = 0.3
 """s between proofs of this session to the selected vehicle of our dialect while it gets no demand: arming, and every
 other command, counts only of a session that was proven in the last second, and two proofs in a row may get lost."""
 
+LATER = 0.001
+"""s after the end of a period at which it is over by any rounding."""
+
 OLDEST_AGE = 0xFFFF
 """Largest last_input_age_ms: older, or no input yet."""
 
@@ -138,6 +141,14 @@ class OperatorSession:
         else:
             self._ignored.record(self._ignored.shown(now) or "it was held before", now)
 
+    def prolong(self, push: DriveKeyDown, now: float) -> bool:
+        """Handle a drive key that drives already and repeats. Returns False for any other event, without effect."""
+        counts = self._driving_allowed and self.blocked_reason(now) is None and self.sticks.prolong(push, now)
+        if counts:
+            self.record_input(now)
+            self._ignored = _Ignored()
+        return counts
+
     def push_pad(self, push: DrivePad, now: float) -> None:
         """Handle a demand of the gamepad, by the rules of a drive key."""
         reason = self.blocked_reason(now)
@@ -172,6 +183,16 @@ class OperatorSession:
         if not self._driving_allowed or now - self._allowed_at < NEUTRAL_LEAD:
             return NEUTRAL
         return self.sticks.axes(now)
+
+    def changes_at(self, now: float) -> float | None:
+        """Return when a timer changes `demand`, or ends the lease, if nothing happens before; None: none does."""
+        ends = (
+            self.sticks.changes_at(now),
+            self._allowed_at + NEUTRAL_LEAD + LATER,
+            self._thawed_at + LATER,
+            now - self._lease.silence(now) + LEASE_TIMEOUT + LATER,
+        )
+        return min((at for at in ends if at is not None and at > now), default=None)
 
     @property
     def sent_demand(self) -> Axes:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 
 from dialects import messages as m
 from dialects.enums import Severity
 from groundstation.input.style import Style
+from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot
 from groundstation.station.attention import Attention
@@ -32,6 +33,7 @@ from groundstation.station.operator_log import OperatorLog
 from groundstation.station.param_texts import ParamTexts
 from groundstation.station.param_views import ParamViews
 from groundstation.station.plan_views import PlanViews
+from groundstation.station.readings import READINGS
 from groundstation.station.refusals import Refusals
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.station_notes import StationNotes
@@ -52,6 +54,9 @@ from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
 
 DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
+
+DECISIVE = (m.Heartbeat, m.ControlStatus, m.RoverControl, m.RoverDriveStatus)
+"""Messages that report what decides on demands: armed, mode, who is in control, emergency stop."""
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -150,12 +155,10 @@ class Station:
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message at once."""
-        conflict = self._id_conflict.receive(received, now)
-        if conflict is not None:
-            self.log.add(now, "station", conflict, Severity.WARNING)
-        self._link_views.stations.receive(received, now)
+        reading = type(received.message) in READINGS
+        if not reading:
+            self._receive_of_anybody(received, now)
         self.relay.receive(received, now)
-        self.params.receive(received)
         contact = self.fleet.get_or_add(received, now)
         autopilot = contact is not None and contact.state.component == received.component
         self._traffic.count(received.message, received.system, received.component, now, known=autopilot)
@@ -166,10 +169,25 @@ class Station:
         contact.details.receive(received, now)
         self._display.receive(contact, received, now)
         self._queries.receive(contact, received, now)
-        self._handover.receive(contact, received, now)
         self.services.receive(contact, received, now)
+        if not reading:
+            self._receive_exchange(contact, received, now)
+
+    def _receive_of_anybody(self, received: Received, now: float) -> None:
+        """Handle what other ground stations and components send as well as vehicles."""
+        conflict = self._id_conflict.receive(received, now)
+        if conflict is not None:
+            self.log.add(now, "station", conflict, Severity.WARNING)
+        self._link_views.stations.receive(received, now)
+        self.params.receive(received)
+
+    def _receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
+        """Handle what answers a request, makes one, or decides on something."""
+        self._handover.receive(contact, received, now)
         self._doctor.receive(contact, received, now)
-        if isinstance(received.message, m.StatusText):
+        if isinstance(received.message, DECISIVE):
+            self.driving.handle_report(contact, now)
+        elif isinstance(received.message, m.StatusText):
             self._handle_statustext(received.message, received.component, contact, now)
         if contact is self.fleet.selected:
             self._timesync.receive(received, now)
@@ -206,10 +224,9 @@ class Station:
 
     @property
     def may_rest(self) -> bool:
-        """Whether ticks every 0.1 s are enough: no vehicle is armed, and nothing is under way."""
+        """Whether ticks every 0.1 s are enough: nothing but demands is under way, and for them there is `due_at`."""
         return not (
-            any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
-            or self._commander.busy
+            self._commander.busy
             or self.services.busy
             or self.relay.busy
             or self._handover.busy
@@ -218,14 +235,33 @@ class Station:
         )
 
     @property
+    def stands_idle(self) -> bool:
+        """Whether no vehicle is armed or gets demands, and nothing is under way."""
+        driven = any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
+        return self.may_rest and not driven
+
+    def decisive(self, now: float) -> Hashable:
+        """Return what a driver must see at once if it changes: who drives what, armed, stopped, held keys, the log."""
+        selected, operator = self.fleet.selected, self.operator
+        state = selected.state if selected is not None else None
+        vehicle = state and (state.system, state.armed, state.mode, state.driver, state.emergency_stop, state.failsafes)
+        keys = (operator.sent_demand, operator.sticks.held_keys(now), operator.ignored(now))
+        others = (self.fleet.also_armed, self._handover.busy)
+        return (self.driving.blocked_reason(now), self.log.state, vehicle, keys, others)
+
+    @property
     def due_at(self) -> float | None:
-        """When a demand is due before the next tick; None: none is."""
+        """When a demand is due, or one ends, before the next tick; None: none is."""
         return self.driving.due_at
 
     def act(self, now: float) -> None:
         """Send the demand that is due before the next tick."""
         self._expire_lease(now)
+        before = self.operator.sent_demand
         self.driving.update(now)
+        if self.operator.sent_demand != before:
+            self._log_driving(now)
+            self.notes.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -289,6 +325,17 @@ class Station:
         if self.operator.live:
             self.operator.renew_lease(now)
         return self.operator.live
+
+    def prolong_key(self, push: DriveKeyDown, now: float) -> bool:
+        """Handle a repeat of a drive key that is held, which changes nothing but until when it counts.
+
+        Returns False if it is something else: then it is an intent like any other.
+        """
+        self._expire_lease(now)
+        if not self.operator.prolong(push, now):
+            return False
+        self._charts.mark_key(push, now)
+        return True
 
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""

@@ -59,6 +59,8 @@ class DemandStream:
         """Return the demand to send now, or None. `streaming`: demands may be sent; when it ends, neutrals follow."""
         if self._streaming and not streaming:
             self._neutrals_left, self._due = FINAL_NEUTRALS, now
+        elif streaming and not self._streaming:
+            self.resume(now)
         self._streaming = streaming
         self.copying = self._waits = False
         if not streaming:
@@ -71,10 +73,11 @@ class DemandStream:
 
     @property
     def due_at(self) -> float | None:
-        """When to call `next_due` even if nothing happens before; None: not sooner than at the steady rate."""
+        """When to call `next_due` even if nothing happens before; None: there is nothing to send."""
         waits = self._changed_at + CLOSEST if self._waits else None
         copy = self._copies.due_at if self._copies is not None else None
-        return min((at for at in (waits, copy) if at is not None), default=None)
+        steady = None if self.finished else self._due
+        return min((at for at in (waits, copy, steady) if at is not None), default=None)
 
     def adapt(self, loss: float | None, capacity: float | None) -> None:
         """Set what is known of the link to the vehicle, see DemandCopies."""
@@ -99,7 +102,7 @@ class DemandStream:
         return demand if self.copying else None
 
     def _send(self, demand: Axes, now: float, due: float) -> Axes:
-        """Send, and count the period from when the demand was `due`: a late tick must not lower the rate."""
+        """Send, and count the period from when the demand was `due`: a late call must not lower the rate."""
         if not demand.neutral or not self._sent.neutral:
             self._moved_at = now
         period = DRIVING_PERIOD if now - self._moved_at < SETTLE else NEUTRAL_PERIOD
@@ -107,5 +110,5 @@ class DemandStream:
             self._sent, self._changed_at = demand, now
             if self._copies is not None:
                 self._copies.plan(now)
-        self._due = max(due + period, now)
+        self._due = due + period if due + period > now else now + period
         return demand

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 from dialects import messages as m
 from dialects.enums import Autopilot, DriveLimit, Failsafe, VehicleType
@@ -11,6 +12,7 @@ _AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4:
 _KINDS: dict[int, str] = {VehicleType.GROUND_ROVER: "rover", VehicleType.SURFACE_BOAT: "boat"}
 
 
+@lru_cache(maxsize=256)
 def vehicle_name(autopilot: int, kind: int, system: int) -> str:
     """Return a name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
     text = f"{_AUTOPILOTS.get(autopilot, '')}{_KINDS.get(kind, 'vehicle')} {system}"
@@ -26,6 +28,7 @@ def battery_values(volts: float | None, centiamperes: int, percent: int) -> dict
     }
 
 
+@lru_cache(maxsize=256)
 def flag_words(flags: type[DriveLimit] | type[Failsafe], value: int) -> tuple[str, ...]:
     """Return the names of the flags in `value`, e.g. "neutral first"; unknown bits are left out."""
     return tuple(str(flag.name).replace("_", " ").lower() for flag in flags if value & flag)

@@ -39,6 +39,12 @@ PREARM_TEXTS = ("PreArm: ", "Preflight Fail: ")
 
 UNKNOWN_U16 = 0xFFFF
 
+ESTOP = int(DriveLimit.ESTOP)
+"""A number, because `&` with a flag makes another flag, 120 times a second while driving."""
+
+BY_HAND = DRIVABLE_MODES | STANDING_MODES
+"""Modes in which nothing on board decides where the vehicle goes."""
+
 
 class VehicleState:
     """One vehicle as reported by its messages. `system` and `component` are those of its HEARTBEAT."""
@@ -101,12 +107,12 @@ class VehicleState:
     def emergency_stop(self) -> bool:
         """The vehicle reports that its motors are locked. ArduPilot and PX4 mean something else by EMERGENCY."""
         locked = self.status == SystemState.EMERGENCY and self.autopilot not in FOREIGN_AUTOPILOTS
-        return locked or bool(self._drive and self._drive.limits & DriveLimit.ESTOP)
+        return locked or bool(self._drive and self._drive.limits & ESTOP)
 
     @property
     def drives_itself(self) -> bool:
         """Armed in an autonomous mode: the vehicle, or a computer on board, decides where it goes."""
-        return self.armed and self.mode not in DRIVABLE_MODES | STANDING_MODES
+        return self.armed and self.mode not in BY_HAND
 
     @property
     def failsafes(self) -> tuple[str, ...]:

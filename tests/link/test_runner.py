@@ -15,7 +15,8 @@ import pytest
 from dialects.messages import Heartbeat, ManualControl, Message
 from link.core import REST_PERIOD, LinkReport, Outgoing, Received
 from link.protocol.log_tap import LogTap
-from link.runner import Runner, next_multiple, open_links
+from link.runner import Runner, open_links
+from link.runtime.multiples import next_multiple
 from link.transport.transport import Link
 from tests.link.frames import demand, heartbeat
 from tests.link.ports import Cable

@@ -20,7 +20,7 @@ ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.D
 def test_emergency_stop_is_two_commands_and_neutral_at_once() -> None:
     cockpit = armed_cockpit()
     cockpit.do(ReportKeyReleases(), FORWARD)
-    cockpit.run(0.5)
+    cockpit.run(0.51)  # between two demands
     assert cockpit.demands()[-1][1] == 600
     at = cockpit.now
     cockpit.do(EmergencyStop())

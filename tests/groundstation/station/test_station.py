@@ -46,19 +46,23 @@ def test_round_trip_and_loss_are_shown() -> None:
     assert link.rate > 0
 
 
-def test_it_rests_only_while_no_vehicle_is_armed_and_nothing_is_under_way() -> None:
+def test_ticks_are_few_unless_a_command_is_under_way_and_it_is_idle_only_while_no_vehicle_is_armed() -> None:
     cockpit = Cockpit()
     cockpit.run(5.0)
     assert cockpit.station.may_rest
+    assert cockpit.station.stands_idle
     cockpit.do(Arm(held=HOLD_TIME))
-    assert not cockpit.station.may_rest, "commands are repeated and neutral demands sent"
+    assert not cockpit.station.may_rest, "commands are repeated"
+    assert not cockpit.station.stands_idle
     cockpit.run(3.0)
     assert cockpit.vehicle.armed
-    assert not cockpit.station.may_rest
+    assert cockpit.station.may_rest
+    assert not cockpit.station.stands_idle
     cockpit.do(Disarm())
     cockpit.run(3.0)
     assert not cockpit.vehicle.armed
     assert cockpit.station.may_rest
+    assert cockpit.station.stands_idle
 
 
 def test_a_crashed_station_does_not_rest() -> None:
