@@ -46,15 +46,16 @@ from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.terminal.tmux import TmuxSession
 from groundstation.ui.terminal.tty_output import TerminalFile
 from groundstation.ui.terminal.tty_ping import PERIOD
+from groundstation.ui.ticks import Ticks
 from groundstation.ui.view_subscription import ViewSubscription
 from groundstation.views.line import LineView
 
 TICK = 0.1
 """s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""
 
-WITHOUT_SNAPSHOT, AT_REST = 0.15, 0.6
-"""s without a drawing after which a tick draws: snapshots come every 0.1 s, and one that is a little late is no reason
-to draw twice; and while no vehicle is armed and nothing on this side has changed: then they come every 0.5 s."""
+WITHOUT_SNAPSHOT, AT_REST = 0.25, 0.6
+"""s without a drawing after which a tick draws: snapshots come every 0.2 s, and one that is a little late is no reason
+to draw twice; and while no vehicle is armed: then they come every 0.5 s."""
 
 MIN_FRAME_TIME = 0.06
 """Least time between two drawings, s. Snapshots in between are skipped: only the newest counts."""
@@ -118,6 +119,9 @@ class ConsoleApp(App[int]):
         self._subscription = ViewSubscription(self._navigator, self._send)
         self._quitting = Quitting(self, client, self.gate, self._log_child, lambda: self._snapshot.left_armed)
         self._replay = ReplayFollower(self._kept, lambda: self._navigator.shown)
+        self._ticks = [
+            Ticks(period, call, self._handle_exception) for period, call in ((TICK, self._tick), (PERIOD, self._ping))
+        ]
         self._actions = {
             "app.quit": self._quitting.request,
             "drive.gamepad": self._choose_gamepad,
@@ -135,9 +139,9 @@ class ConsoleApp(App[int]):
         self._own_loop = asyncio.get_running_loop()
         self._own_loop.add_reader(self._client.fileno(), self._readable)
         # In this loop and not in a thread: a UI that hangs must lose its lease.
-        self.set_interval(TICK, self._tick)
+        for each in self._ticks:
+            each.start(self._own_loop)
         self._tmux.start(self._own_loop)
-        self.set_interval(PERIOD, self._ping)
         if self._terminal is not None:
             self.call_after_refresh(interpreter.freeze)
         if self._gamepad is not None:
@@ -146,6 +150,8 @@ class ConsoleApp(App[int]):
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
         self.gate.close("quitting")
+        for each in self._ticks:
+            each.stop()
         self._tmux.stop()
         asyncio.get_running_loop().remove_reader(self._client.fileno())
 
@@ -270,22 +276,24 @@ class ConsoleApp(App[int]):
         if self._tmux.pop_release(now):
             self._send(ReleaseControl(all=True))
         self._pressed.expire(now)
-        if now - self._shown_at >= (AT_REST if self._rests else WITHOUT_SNAPSHOT):
+        if now - self._shown_at >= self._patience:
             self._show()
 
     @property
-    def _rests(self) -> bool:
-        """Nothing has changed but what a snapshot brings, and no vehicle is armed that might be driven."""
+    def _patience(self) -> float:
+        """For how many s the last drawing is good enough: what this side knows shows at once if it changes."""
         shown, vehicle = self._shown_state, self._snapshot.vehicle
-        return (
-            (vehicle is None or not vehicle.armed)
-            and self._gamepad is None
-            and self.gate.hold is None is shown.hold
+        unchanged = (
+            self.gate.hold is None is shown.hold
             and self.gate.closure == shown.closure
             and self._pressed.names == shown.pressed
             and self._client.alive == shown.station_alive
             and self._outage.text == shown.outage
         )
+        if not unchanged:
+            return MIN_FRAME_TIME
+        armed = vehicle is not None and vehicle.armed
+        return WITHOUT_SNAPSHOT if armed or self._gamepad is not None else AT_REST
 
     def _ping(self) -> None:
         lent = self._log_child.running  # a ping would go unanswered

@@ -7,6 +7,8 @@ import textwrap
 
 def clean(text: str) -> str:
     """Return a text without control characters: one that comes from the link must not reach the terminal."""
+    if text.isprintable():
+        return text
     return "".join(character if character.isprintable() else "�" for character in text)
 
 

@@ -160,14 +160,19 @@ def _same(line: _Line, label: str, text: str, severity: int, origin: LogOrigin |
     return (line.label, line.severity, line.text, line.origin) == (label, severity, text, origin)
 
 
+def _wall_time(at: float, now: float, wall: float) -> float:
+    """Return a time on the wall clock, in whole ms: else no line of two snapshots is equal, and all are drawn again."""
+    return round(wall - now + at, 3)
+
+
 def _build_line(line: _Line, now: float, wall: float) -> LogLine:
     return LogLine(
-        time=wall - (now - line.time),
+        time=_wall_time(line.time, now, wall),
         severity=line.severity,
         label=line.label,
         text=line.text,
         count=line.count,
         number=line.number,
-        first=wall - (now - line.first) if line.count > 1 else None,
+        first=_wall_time(line.first, now, wall) if line.count > 1 else None,
         origin=line.origin,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 LIT = 0.15
-"""s for which a cap stays lit after a press; by then a snapshot (10 Hz) has reported which keys are held."""
+"""s for which a cap stays lit after a press; by then a snapshot (within 0.1 s) has reported which keys are held."""
 
 
 class PressedKeys:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from typing import cast
 
 from rich.segment import Segment
 from rich.style import Style
@@ -32,6 +33,8 @@ class Canvas:
         self._dots = [bytearray(width) for _ in range(height)]
         self._styles: list[list[Style]] = [[style_of()] * width for _ in range(height)]
         self._texts: list[dict[int, tuple[str, Style]]] = [{} for _ in range(height)]
+        self._strips: list[Strip | None] = [None] * height
+        """The strip of each row; None after a change of the row."""
 
     def dot(self, x: int, y: int, style: Style) -> None:
         """Set one dot. A cell has one colour, that of its last dot."""
@@ -39,6 +42,7 @@ class Canvas:
             row, column = y >> 2, x >> 1
             self._dots[row][column] |= _BITS[y & 3][x & 1]
             self._styles[row][column] = style
+            self._strips[row] = None
 
     def run(self, x: int, top: int, bottom: int, style: Style) -> None:
         """Set the dots of one column from `top` down to `bottom`: cell by cell, which is faster than dot by dot."""
@@ -50,6 +54,7 @@ class Canvas:
             above, below = max(0, top - row * 4), min(3, bottom - row * 4)
             self._dots[row][column] |= _RUNS[side][above][below]
             self._styles[row][column] = style
+            self._strips[row] = None
 
     def line(self, start: Point, end: Point, style: Style) -> None:
         """Set the dots from one point to another."""
@@ -59,6 +64,8 @@ class Canvas:
         if steps > 4 * (self.across + self.down):  # far outside: too many steps
             return
         dots, styles, width, height = self._dots, self._styles, self.across, self.down
+        for row in range(max(0, round(min(y, end[1]))) >> 2, (min(height - 1, round(max(y, end[1]))) >> 2) + 1):
+            self._strips[row] = None
         for step in range(steps + 1):  # dot(), written out: most of the time of a map goes here
             part = step / steps
             at_x, at_y = round(x + across * part), round(y + down * part)
@@ -74,6 +81,7 @@ class Canvas:
         other._dots = [bytearray(row) for row in self._dots]
         other._styles = [list(row) for row in self._styles]
         other._texts = [dict(row) for row in self._texts]
+        other._strips = list(self._strips)
         return other
 
     def path(self, points: Sequence[Point], style: Style) -> None:
@@ -94,13 +102,17 @@ class Canvas:
     def write(self, column: int, row: int, text: str, style: Style) -> None:
         """Write text from a cell to the right, cut at the edges."""
         if 0 <= row < self.height:
+            self._strips[row] = None
             for offset, character in enumerate(text):
                 if 0 <= column + offset < self.width:
                     self._texts[row][column + offset] = (character, style)
 
     def strips(self) -> list[Strip]:
-        """Return one strip per row, with one segment per run of one style."""
-        return [Strip(list(self._segments(row)), self.width) for row in range(self.height)]
+        """Return one strip per row, with one segment per run of one style; those of unchanged rows again."""
+        for row, strip in enumerate(self._strips):
+            if strip is None:
+                self._strips[row] = Strip(list(self._segments(row)), self.width)
+        return cast(list[Strip], list(self._strips))
 
     def _segments(self, row: int) -> Iterable[Segment]:
         dots, styles, texts = self._dots[row], self._styles[row], self._texts[row]

@@ -89,15 +89,18 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         ground = self._ground[1]
         if ground is None:
             return super().render_lines(crop)
-        width = self.size.width
-        lines = [self.render_line(y).adjust_cell_length(width, ground.style) for y in crop.line_range]
+        size = self.size  # once: the compositor is asked for it
+        width = size.width
+        lines = [self._drawn_line(y, size).adjust_cell_length(width, ground.style) for y in crop.line_range]
         for each in self.get_line_filters():
             lines = [line.apply_filter(each, ground.colour) for line in lines]
         return lines if crop.column_span == (0, width) else [line.crop(*crop.column_span) for line in lines]
 
     def render_line(self, y: int) -> Strip:
         """Return one line; Textual calls this for each line that it must paint."""
-        size = self.size
+        return self._drawn_line(y, self.size)
+
+    def _drawn_line(self, y: int, size: Size) -> Strip:
         if self._drawn_for != (size, theme_changes()):
             self._drawn_for = (size, theme_changes())
             self._strips = self.draw(*size) if size else []

@@ -18,6 +18,10 @@ from groundstation.views.base import View, ViewRequest
 CLOSER, WIDER = 1, -1
 
 
+EARLY = 0.02
+"""s by which an update may be early: snapshots that are due at the same time as it come a little early or late."""
+
+
 class PaneFrame(Vertical, can_focus=False):
     """Shows the pane of one index. The zoom of each pane is kept while another one is shown."""
 
@@ -81,7 +85,7 @@ class PaneFrame(Vertical, can_focus=False):
         uptime = now.snapshot.uptime
         if 0 <= self._due - uptime <= self.pane.period:
             return
-        self._due = uptime + self.pane.period
+        self._due = uptime + self.pane.period - EARLY
         self._draw()
 
     def show_view(self, views: Mapping[type[View], View]) -> None:

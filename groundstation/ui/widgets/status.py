@@ -116,11 +116,12 @@ def _replay_badges(replay: ReplayStatus, vehicle: VehicleView | None) -> list[Pa
 
 def _fitting(fields: list[StatusField], room: int) -> list[Part]:
     """Return the parts of the fields that fit, in order; the least important are left out first."""
-    kept: list[StatusField] = []
-    for candidate in sorted(fields, key=lambda each: each.weight):
-        if sum(length(each.parts) for each in (*kept, candidate)) <= room:
-            kept.append(candidate)
-    return [part for each in fields if each in kept for part in each.parts]
+    kept: set[int] = set()
+    for place, candidate in sorted(enumerate(fields), key=lambda each: each[1].weight):
+        if (size := length(candidate.parts)) <= room:
+            kept.add(place)
+            room -= size
+    return [part for place, each in enumerate(fields) if place in kept for part in each.parts]
 
 
 def _spread(left: list[Part], right: list[Part], width: int) -> Strip:

@@ -131,6 +131,7 @@ class TrackMap(Instrument[TrackValue]):
         view = fit_view(value, width * 2, height * 4)
         if self._base is None or not self._base.extend(value, view, (width, height)):
             self._base = _Base(value, view, (width, height))
+        self._base.canvas.strips()  # before the copy, which then has those of the rows that nothing is drawn in
         canvas = self._base.canvas.copy()
         canvas.path([view.to_canvas(point, canvas) for point in (*value.track[-1:], value.position)], style(BLUE))
         if value.home is not None:
