@@ -82,11 +82,15 @@ class Life:
         }
 
     def faults(self) -> list[str]:
-        """Return what grows, of a life that is long enough to tell."""
-        growth = self.growth(self.rss)
-        if not growth:
+        """Return what grows, of a life that is long enough to tell.
+
+        Memory grows if RSS and PSS do: RSS alone grows when a process touches pages that it shares with its parent,
+        PSS alone when a process that shared them has ended.
+        """
+        slopes = [min(both) for both in zip(self.growth(self.rss), self.growth(self.pss), strict=True)]
+        if not slopes:
             return []
-        found = [f"{self.role} grows by {growth[-1]:.2f} MB/h"] if growth[-1] > MAX_GROWTH else []
+        found = [f"{self.role} grows by {slopes[-1]:.2f} MB/h"] if slopes[-1] > MAX_GROWTH else []
         for name, values in (("descriptors", self.descriptors), ("threads", self.threads)):
             kept = values[self.behind(WARM_UPS[0])]
             half = len(kept) // 2  # one that is open for a moment is no leak

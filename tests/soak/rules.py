@@ -6,7 +6,7 @@ Times are monotonic, s; all processes of the machine share that clock.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -47,7 +47,8 @@ class Witness:
 
     signed: int = 0
     """Frames of all programs with a signature."""
-    unsigned: int = 0
+    unsigned: Counter[str] = field(default_factory=Counter)
+    """Sender and message -> frames without a signature."""
 
     def station_says(self, data: bytes, now: float) -> None:
         """Note what a station sends."""
@@ -73,10 +74,11 @@ class Witness:
 
     def _messages(self, data: bytes, now: float, wanted: tuple[int, ...]) -> Iterator[tuple[int, int, m.Message]]:
         """Count the frames of a datagram; yield number, system and message of those that are wanted."""
-        for number, system, *_, raw in Framer(stream=False).feed(data, now):
-            signed = is_signed(raw)
-            self.signed += signed
-            self.unsigned += not signed
+        for number, system, component, _, raw in Framer(stream=False).feed(data, now):
+            if is_signed(raw):
+                self.signed += 1
+            else:
+                self.unsigned[f"{system}/{component} {m.MESSAGES[number].msgname}"] += 1
             if number in wanted:
                 yield number, system, codec.decode_frame(number, raw)
 

@@ -107,7 +107,8 @@ class Soak:
             "faults": self.findings.faults,
             "motors had power, s": round(self.findings.turned, 1),
             "times of power": self.findings.stretches,
-            "frames signed, unsigned": [self.witness.signed, self.witness.unsigned],
+            "frames signed, unsigned": [self.witness.signed, self.witness.unsigned.total()],
+            "unsigned frames by sender and message": self.witness.unsigned,
             "demands of motion by station": self.witness.by_station,
             "oldest obeyed demand, s": round(self.witness.oldest_obeyed, 3),
             "kill -9": self.findings.kills,
@@ -198,6 +199,6 @@ class Soak:
         if self.witness.oldest_obeyed > OBEYED + REPORTED:
             faults.append(f"a demand of {self.witness.oldest_obeyed:.3f} s was obeyed")
         if self._signing and self.witness.unsigned:
-            faults.append(f"{self.witness.unsigned} frames were not signed")
+            faults.append(f"{self.witness.unsigned.total()} frames were not signed")
         for fault in faults:
             self.findings.tell(self._seconds, fault)

@@ -81,7 +81,7 @@ def test_the_witness_counts_what_is_not_signed() -> None:
     seen = Witness()
     seen.station_says(signed(), 10.0)
     seen.vehicle_says(signed(ids=(1, 1)) + frame(m.Heartbeat(10, 3, 0, 0, 3, 3), 1), 10.0)
-    assert (seen.signed, seen.unsigned, len(seen.beats)) == (2, 1, 2)
+    assert (seen.signed, seen.unsigned, len(seen.beats)) == (2, {"1/190 HEARTBEAT": 1}, 2)
 
 
 def test_a_process_that_grows_is_named() -> None:
@@ -89,13 +89,15 @@ def test_a_process_that_grows_is_named() -> None:
     for second in range(0, int(WARM_UPS[0] + LEAST) + 60, 10):
         life.times.append(float(second))
         life.rss.append(40.0 + 3.0 * second / 3600)
-        life.pss.append(30.0)
+        life.pss.append(20.0 + 4.0 * second / 3600)
         life.descriptors.append(9 + second // 400)
         life.threads.append(2)
     assert life.faults() == ["station one grows by 3.00 MB/h", "station one: descriptors grew from 9 to 10"]
     life.descriptors = [9] * len(life.times)
     life.descriptors[-2] = 10
     assert life.faults() == ["station one grows by 3.00 MB/h"], "open for a moment"
+    life.pss = [20.0] * len(life.times)
+    assert life.faults() == [], "it only touches what it shares"
 
 
 def test_what_fills_up_in_ten_minutes_does_not_grow_and_what_goes_on_does() -> None:
