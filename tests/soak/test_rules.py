@@ -106,7 +106,7 @@ def test_what_fills_up_in_ten_minutes_does_not_grow_and_what_goes_on_does() -> N
         for second in range(0, 1800, 10):
             life.times.append(float(second))
             life.rss.append(40.0 + min(second, 600) / 200 + forever * second / 3600)
-            life.pss.append(30.0)
+            life.pss.append(life.rss[-1] - 10.0)
             life.descriptors.append(9)
             life.threads.append(1)
         first, _, last = life.growth(life.rss)
