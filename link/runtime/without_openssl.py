@@ -5,7 +5,8 @@ costs 6 ms of each start and 4 MiB of each process. `import ssl` works as usual 
 of their own; only the `ssl` arguments of asyncio raise RuntimeError.
 
 hashlib and hmac import `_hashlib` for the hash functions of OpenSSL, and have the same ones of Python's own. Those cost
-4 ms and 3 MiB less, and hash short texts such as MAVLink frames a third faster. hashlib.scrypt() is missing then.
+4 ms and 3 MiB less, and hash short texts such as MAVLink frames a third faster. hashlib.scrypt() and, from Python 3.12
+on, pbkdf2_hmac() are missing then; `_hashlib` has them.
 """
 
 from __future__ import annotations
