@@ -10,6 +10,7 @@ from collections.abc import Callable
 from textual import events
 from textual.message import Message
 
+from groundstation.actions import ACTIONS
 from groundstation.gamepad.child import GamepadChild
 from groundstation.input.keymap import KeyEvent
 from groundstation.input.pad import PadFrame
@@ -54,7 +55,8 @@ class PadInput:
         self._held, self._seen = frame.held, self._seen or bool(frame.names)
         before, self._buttons = self._buttons, frozenset(frame.buttons)
         batch = [KeyEvent(_key(name), release=True) for name in sorted(before - self._buttons)]
-        batch += [KeyEvent(_key(name), repeat=name in before) for name in frame.buttons]
+        acting = [name for name in frame.buttons if name not in before or not self._is_step(name)]
+        batch += [KeyEvent(_key(name), repeat=name in before) for name in acting]
         if batch:
             self._gate.handle_keys(batch)
         for press in batch:
@@ -62,6 +64,10 @@ class PadInput:
                 self._post(KeyUp(press.key))
             elif not press.repeat:
                 self._post(events.Key(press.key, None))
+
+    def _is_step(self, button: str) -> bool:
+        """Return whether a button changes the limits: once a press, because frames repeat it 20 times a second."""
+        return ACTIONS[self.child.mapping.buttons[button]].group == "speed"
 
 
 def _key(name: str) -> str:

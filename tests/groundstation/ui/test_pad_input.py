@@ -64,12 +64,16 @@ def test_the_end_of_the_reader_is_a_release(pad: Pad) -> None:
 
 
 def test_arming_wants_the_button_held_and_a_tap_of_another_acts_once(pad: Pad) -> None:
-    pad.take("dpup")
+    for _ in range(10):
+        pad.take("dpup")
     pad.take()
     pad.take("y")
     pad.take("y")
     pad.take()
     assert pad.station.of(ScaleLimits) == [ScaleLimits(throttle=1.1, steering=1.1)]
+    pad.take("dpup")
+    assert len(pad.station.of(ScaleLimits)) == 2
+    pad.take()
     assert pad.station.of(SetMode) == [SetMode(mode="MANUAL")]
     for _ in range(int(HOLD_TIME / 0.05)):
         pad.take("start")
