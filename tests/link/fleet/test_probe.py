@@ -5,8 +5,8 @@ from __future__ import annotations
 import socket
 import sys
 import threading
-from collections.abc import Callable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 
 import pytest
 
@@ -70,46 +70,48 @@ def test_it_is_tried_again_if_no_other_one_answers() -> None:
         assert RouterProbe(both).find(both[1], NEVER, lambda _: None) == both[1]
 
 
-def quic_server(answer: Callable[[bytes], bytes]) -> tuple[socket.socket, list[bytes]]:
-    """Answer each packet in a thread, until the socket is closed."""
-    at, taken = socket.socket(socket.AF_INET, socket.SOCK_DGRAM), list[bytes]()
-    at.bind(("127.0.0.1", 0))
+@contextmanager
+def quic_server(answer: Callable[[bytes], bytes]) -> Iterator[tuple[str, list[bytes]]]:
+    """Answer each packet in a thread; give the locator, and the packets."""
+    taken = list[bytes]()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as at, socket.socket(type=socket.SOCK_DGRAM) as end:
+        at.bind(("127.0.0.1", 0))
 
-    def serve() -> None:
-        while not taken or taken[-1]:
-            data, peer = at.recvfrom(2048)
-            taken.append(data)
-            if data:
+        def serve() -> None:
+            while True:
+                data, peer = at.recvfrom(2048)
+                if not data:
+                    return
+                taken.append(data)
                 at.sendto(answer(data), peer)
 
-    threading.Thread(target=serve, daemon=True).start()
-    return at, taken
+        server = threading.Thread(target=serve)
+        server.start()
+        yield locator("quic", at), taken
+        end.sendto(b"", at.getsockname())
+        server.join()
 
 
 def test_a_server_of_quic_names_its_versions() -> None:
     def name_versions(data: bytes) -> bytes:
         return b"\x80" + bytes(4) + data[14:23] + data[5:14] + (1).to_bytes(4, "big")
 
-    at, taken = quic_server(name_versions)
-    with closing(at):
-        where = locator("quic", at)
+    with quic_server(name_versions) as (where, taken):
         assert RouterProbe([f"{where}?mixed_rel=1"]).find(None, NEVER, unexpected) == f"{where}?mixed_rel=1"
-        at.sendto(b"", at.getsockname())
     assert (len(taken[0]), taken[0][:6]) == (1200, b"\xc0\x1a\x2a\x3a\x4a\x08")
 
 
 def test_another_answer_is_none() -> None:
-    stop = threading.Event()
+    stop, answered = threading.Event(), list[bytes]()
 
     def echo(data: bytes) -> bytes:
-        if len(taken) == 2:
+        answered.append(data)
+        if len(answered) == 2:
             stop.set()
         return data
 
-    at, taken = quic_server(echo)
-    with closing(at):
-        assert RouterProbe([locator("quic", at)]).find(None, stop, lambda _: None) is None
-        at.sendto(b"", at.getsockname())
+    with quic_server(echo) as (where, taken):
+        assert RouterProbe([where]).find(None, stop, lambda _: None) is None
     assert len(taken) >= 2
 
 
