@@ -32,8 +32,8 @@ LOST = "connection to the router lost"
 def direct(callback: Callable[[Any], object]) -> Any:
     """Return what a session calls `callback` by, in its own threads. It must be short, and wait for nothing.
 
-    Otherwise the package runs a thread of Python for each callback: that takes 0.1 ms, and aborts the program
-    ("FATAL: exception not rethrown") if it is not through when the program ends.
+    Otherwise the package runs a thread of Python for each callback, which aborts the program ("FATAL: exception not
+    rethrown") if it is not through when the program ends.
     """
     return load_zenoh().handlers.Callback(callback, indirect=False)
 
