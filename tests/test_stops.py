@@ -101,11 +101,12 @@ class Drive:
         self.moved.append((now, self.power))
 
     def get_going(self) -> None:
-        """Arm, press the key, and wait until the wheels turn at the full demand."""
+        """Arm, press the key once the station shows that, and wait until the wheels turn at the full demand."""
         self.until(lambda: self.station.snapshot(self.world.now, 0).vehicle is not None)
         self.run(2.0)
         self.tell(Arm(held=1.0))
         self.until(lambda: self.rover.state is SafetyState.ARMED)
+        self.until(lambda: any(contact.state.armed for contact in self.station.fleet))  # a key before that does not count
         self.run(1.5)
         self.held = "i"
         self.until(lambda: self.power > 0.5)
