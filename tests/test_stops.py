@@ -106,7 +106,8 @@ class Drive:
         self.run(2.0)
         self.tell(Arm(held=1.0))
         self.until(lambda: self.rover.state is SafetyState.ARMED)
-        self.until(lambda: any(contact.state.armed for contact in self.station.fleet))  # a key before that does not count
+        # A key that is held from before the station knows that does not count.
+        self.until(lambda: any(contact.state.armed for contact in self.station.fleet))
         self.run(1.5)
         self.held = "i"
         self.until(lambda: self.power > 0.5)
