@@ -113,3 +113,18 @@ def test_a_file_that_is_no_run_is_named(tmp_path: Path, capsys: pytest.CaptureFi
 def test_the_page_of_the_figures_has_the_marks() -> None:
     page = (Path(__file__).parents[1] / "docs" / "performance.md").read_text()
     assert page.count(document.BEGIN) == page.count(document.END) == 1
+
+
+def test_a_goal_that_is_missed_is_linked_to_what_is_in_its_way() -> None:
+    report = Report([], [Goal("vehicle, CPU driving", 3.0, 2.0, "%"), Goal("work of a frame", 2.0, 1.5, "us")])
+    run, _ = run_of(cost=lambda options: report)
+    run.measure(["cost"])
+    lines = document.results(run.results).splitlines()
+    assert "| `cost` | vehicle, CPU driving | - | 3 % | <= 2 % | **no**, [why](#cpu-of-vehicle-and-station) |" in lines
+    assert "|  | work of a frame | - | 2 us | <= 1.5 us | **no** |" in lines
+
+
+def test_what_is_in_the_way_stands_in_the_document() -> None:
+    page = Path("docs/performance.md").read_text()
+    assert [heading for *_, heading in document.REASONS if f"# {heading}\n" not in page] == []
+    assert document.anchor("The path of a demand, the framer") == "the-path-of-a-demand-the-framer"

@@ -11,6 +11,30 @@ from tests.benchmarks.figures import BenchmarkError, Row, brief
 BEGIN, END = "<!-- results of a run: begin -->", "<!-- results of a run: end -->"
 """Lines of a document around the results, which `replace` writes."""
 
+REASONS = (
+    ("cost", "start", "Start of the programs"),
+    ("cost", "RSS", "Memory"),
+    ("cost", "PSS", "Memory"),
+    ("cost", "CPU", "CPU of vehicle and station"),
+    ("stations", "reached", "How cost grows"),
+    ("stations", "memory", "Memory"),
+    ("stations", "CPU", "CPU of vehicle and station"),
+    ("key_to_motor", "", "Key to motor"),
+    ("hops", "", "Key to motor"),
+    ("screens", "", "Key to motor"),
+    ("link_loss", "", "Key to motor over networks that lose"),
+    ("tenth_core", "", "A tenth of a core"),
+    ("loop_lateness", "", "A tenth of a core"),
+    ("fleet_path", "", "A fleet"),
+    ("fleet_load", "", "A fleet"),
+    ("receive_path", "", "The path of a demand, the framer and the encoder"),
+    ("framer", "", "The path of a demand, the framer and the encoder"),
+    ("bridge", "", "Bridge, files and slow lines"),
+    ("services", "", "Bridge, files and slow lines"),
+    ("verb", "", "Start of the programs"),
+)
+"""Benchmark, word of a goal, and the heading in docs/performance.md under which it says what is in the way."""
+
 
 def results(run: Mapping[str, Any]) -> str:
     """Return the results of a run, given its JSON."""
@@ -49,7 +73,8 @@ def _summary(run: Mapping[str, Any]) -> Iterator[str]:
     yield _line(["---", "---", "---", "---:", "---:", "---"])
     shown = ""
     for name, goal in goals:
-        yield _line([f"`{name}`" if name != shown else "", *_goal_cells(goal)])
+        met = "yes" if goal["met"] else f"**no**{_reason(name, goal['what'])}"
+        yield _line([f"`{name}`" if name != shown else "", *_goal_cells(goal), met])
         shown = name
 
 
@@ -57,7 +82,19 @@ def _goal_cells(goal: Mapping[str, Any]) -> list[str]:
     sign = ">=" if goal["at_least"] else "<="
     limit = f"{sign} {goal['limit']:g} {goal['unit']}".rstrip()
     measured = f"{brief(float(goal['measured']))} {goal['unit']}".rstrip()
-    return [goal["what"], goal["reference"] or "-", measured, limit, "yes" if goal["met"] else "**no**"]
+    return [goal["what"], goal["reference"] or "-", measured, limit]
+
+
+def _reason(benchmark: str, goal: str) -> str:
+    """Return a link to what is in the way of a goal; "" where nothing is written."""
+    headings = (heading for name, word, heading in REASONS if name == benchmark and word in goal)
+    heading = next(headings, None)
+    return f", [why](#{anchor(heading)})" if heading else ""
+
+
+def anchor(heading: str) -> str:
+    """Return the name under which a heading of a page is linked."""
+    return "".join(each for each in heading.lower().replace(" ", "-") if each.isalnum() or each == "-")
 
 
 def _tables(run: Mapping[str, Any]) -> Iterator[str]:
