@@ -44,7 +44,7 @@ class Failsafes:
     @property
     def quiet(self) -> bool:
         """Whether no condition held at the last check, not even one that has reached no step yet."""
-        return not self._began
+        return not self._since
 
     def check(self, inputs: FailsafeInputs, now: float, *, armed: bool) -> list[TriggeredStep]:
         """Evaluate the conditions of RULES and return the steps reached since the last call.

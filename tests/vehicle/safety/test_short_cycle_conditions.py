@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from dialects.enums import Failsafe
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, NEUTRAL
 from tests.vehicle.pacing import Machine, cruise, idle_machine
@@ -136,7 +137,7 @@ def test_an_absent_operator_counts_while_the_demand_asks_for_motion() -> None:
 
 def test_the_time_of_a_failsafe_runs() -> None:
     tilted = machine(FS_GCS_TIMEOUT=50)
-    tilted.rover._safety.failsafes._began[next(iter(type(tilted.rover._safety.failsafes.active)))] = tilted.now
+    tilted.rover._safety.failsafes.update({Failsafe.TILT: tilted.now}, tilted.now)
     assert not tilted.rover._safety.failsafes.quiet
     assert tilted.rover._monitor._find_deadline() < tilted.now
 
