@@ -56,6 +56,12 @@ def test_wheels_that_have_moved_within_the_period(steady: Steady) -> None:
     assert steady.decides.repeats(still, PERIOD + 0.01)
 
 
+def test_wheels_that_have_moved_just_now(steady: Steady) -> None:
+    steady.decides.note_outputs((0.4, 0.4), driven=True, now=steady.now)
+    assert not steady.repeats(steady.demand)
+    assert not steady.lasts()
+
+
 def test_the_same_wheels_again_have_not_moved(steady: Steady) -> None:
     steady.decides.note_outputs(steady.rover._drive.wheels, driven=True, now=steady.now)
     assert steady.lasts()
@@ -153,12 +159,3 @@ def test_a_voltage_below_a_limit_runs() -> None:
     assert not deadline(low, 0.1)
     low.rover._safety.battery.update(10.4, low.now)
     assert low.rover._monitor._find_deadline() < low.now
-
-
-def test_another_parameter_reaches_the_wheels_of_a_demand_that_stays() -> None:
-    driven = machine(FS_GCS_TIMEOUT=50)
-    driven.wait(1.0, AHEAD)
-    assert driven.motors.outputs == (1.0, 1.0)
-    driven.rover._params.set("MOT_THR_MAX", 50)
-    driven.wait(1.0, AHEAD)
-    assert driven.motors.outputs == (0.5, 0.5)
