@@ -301,9 +301,7 @@ class Runner:
         if index not in self._links:
             return
         for data, address in received:
-            now = (
-                loop.time()
-            )  # of each, so that a change behind a repeat moves the ramps in this call, not a cycle later
+            now = loop.time()  # of each: a change behind a repeat moves the ramps in this call, not a cycle later
             self._hand_over(self._links[index].channel.receive(data, address, now), now)
         self._flush()
         if self._rests:
@@ -335,10 +333,10 @@ class Runner:
         """Tick as soon as the loop is free if a message has given the core something to do."""
         if self._resting is None or self._resting.may_rest or self._timer is None:
             return
-        self._rests = False
+        loop, self._rests = asyncio.get_running_loop(), False
         self._timer.cancel()
-        self._tick_due = asyncio.get_running_loop().time()
-        self._timer = asyncio.get_running_loop().call_at(self._tick_due, self._tick)
+        self._tick_due = loop.time()
+        self._timer = loop.call_at(self._tick_due, self._tick)
 
     def _run_tick(self) -> None:
         now = asyncio.get_running_loop().time()

@@ -92,7 +92,7 @@ class Drive:
     def _targets(self, demand: Demand | None, limited: bool) -> tuple[float, ...]:
         if demand is None:
             return (0.0,) * len(self._slews)
-        asked = demand.throttle, demand.steering, demand.sideways, demand.direct, limited
+        asked = demand.axes, demand.direct, limited
         if asked != self._wanted:  # a demand is repeated 20 times a second, and used in each cycle
             self._wheels_wanted = self._mixed(demand, limited), self._limits
             self._wanted = asked

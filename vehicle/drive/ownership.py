@@ -82,13 +82,17 @@ class Ownership:
 
     def silence_duration(self, now: float) -> float:
         """Return the s since the last message of the driver, or since boot if there was none."""
-        return now - (self.driver.last_heard if self.driver else self._boot)
+        return now - self._last_heard
 
     @property
     def lost_at(self) -> float:
         """From when on the driver is lost if it sends nothing more."""
-        last: float = self.driver.last_heard if self.driver else self._boot
-        return last + self._params["FS_GCS_TIMEOUT"]
+        timeout: float = self._params["FS_GCS_TIMEOUT"]
+        return self._last_heard + timeout
+
+    @property
+    def _last_heard(self) -> float:
+        return self.driver.last_heard if self.driver else self._boot
 
     def is_lost(self, now: float) -> bool:
         """Return True if the driver has sent nothing for FS_GCS_TIMEOUT."""
