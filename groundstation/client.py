@@ -12,6 +12,7 @@ from pathlib import Path
 
 import msgspec
 
+from groundstation.host_process import REPLAY, STATION, ArgumentsError, HostProcess
 from groundstation.intents.session import Detach, Quit
 from groundstation.intents.union import AnyIntent
 from groundstation.ipc import (
@@ -29,7 +30,7 @@ from groundstation.station_socket.connect import SOCKET_BUFFER, NoStationError, 
 from groundstation.station_socket.folder import FolderError
 from groundstation.station_socket.hello import HELLO_WITHIN, SCREEN, Hello, StationFailed
 from groundstation.views.base import View
-from link.runtime.child_process import end_process, start_module
+from link.runtime.child_process import end_process
 from link.transport.receive_buffer import ReceiveBuffer
 
 START_TIMEOUT = 15.0
@@ -40,9 +41,6 @@ CLOSE_TIMEOUT = 1.0
 
 MAX_PENDING = 256
 """Intents kept for a station that does not read. Only those that are `valid_when_late` are kept."""
-
-_STATION, _REPLAY = "groundstation.host.station_process", "groundstation.host.replay_process"
-"""Modules of the processes that a client starts."""
 
 
 class StationError(RuntimeError):
@@ -85,13 +83,14 @@ class StationClient:
         record: RecordOptions | None = None,
         terminal: str | None = None,
         keep: bool = False,
+        process: HostProcess | None = None,
         meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
         """Start the station process and wait until its links are open. Raises StationError.
 
         `dialect` is an XML file that the station reads. `terminal` is the path of the terminal that is reset if this
-        process is killed. `keep`: the station goes on then. `meanwhile` is called first: the process takes 0.2 s to
-        import its modules.
+        process is killed. `keep`: the station goes on then. `process` runs already and waits for its arguments.
+        `meanwhile` is called first: the process takes 0.1 s to import its modules.
         """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
         options += ["--keep"] if keep else []
@@ -108,7 +107,7 @@ class StationClient:
             options += record.arguments
         if terminal is not None:
             options.append(f"--terminal={terminal}")
-        client = cls._open_process(_STATION, [*options, "--", *endpoints], meanwhile, new_session=keep)
+        client = cls._open_process(process or _spawn(STATION), [*options, "--", *endpoints], meanwhile)
         client._keep = keep
         return client
 
@@ -130,27 +129,27 @@ class StationClient:
         """
         given = {"--log-file": log_file, "--dialect": dialect, "--param-docs": param_docs}
         options = [f"{name}={value}" for name, value in given.items() if value is not None]
-        return cls._open_process(_REPLAY, [*options, f"--at={at}", f"--speed={speed}", "--", str(file)], meanwhile)
+        words = [*options, f"--at={at}", f"--speed={speed}", "--", str(file)]
+        return cls._open_process(_spawn(REPLAY), words, meanwhile)
 
     @classmethod
     def _open_process(
-        cls, module: str, arguments: Sequence[str], meanwhile: Callable[[], object], *, new_session: bool = False
+        cls, process: HostProcess, arguments: Sequence[str], meanwhile: Callable[[], object]
     ) -> StationClient:
-        """Start a process with a pipe to it, and wait until it is ready. Raises StationError."""
-        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        with theirs:
-            for half in (ours, theirs):
-                half.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
-            process = _spawn(module, theirs.fileno(), arguments, new_session=new_session)
+        """Give a process its arguments, and wait until it is ready. Raises StationError."""
         try:
+            process.pipe.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
+            with contextlib.suppress(OSError):  # it has ended: reading says so
+                process.send_arguments(arguments)
             meanwhile()
-            ready = _read_ready(ours, START_TIMEOUT)
-        except BaseException:
-            end_process(process, CLOSE_TIMEOUT)
-            ours.close()
+            ready = _read_ready(process.pipe, START_TIMEOUT)
+        except BaseException as error:
+            process.end(CLOSE_TIMEOUT)
+            if isinstance(error, ArgumentsError):
+                raise StationError(str(error)) from error
             raise
-        ours.setblocking(False)
-        return cls(ours, process, ready)
+        process.pipe.setblocking(False)
+        return cls(*process.release(), ready)
 
     @classmethod
     def attach(cls, pid: int, name: str, *, watches: bool = False) -> StationClient:
@@ -273,9 +272,9 @@ class StationClient:
         return code
 
 
-def _spawn(module: str, descriptor: int, arguments: Sequence[str], *, new_session: bool) -> subprocess.Popen[bytes]:
+def _spawn(module: str) -> HostProcess:
     try:
-        return start_module(module, [f"--fd={descriptor}", *arguments], pass_fds=[descriptor], new_session=new_session)
+        return HostProcess(module)
     except OSError as error:
         raise StationError(f"the station process did not start: {error.strerror}") from error
 

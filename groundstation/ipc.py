@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import zlib
+from functools import cache
 
 import msgspec
 
@@ -39,8 +40,26 @@ class StationReady(msgspec.Struct, frozen=True, tag=True):
 FromStation = StationReady | StationFailed | Snapshot | StationOutage | AnyView
 
 encode = msgspec.msgpack.Encoder().encode
-decode_from_station = msgspec.msgpack.Decoder(FromStation).decode
-decode_from_screen = msgspec.msgpack.Decoder(IntentBatch).decode
+
+
+@cache  # made when it is needed, which takes 5 ms: a process needs one of the two
+def _station_decoder() -> msgspec.msgpack.Decoder[FromStation]:
+    return msgspec.msgpack.Decoder(FromStation)
+
+
+@cache
+def _screen_decoder() -> msgspec.msgpack.Decoder[IntentBatch]:
+    return msgspec.msgpack.Decoder(IntentBatch)
+
+
+def decode_from_station(packet: bytes) -> FromStation:
+    """Return what a station has sent. Raises msgspec.DecodeError."""
+    return _station_decoder().decode(packet)
+
+
+def decode_from_screen(packet: bytes) -> IntentBatch:
+    """Return what a screen has sent. Raises msgspec.DecodeError."""
+    return _screen_decoder().decode(packet)
 
 
 _SPOKEN = tuple(f"groundstation.{each}" for each in ("ipc", "intents", "views", "snapshot"))

@@ -23,6 +23,7 @@ from groundstation.client import StationClient
 from groundstation.config.effective import Effective, build_keymap, resolve_endpoints
 from groundstation.config.settings import Settings, ThemeName
 from groundstation.gamepad.child import GamepadChild, missing_package
+from groundstation.host_process import HostProcess
 from groundstation.input.pad_mapping import OFF, add_buttons, build_mapping
 from groundstation.recent.recent_file import RecentFile
 from groundstation.recording.options import RecordOptions
@@ -35,17 +36,17 @@ MIN_TERMINAL_SIZE = (40, 10)
 """Columns and rows below which not even the message fits that the terminal is too small."""
 
 
-def run(arguments: Sequence[str]) -> int:
-    """Run `groundstation` without a verb; return the exit code."""
+def run(arguments: Sequence[str], process: HostProcess | None) -> int:
+    """Run `groundstation` without a verb; return the exit code. `process` waits for the arguments of a station."""
     parser, names = build_parser()
     options, unknown = parser.parse_known_args(parser.reject_empty(arguments))
     if unknown:
         parser.error(describe_unknown(unknown, names))
     word = arguments[0] if arguments else ""
-    return report_mistakes(lambda: _run(options, names), word)
+    return report_mistakes(lambda: _run(options, names, process), word)
 
 
-def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
+def _run(options: argparse.Namespace, names: Sequence[str], process: HostProcess | None) -> int:
     effective = load_settings(options)
     settings = effective.settings
     endpoints = _endpoints(options, effective, names)
@@ -65,6 +66,7 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
             record=record_options(settings, log_file),
             terminal=terminal_path(),
             keep=settings.keep,
+            process=process,
             meanwhile=import_screen,
         )
 

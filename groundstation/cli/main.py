@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections.abc import Sequence
 
@@ -11,6 +12,9 @@ from link.runtime import startup_gc, stdio, without_openssl
 
 FLAGS = ("--json", "-q", "--quiet")
 """Options of all verbs that may also stand before the verb."""
+
+WITHOUT_STATION = frozenset({"-h", "--help", "--version"})
+"""Options that only print."""
 
 PLAIN = "--plain"
 """In place of a screen: lines, as PLAIN_VERB prints them."""
@@ -35,11 +39,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return run_verb(arguments)
     if verb in LOCAL_HELP:
         return _run_local(verb, arguments[1:])
-    without_openssl.load()
-    with startup_gc.paused():
-        from groundstation.cli.console import run as run_console
+    return _run_screen(arguments)
 
-        return run_console(arguments)
+
+def _run_screen(arguments: Sequence[str]) -> int:
+    """Run the screen and its station, which imports its modules while the command line is read."""
+    from groundstation.host_process import STATION, HostProcess
+
+    process = None
+    if not WITHOUT_STATION.intersection(arguments):
+        with contextlib.suppress(OSError):  # it is tried again later, and then shown
+            process = HostProcess(STATION)
+    try:
+        without_openssl.load()
+        with startup_gc.paused():
+            from groundstation.cli.console import run as run_console
+
+            return run_console(arguments, process)
+    finally:
+        if process is not None:
+            process.end()
 
 
 def _plain_verb(arguments: Sequence[str]) -> Sequence[str]:

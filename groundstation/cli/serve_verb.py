@@ -65,15 +65,16 @@ def _serve(options: argparse.Namespace) -> int:
     except FolderError as error:  # nothing could use this station
         raise StationError(str(error)) from error
     endpoints = [] if options.sitl and not options.endpoints else resolve_endpoints(settings.open, settings)
-    from groundstation.host import station_process as process  # loads the dialect, which the screen does without
+    from groundstation.host.station_process import run_station
+    from groundstation.host.station_start import StartError  # loads the dialect, which the screen does without
 
     launch = _listen(options.port) if options.web else None
     try:
         if launch is not None:
             launch.start(["attach", str(os.getpid()), *TAB_OPTIONS, *option_words(settings, TAB_SETTINGS)])
         given = _station_options(settings, endpoints, sitl=options.sitl)
-        return process.run_station(given, None, lambda opened: _announce(opened, launch))
-    except process.StartError as error:
+        return run_station(given, None, lambda opened: _announce(opened, launch))
+    except StartError as error:
         raise StationError(str(error)) from error
     finally:
         if launch is not None:
@@ -100,7 +101,6 @@ def _station_options(settings: Settings, endpoints: Sequence[str], *, sitl: bool
     log_file = find_log_file(settings.log_file)
     record = record_options(settings, log_file)
     return argparse.Namespace(
-        fd=None,
         keep=False,
         terminal=None,
         endpoints=endpoints,

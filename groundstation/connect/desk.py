@@ -34,14 +34,22 @@ LISTEN_FOR = 2.0
 class ConnectDesk:
     """Handles AddLink, CloseLink and StartSimulator, and builds the view. `ids` are our system and component id."""
 
-    def __init__(self, runner: Runner, station: Station, ids: tuple[int, int], sent: SentFrames) -> None:
+    def __init__(
+        self,
+        runner: Runner,
+        station: Station,
+        ids: tuple[int, int],
+        sent: SentFrames,
+        simulators: SimulatorControl | None = None,
+    ) -> None:
+        """`simulators` may run already."""
         self._runner = runner
         self._station = station
         self._keeper = LinkKeeper(runner, station, ids, sent)
         self._listener = VehicleListener(ids)
         self._ports = PortScan()
         self._discovery = Discovery()
-        self._simulators = SimulatorControl()
+        self._simulators = simulators or SimulatorControl()
         self._listen_until = -math.inf
         station.views.add(ConnectRequest, ViewSource(self._build_view, PERIOD))
 

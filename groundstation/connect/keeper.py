@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from dialects.enums import Severity
 from groundstation.intents.links import AddLink
 from groundstation.station.station import Station
-from groundstation.vehicles.fleet import PLACES
+from groundstation.vehicles.vehicle_heartbeat import PLACES
 from groundstation.views.connect import LinkAttempt
 from link.core import LinkReport
 from link.endpoint import EndpointError, Side, parse_endpoint, parse_endpoints

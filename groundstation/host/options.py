@@ -9,19 +9,28 @@ import signal
 import socket
 from pathlib import Path
 
+from groundstation.host_process import STATION, read_arguments
 from groundstation.input.style import Style
+from groundstation.station_socket.connect import SOCKET_BUFFER
 
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
 
-def open_screen_pipe(descriptor: int) -> socket.socket:
-    """Return the socket to the screen's process, to which the keys of the terminal are left from now on."""
+def open_screen_pipe(parser: argparse.ArgumentParser) -> tuple[socket.socket, argparse.Namespace | None]:
+    """Return the socket of --fd to the screen's process, and the arguments that come through it; None: it has ended.
+
+    The keys of the terminal are left to the screen from now on.
+    """
     for number in (signal.SIGINT, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
-    pipe = socket.socket(fileno=descriptor)
+    given = argparse.ArgumentParser(prog=parser.prog, description="Started by `groundstation`, not by hand.")
+    given.add_argument("--fd", type=int, required=True, help="our end of the pipe, which brings all other arguments")
+    pipe = socket.socket(fileno=given.parse_args().fd)
+    pipe.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
+    arguments = read_arguments(pipe)
     pipe.setblocking(False)
-    return pipe
+    return pipe, None if arguments is None else parser.parse_args(arguments)
 
 
 def log_to(path: Path | None) -> None:
@@ -35,10 +44,7 @@ def log_to(path: Path | None) -> None:
 
 def station_parser() -> argparse.ArgumentParser:
     """Return the parser of the station process."""
-    parser = argparse.ArgumentParser(
-        prog="groundstation.host.station_process", description="Started by `groundstation`, not by hand."
-    )
-    parser.add_argument("--fd", type=int, help="the station's end of the pipe; without it the station has no screen")
+    parser = argparse.ArgumentParser(STATION)
     parser.add_argument("--keep", action="store_true", help="go on when the screen is killed or hung up")
     parser.add_argument("--system", type=int, default=255)
     parser.add_argument("--style", choices=list(Style), default=Style.HOLD)

@@ -9,7 +9,6 @@ import logging
 import os
 import signal
 import socket
-from collections.abc import Sequence
 from pathlib import Path
 
 from dialects.extra.errors import DialectError
@@ -17,6 +16,7 @@ from dialects.extra.option import use_dialect
 from groundstation.disk.texts_folder import load_texts
 from groundstation.host.options import log_to, open_screen_pipe
 from groundstation.host.screen_port import ScreenPort
+from groundstation.host_process import REPLAY
 from groundstation.intents.session import Quit
 from groundstation.ipc import IntentBatch, StationReady, encode
 from groundstation.replay.desk import ReplayDesk
@@ -170,10 +170,11 @@ class ReplayProcess:
         self._snapshot_due = 0.0
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main() -> int:
     """Replay a log for the screen at the other end of --fd. Returns 2 if it cannot be, after sending why."""
-    options = _parser().parse_args(arguments)
-    pipe = open_screen_pipe(options.fd)
+    pipe, options = open_screen_pipe(_parser())
+    if options is None:
+        return 0
     try:
         log_to(options.log_file)
         use_dialect(options.dialect)
@@ -210,10 +211,7 @@ async def _replay(desk: ReplayDesk, source: FileSource, pipe: socket.socket) -> 
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="groundstation.host.replay_process", description="Started by `groundstation replay`, not by hand."
-    )
-    parser.add_argument("--fd", type=int, required=True, help="the end of the pipe")
+    parser = argparse.ArgumentParser(REPLAY)
     parser.add_argument("--log-file", type=Path)
     parser.add_argument("--dialect", metavar="FILE.xml")
     parser.add_argument("--param-docs", type=Path, help="file with texts of parameters")

@@ -27,6 +27,7 @@ from groundstation.intents.session import Quit
 from groundstation.intents.union import AnyIntent
 from groundstation.ipc import protocol_version
 from groundstation.recording.station_recording import StationRecording
+from groundstation.sitl.sitl import SimulatorControl
 from groundstation.snapshot import Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.crash_snapshot import crash_snapshot
@@ -69,6 +70,7 @@ class StationHost:
         screen: str = "first screen",
         recording: StationRecording | None = None,
         signing: StationSigning | None = None,
+        simulators: SimulatorControl | None = None,
     ) -> None:
         """`pipe` leads to the screen that has started this process, `screen` is its name; None: there is none."""
         self._station = station
@@ -91,7 +93,7 @@ class StationHost:
         )
         self.verbs = VerbSet(station, ids, self._runner.flush)
         self._disk = DiskDesk(station, self._runner.flush)
-        self.connect = ConnectDesk(self._runner, station, ids, sent)
+        self.connect = ConnectDesk(self._runner, station, ids, sent, simulators)
         self.handlers: list[Callable[[Intent, float], None]] = []
         """Parts beside the station and its links that take intents, and the time."""
         self._last_snapshot = Snapshot()

@@ -13,6 +13,7 @@ from groundstation.snapshot import Snapshot
 from groundstation.station.attention import Attention
 from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
+from groundstation.station.component import COMPONENT
 from groundstation.station.departure import Departure
 from groundstation.station.doctor_desk import DoctorDesk
 from groundstation.station.drive_display import DriveDisplay
@@ -57,9 +58,6 @@ DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 
 DECISIVE = (m.Heartbeat, m.ControlStatus, m.RoverControl, m.RoverDriveStatus)
 """Messages that report what decides on demands: armed, mode, who is in control, emergency stop."""
-
-COMPONENT = 190
-"""MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
 
 
 class Station:

@@ -26,10 +26,6 @@ from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
 from groundstation.vehicles.vehicle_params import VehicleParams
 from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
-from link.protocol.peer_table import MAX_PEERS
-
-PLACES = MAX_VEHICLES + MAX_PEERS
-"""Peers on one link: each vehicle may have an address of its own, and ground stations come beside them."""
 
 
 @dataclass(slots=True)

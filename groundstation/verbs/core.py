@@ -17,8 +17,6 @@ from link.core import LinkReport, Outgoing, Received
 if TYPE_CHECKING:
     from groundstation.verbs.demand_guard import DemandGuard
 
-COMPONENT = 190
-"""MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
 WATCHER = 25
 """MAV_COMP_ID_USER1: of verbs that only look. With the ids of a silent driver, as of the verb before, any command would
 count as its successor, and our vehicle would leave an autonomous mode (docs/safety.md, "Who the driver is")."""

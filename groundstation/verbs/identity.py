@@ -6,7 +6,8 @@ import argparse
 import time
 from typing import TYPE_CHECKING
 
-from groundstation.verbs.core import COMPONENT, WATCHER
+from groundstation.station.component import COMPONENT
+from groundstation.verbs.core import WATCHER
 from groundstation.verbs.kept_session import KeptSession, choose_session
 from groundstation.verbs.station_link import StationLink
 

@@ -13,7 +13,8 @@ from groundstation.intents.session import RenewLease
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
-from groundstation.station.station import COMPONENT, Station
+from groundstation.station.component import COMPONENT
+from groundstation.station.station import Station
 from groundstation.station_socket.relay import LinksReport
 from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.exit_codes import ExitCode, VerbError

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import time
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,7 +13,6 @@ from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.driving import SetStyle
 from groundstation.ui.app import ConsoleApp
-from link.runtime.child_process import start_module
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.host.crashing_station import ORDER
 from tests.groundstation.udp_vehicle import UdpVehicle
@@ -56,10 +54,7 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
 
 
 async def test_a_bug_in_the_station_is_told_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
-    def start(module: str, *arguments: Any, **options: Any) -> Any:
-        return start_module("tests.groundstation.host.crashing_station", *arguments, **options)
-
-    monkeypatch.setattr(client_module, "start_module", start)
+    monkeypatch.setattr(client_module, "STATION", "tests.groundstation.host.crashing_station")
     station = StationClient.start([f"udpin:127.0.0.1:{free_port()}"])
     app = ConsoleApp(station, Keymap("standard", KEYMAPS["standard"]))
     try:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from groundstation.intents.session import RenewLease
 from groundstation.intents.union import AnyIntent
-from groundstation.station.station import COMPONENT, Station
+from groundstation.station.component import COMPONENT
+from groundstation.station.station import Station
 from link.protocol.channel import Channel
 from link.tlog.tlog import Record, read_records
 from tests.groundstation.ui.examples import Recorder

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from groundstation.host import station_process
+from groundstation.host import station_process, station_run
 from groundstation.intents.driving import SetStyle
 from groundstation.intents.union import AnyIntent
 from groundstation.station.station import Station
@@ -43,5 +43,5 @@ for _name in ("receive", "tick", "observe", "messages_to_send", "handle_sent", "
     setattr(CrashingStation, _name, _with_bug(_name))
 
 if __name__ == "__main__":
-    vars(station_process)["Station"] = CrashingStation
+    vars(station_run)["Station"] = CrashingStation
     raise SystemExit(station_process.main())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -17,7 +16,6 @@ from groundstation.intents.vehicle import Arm
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.core import Peer, Received
-from link.runtime.child_process import start_module
 from tests.groundstation.host.crashing_station import ORDER
 from tests.groundstation.screen import Screen, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle
@@ -93,10 +91,7 @@ def test_a_vehicle_that_was_not_driven_gets_nothing() -> None:
 
 @pytest.fixture
 def _a_bug_in_the_station(monkeypatch: pytest.MonkeyPatch) -> None:
-    def start(module: str, *arguments: Any, **options: Any) -> Any:
-        return start_module("tests.groundstation.host.crashing_station", *arguments, **options)
-
-    monkeypatch.setattr(client, "start_module", start)
+    monkeypatch.setattr(client, "STATION", "tests.groundstation.host.crashing_station")
 
 
 @pytest.mark.e2e

@@ -15,7 +15,8 @@ from groundstation.intents.watch import Watch
 from groundstation.ipc import encode
 from groundstation.snapshot import VehicleView
 from groundstation.snapshot.drive import StopBound
-from groundstation.station.station import COMPONENT, Station
+from groundstation.station.component import COMPONENT
+from groundstation.station.station import Station
 from groundstation.views.base import View
 from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, TrackView
 from link.protocol.channel import Channel

@@ -19,7 +19,8 @@ from dialects.messages import MESSAGES
 from groundstation.intents.session import RenewLease, SetKeyGate
 from groundstation.ipc import encode
 from groundstation.snapshot import LogLine, Snapshot
-from groundstation.station.station import COMPONENT, Station
+from groundstation.station.component import COMPONENT
+from groundstation.station.station import Station
 from groundstation.views.log import LogRequest
 from link.core import LinkReport
 from link.protocol.channel import Channel

@@ -7,7 +7,8 @@ from collections.abc import Awaitable, Callable
 
 from groundstation.intents.line import RunLine
 from groundstation.intents.session import RenewLease
-from groundstation.station.station import COMPONENT, Station
+from groundstation.station.component import COMPONENT
+from groundstation.station.station import Station
 from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.verbs.line.desk import LABEL
 from groundstation.verbs.line.loader import LineLoader

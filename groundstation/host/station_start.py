@@ -1,0 +1,80 @@
+"""Starts a station: its keys, its watchdog, its links. Imports nothing else, because the screen waits for it."""
+
+from __future__ import annotations
+
+import argparse
+import socket
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from dialects.extra.errors import DialectError
+from dialects.extra.option import Note, use_dialect
+from groundstation.connect.signing import SigningError, StationSigning
+from groundstation.host.options import log_to
+from groundstation.sitl.sitl import SimulatorControl, free_port
+from groundstation.station.component import COMPONENT
+from groundstation.vehicles.vehicle_heartbeat import PLACES
+from groundstation.watchdog.feed import WatchdogFeed
+from link.endpoint import EndpointError, Side, parse_endpoint
+from link.protocol.sent_frames import SentFrames
+from link.runner import open_links
+from link.transport.transport import Link, LinkError
+
+
+class StartError(RuntimeError):
+    """The station cannot start; the message is one line for the user."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartedStation:
+    """What a station runs with."""
+
+    endpoints: tuple[str, ...]
+    links: list[Link]
+    watchdog: WatchdogFeed
+    sent: SentFrames
+    signing: StationSigning
+    simulators: SimulatorControl
+    notes: Sequence[Note]
+    """On the dialect file."""
+
+
+def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedStation:
+    """Start the watchdog and the simulator, and open the links. Raises StartError."""
+    try:
+        signing = StationSigning(time.monotonic(), key=options.sign_key, required=options.require_signing)
+    except SigningError as error:
+        raise StartError(str(error)) from error
+    watchdog = _start_watchdog(options, pipe, signing)  # before the links: it inherits none
+    endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
+    try:
+        log_to(options.log_file)
+        notes = use_dialect(options.dialect)
+        sent = SentFrames()
+        side = Side.GROUND_STATION
+        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent, places=PLACES, side=side)
+        known = tuple(parse_endpoint(text).text for text in endpoints)
+    except (DialectError, EndpointError, LinkError, OSError) as error:
+        watchdog.close()
+        raise StartError(_one_line(error)) from error
+    simulators = SimulatorControl()
+    if options.sitl:  # an error shows later: one that does not run is started again
+        simulators.start([link.endpoint for link in links])
+    return StartedStation(known, links, watchdog, sent, signing, simulators, notes)
+
+
+def _start_watchdog(options: argparse.Namespace, pipe: socket.socket | None, signing: StationSigning) -> WatchdogFeed:
+    """Start the watchdog; without a screen its end of the pipe leads nowhere."""
+    ids, keys = (options.system, COMPONENT), (signing.keeper.signing, signing.reload)
+    if pipe is not None:
+        return WatchdogFeed.start(pipe, options.terminal, ids, *keys)
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with ours, theirs:
+        return WatchdogFeed.start(theirs, None, ids, *keys)
+
+
+def _one_line(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return str(error)

@@ -1,0 +1,4 @@
+"""The component id of a ground station."""
+
+COMPONENT = 190
+"""MAV_COMP_ID_MISSIONPLANNER, which ground stations use."""
