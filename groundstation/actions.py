@@ -5,7 +5,7 @@ A new action is a row here. One that the station carries out has an intent (grou
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop, ScaleLimits, SetStyle, Stop
 from groundstation.intents.session import StartSimulator
@@ -26,8 +26,7 @@ FASTER, SLOWER = 1.1, 0.9
 """Factors of one press of a speed key, those of teleop_twist_keyboard."""
 
 
-@dataclass(frozen=True, slots=True)
-class OperatorAction:
+class OperatorAction(msgspec.Struct, frozen=True):
     """Something an operator can ask for with a key or in the command palette."""
 
     id: str

@@ -6,8 +6,9 @@ The ground around a place is drawn as a plane. The error is 0.1 % at 10 km, more
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 Point = tuple[float, float]
 
@@ -40,8 +41,7 @@ class Way(NamedTuple):
     """Degrees clockwise from north, 0..360."""
 
 
-@dataclass(frozen=True, slots=True)
-class LocalFrame:
+class LocalFrame(msgspec.Struct, frozen=True):
     """Converts places to metres around `origin`, and back."""
 
     origin: Place

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 
-@dataclass(frozen=True, slots=True)
-class ScreenRow:
+class ScreenRow(msgspec.Struct, frozen=True):
     """One screen. It has the action `app.<id>` in ACTIONS, so that a key map file can bind other keys to it."""
 
     id: str

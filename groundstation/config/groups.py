@@ -5,7 +5,8 @@ from __future__ import annotations
 import fnmatch
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 LARGEST_ID = 255
 SYNTAX = 'system ids, ranges and patterns of names with commas between them, as "1-20,31" or "*boat*"'
@@ -19,8 +20,7 @@ class GroupError(Exception):
     """A text that names no vehicles; one line."""
 
 
-@dataclass(frozen=True, slots=True)
-class VehicleGroup:
+class VehicleGroup(msgspec.Struct, frozen=True):
     """Which vehicles are meant."""
 
     listed: frozenset[int]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
@@ -32,8 +31,7 @@ class ThemeName(StrEnum):
     NO_COLOUR = "no-colour"
 
 
-@dataclass(frozen=True, slots=True)
-class Option:
+class Option(msgspec.Struct, frozen=True):
     """The option of the command line for a setting."""
 
     flag: str
@@ -101,8 +99,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return os.path.expanduser(self.dialect) if self.dialect else None
 
 
-@dataclass(frozen=True, slots=True)
-class SettingRow:
+class SettingRow(msgspec.Struct, frozen=True):
     """One row of the table."""
 
     name: str

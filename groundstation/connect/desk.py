@@ -42,7 +42,7 @@ class ConnectDesk:
         sent: SentFrames,
         simulators: SimulatorControl | None = None,
     ) -> None:
-        """`simulators` may run already."""
+        """Take over `simulators`, which may run already."""
         self._runner = runner
         self._station = station
         self._keeper = LinkKeeper(runner, station, ids, sent)

@@ -8,12 +8,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from dataclasses import dataclass, field
+
+import msgspec
 
 from dialects.enums import Severity
 from groundstation.intents.links import AddLink
 from groundstation.station.station import Station
-from groundstation.vehicles.vehicle_heartbeat import PLACES
+from groundstation.vehicles.places import PLACES
 from groundstation.views.connect import LinkAttempt
 from link.core import LinkReport
 from link.endpoint import EndpointError, Side, parse_endpoint, parse_endpoints
@@ -35,8 +36,7 @@ FIRST_RETRY, LONGEST_RETRY = 1.0, 10.0
 SILENT = "it sends nothing before it is sent to, so nothing can be heard: watch with udpin or a serial port"
 
 
-@dataclass(slots=True)
-class _Attempt:
+class _Attempt(msgspec.Struct):
     """One AddLink."""
 
     request: int
@@ -49,7 +49,7 @@ class _Attempt:
     due: float | None = None
     """When it is tried again."""
     closed: bool = False
-    backoff: Backoff = field(default_factory=lambda: Backoff(FIRST_RETRY, LONGEST_RETRY))
+    backoff: Backoff = msgspec.field(default_factory=lambda: Backoff(FIRST_RETRY, LONGEST_RETRY))
 
 
 class LinkKeeper:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from groundstation.snapshot import LinkView, OperatorView, VehicleView
 from groundstation.views.doctor import TerminalFacts
 
 
-@dataclass(frozen=True, slots=True)
-class SettingFact:
+class SettingFact(msgspec.Struct, frozen=True):
     """A parameter that decides what the vehicle does without us."""
 
     name: str
@@ -19,8 +19,7 @@ class SettingFact:
     """What is wrong with it; "" if nothing is."""
 
 
-@dataclass(frozen=True, slots=True)
-class SensorBits:
+class SensorBits(msgspec.Struct, frozen=True):
     """The three bitmasks of SYS_STATUS (MAV_SYS_STATUS_SENSOR)."""
 
     present: int
@@ -28,8 +27,7 @@ class SensorBits:
     health: int
 
 
-@dataclass(frozen=True, slots=True)
-class PreArmText:
+class PreArmText(msgspec.Struct, frozen=True):
     """A reason why the vehicle would refuse to arm."""
 
     text: str
@@ -38,14 +36,13 @@ class PreArmText:
     """s"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DoctorFacts:
+class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     """The known state. A vehicle that was never heard is None."""
 
     system: int
     """System id of the ground station that drives or will drive."""
     vehicle: VehicleView | None = None
-    operator: OperatorView = field(default_factory=OperatorView)
+    operator: OperatorView = msgspec.field(default_factory=OperatorView)
     links: tuple[LinkView, ...] = ()
     endpoints: tuple[str, ...] = ()
     id_conflict: str | None = None
@@ -71,7 +68,7 @@ class DoctorFacts:
     settings: tuple[SettingFact, ...] = ()
     unread: tuple[str, ...] = ()
     """Settings that the vehicle did not report."""
-    params: Mapping[str, float] = field(default_factory=dict)
+    params: Mapping[str, float] = msgspec.field(default_factory=dict)
     """Further parameters that are known."""
     motors_tested: frozenset[int] = frozenset()
     """Numbers of the motors that were turned in this session."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from groundstation.views.doctor import ParamFix
 from link.runtime.diagnosis import Health
 
 
-@dataclass(frozen=True, slots=True)
-class ChainFinding:
+class ChainFinding(msgspec.Struct, frozen=True):
     """How a link of the chain stands, why, and what to do."""
 
     health: Health

@@ -7,14 +7,13 @@ Texts: ours are in vehicle/safety/arming.py; ArduPilot's in AP_Arming and AR_Arm
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 PREFIXES = ("PreArm: ", "Preflight Fail: ", "Arm: ", "Arming denied: ")
 """What texts begin with that say why arming is refused: ArduPilot and our rover, PX4, ArduPilot, PX4."""
 
 
-@dataclass(frozen=True, slots=True)
-class Advice:
+class Advice(msgspec.Struct, frozen=True):
     """What to do where a reason contains all `words`, in lower case."""
 
     words: tuple[str, ...]

@@ -7,9 +7,10 @@ import os
 from collections import Counter
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
+
+import msgspec
 
 from groundstation.export.exporter import Exporter, ExportError, LogInfo, NothingToExportError
 from groundstation.export.log_time import LogTime
@@ -19,8 +20,7 @@ from link.tlog.scan import MAX_RECORD, RAW_STREAM, Gap, LogFrame, is_raw_stream
 from link.tlog.tlog import read_log
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(msgspec.Struct, frozen=True):
     """Which messages are exported: from `begin` on, before `end`; patterns are names in upper case."""
 
     begin: LogTime | None = None
@@ -35,16 +35,14 @@ class Choice:
         return "" if any(each in name for each in "*?[") else name
 
 
-@dataclass(frozen=True, slots=True)
-class Output:
+class Output(msgspec.Struct, frozen=True):
     """A file to write. `format` is a key of FORMATS."""
 
     format: str
     path: str
 
 
-@dataclass(frozen=True, slots=True)
-class Written:
+class Written(msgspec.Struct, frozen=True):
     """A file that was written."""
 
     format: str
@@ -52,8 +50,7 @@ class Written:
     count: int
 
 
-@dataclass(frozen=True, slots=True)
-class Damage:
+class Damage(msgspec.Struct, frozen=True):
     """A part of the log that holds no record, and the time of the record before, us from the start."""
 
     offset: int
@@ -61,18 +58,17 @@ class Damage:
     after: int
 
 
-@dataclass(slots=True)
-class Result:
+class Result(msgspec.Struct):
     """What an export has done."""
 
-    written: list[Written] = field(default_factory=list)
-    empty: list[Output] = field(default_factory=list)
+    written: list[Written] = msgspec.field(default_factory=list)
+    empty: list[Output] = msgspec.field(default_factory=list)
     """Outputs for which there was nothing: they are not written."""
-    damage: list[Damage] = field(default_factory=list)
+    damage: list[Damage] = msgspec.field(default_factory=list)
     """The first of them."""
     damaged_parts: int = 0
     damaged_bytes: int = 0
-    unknown: Counter[int] = field(default_factory=Counter)
+    unknown: Counter[int] = msgspec.field(default_factory=Counter)
     """Id that is in no dialect known here -> messages that were left out."""
 
     @property

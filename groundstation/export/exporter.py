@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from groundstation.export.sample import Sample
 
@@ -49,8 +50,7 @@ class Exporter(Protocol):
         """Close everything, and remove what is not in its place."""
 
 
-@dataclass(frozen=True, slots=True)
-class LogInfo:
+class LogInfo(msgspec.Struct, frozen=True):
     """What an exporter knows of the log."""
 
     name: str

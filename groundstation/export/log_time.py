@@ -6,8 +6,9 @@ People mean the clock of this machine, as the screens show it; files have UTC.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+
+import msgspec
 
 from link.tlog.tlog import LATEST
 
@@ -20,8 +21,7 @@ _MINUTES = re.compile(r"(?P<minutes>\d{1,6}):(?P<seconds>[0-5]\d(?:\.\d{1,6})?)"
 _OF_DAY = re.compile(r"(?P<hours>[01]?\d|2[0-3]):(?P<minutes>[0-5]\d):(?P<seconds>[0-5]\d(?:\.\d{1,6})?)")
 
 
-@dataclass(frozen=True, slots=True)
-class LogTime:
+class LogTime(msgspec.Struct, frozen=True):
     """A moment, in us: of Unix time, behind the start of the log, or of the day in which the log begins."""
 
     microseconds: int

@@ -6,8 +6,9 @@ https://www.topografix.com/GPX/1/1/gpx.xsd, https://schemas.opengis.net/kml/2.2.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from xml.sax.saxutils import escape
+
+import msgspec
 
 from dialects.messages import printable
 from groundstation.disk.new_file import NewFile
@@ -21,8 +22,7 @@ GPX = "http://www.topografix.com/GPX/1/1"
 KML = "http://www.opengis.net/kml/2.2"
 
 
-@dataclass(frozen=True, slots=True)
-class MapFormat:
+class MapFormat(msgspec.Struct, frozen=True):
     """A format of tracks."""
 
     point: Callable[[Position], str]

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
+
+import msgspec
 
 from groundstation.export.exporter import Exporter, ExportError, LogInfo
 from groundstation.export.map_files import GPX_FORMAT, KML_FORMAT, MapExport
 from groundstation.export.text_files import CsvExport, JsonExport, TlogExport
 
 
-@dataclass(frozen=True, slots=True)
-class Format:
+class Format(msgspec.Struct, frozen=True):
     """A row."""
 
     create: Callable[[str, LogInfo], Exporter]

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from typing import BinaryIO
+
+import msgspec
 
 from dialects.enums import Severity
 from dialects.field_values import field_value
@@ -20,8 +21,7 @@ PAUSE = 10_000_000
 """us without a position that end a segment: a line across them would show a way that nobody knows."""
 
 
-@dataclass(frozen=True, slots=True)
-class Position:
+class Position(msgspec.Struct, frozen=True):
     """Where a vehicle was; degrees, m above mean sea level."""
 
     microseconds: int
@@ -30,8 +30,7 @@ class Position:
     altitude: float
 
 
-@dataclass(frozen=True, slots=True)
-class Remark:
+class Remark(msgspec.Struct, frozen=True):
     """A warning of a vehicle, and where it was then."""
 
     system: int
@@ -39,8 +38,7 @@ class Remark:
     position: Position
 
 
-@dataclass(slots=True)
-class Track:
+class Track(msgspec.Struct):
     """The points of one vehicle, in a file without a name: a long track needs no memory. `write` formats a point."""
 
     write: Callable[[Position], str]
@@ -51,7 +49,7 @@ class Track:
     last: Position | None = None
     broken: bool = False
     """The next point begins a segment."""
-    spool: BinaryIO = field(default_factory=tempfile.TemporaryFile)
+    spool: BinaryIO = msgspec.field(default_factory=tempfile.TemporaryFile)
 
     def add(self, position: Position) -> None:
         """Add a point."""

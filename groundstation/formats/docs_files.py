@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 from dialects.enums import Autopilot
 from groundstation.formats.errors import FileFormatError
@@ -19,11 +19,10 @@ FILE_NAMES = {
 """Names that are looked for in the configuration folder, and whose parameters they describe; the first found counts."""
 
 
-@dataclass(frozen=True, slots=True)
-class DocsFile:
+class DocsFile(msgspec.Struct, frozen=True):
     """Texts of a file of the user, or why there are none."""
 
-    docs: ParamDocs = field(default_factory=ParamDocs)
+    docs: ParamDocs = msgspec.field(default_factory=ParamDocs)
     autopilot: int | None = None
     """MAV_AUTOPILOT that they are for; None: any."""
     problem: str = ""

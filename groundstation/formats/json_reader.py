@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from typing import Any, NoReturn, TypeVar
+
+import msgspec
 
 from groundstation.formats.errors import FileFormatError
 from link.services.mission.items import MAX_LATITUDE, MAX_LONGITUDE
@@ -36,8 +37,7 @@ def load_object(text: str, source: str, kind: str, *, constants: bool = False) -
     return value
 
 
-@dataclass(frozen=True, slots=True)
-class JsonReader:
+class JsonReader(msgspec.Struct, frozen=True):
     """An object of a file; `where` is the file and the path to the object."""
 
     value: dict[str, Any]

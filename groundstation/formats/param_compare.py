@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.formats.param_file import ParamFile
 from link.services.param.client import Param
 from link.services.param.float32 import same_float32
 
 
-@dataclass(frozen=True, slots=True)
-class ParamComparison:
+class ParamComparison(msgspec.Struct, frozen=True):
     """What is the same and what is not, each in the order of the file."""
 
     same: int

@@ -7,6 +7,8 @@ import re
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import msgspec
+
 MAX_DOCS = 10_000
 """Parameters of one file; ten times what an autopilot has."""
 MAX_TEXT = 4000
@@ -16,8 +18,7 @@ MAX_CHOICES = 512
 _WORD = re.compile(r"\w+")
 
 
-@dataclass(frozen=True, slots=True)
-class ParamDoc:
+class ParamDoc(msgspec.Struct, frozen=True):
     """One parameter. What its file does not say is empty or None."""
 
     name: str

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.formats.errors import FileFormatError, shown
 from groundstation.formats.param_form import ParamForm
@@ -22,8 +23,7 @@ MAX_LINES = 20_000
 """Lines of a file; ten times the parameters of the largest autopilot. More is not a parameter file."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParamLine:
+class ParamLine(msgspec.Struct, frozen=True):
     """One parameter of a file."""
 
     name: str
@@ -38,8 +38,7 @@ class ParamLine:
     """MAV_PARAM_TYPE; only QGroundControl writes it."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParamFile:
+class ParamFile(msgspec.Struct, frozen=True):
     """What a file holds, in its order."""
 
     form: ParamForm

@@ -6,9 +6,9 @@ Home is no item here, and DO_JUMP names its target by the index in `mission`, fr
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
 from msgspec.structs import replace
 
 from dialects.enums import Autopilot, Command, MissionType
@@ -19,8 +19,7 @@ GLOBAL = 0
 """MAV_FRAME_GLOBAL."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlannedHome:
+class PlannedHome(msgspec.Struct, frozen=True):
     """A planned home position."""
 
     latitude: float
@@ -30,15 +29,14 @@ class PlannedHome:
     """m above sea level."""
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
+class Plan(msgspec.Struct, frozen=True):
     """Mission, fence and rally points."""
 
     mission: Items = ()
     fence: Items = ()
     rally: Items = ()
     home: PlannedHome | None = None
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, Any] = msgspec.field(default_factory=dict)
     """Fields of a .plan's mission that only QGroundControl uses, such as cruiseSpeed."""
 
     def of(self, kind: MissionType) -> Items:

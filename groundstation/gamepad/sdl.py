@@ -8,8 +8,9 @@ from __future__ import annotations
 import ctypes
 import os
 import warnings
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 with warnings.catch_warnings():
@@ -31,8 +32,7 @@ class SdlError(RuntimeError):
     """SDL does not start; the message is one line for the user."""
 
 
-@dataclass(frozen=True, slots=True)
-class Plugged:
+class Plugged(msgspec.Struct, frozen=True):
     """One gamepad that is plugged in."""
 
     number: int

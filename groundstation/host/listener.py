@@ -8,7 +8,6 @@ import logging
 import os
 import socket
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
@@ -23,8 +22,7 @@ MAX_WAITING = 16
 """Programs that have connected and not said what they are; further ones are refused."""
 
 
-@dataclass(frozen=True, slots=True)
-class Caller:
+class Caller(msgspec.Struct, frozen=True):
     """A program of this user that has connected."""
 
     sock: socket.socket

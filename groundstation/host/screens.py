@@ -6,7 +6,6 @@ import asyncio
 import logging
 import socket
 import time
-from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol
 
@@ -30,8 +29,7 @@ MAX_SCREENS = 8
 """Screens at once; each costs 10 snapshots/s."""
 
 
-@dataclass(slots=True, eq=False)
-class _Attached:
+class _Attached(msgspec.Struct, eq=False):
     """One screen that is connected."""
 
     port: ScreenPort

@@ -6,7 +6,8 @@ import argparse
 import socket
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.extra.errors import DialectError
 from dialects.extra.option import Note, use_dialect
@@ -14,7 +15,7 @@ from groundstation.connect.signing import SigningError, StationSigning
 from groundstation.host.options import log_to
 from groundstation.sitl.sitl import SimulatorControl, free_port
 from groundstation.station.component import COMPONENT
-from groundstation.vehicles.vehicle_heartbeat import PLACES
+from groundstation.vehicles.places import PLACES
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, Side, parse_endpoint
 from link.protocol.sent_frames import SentFrames
@@ -26,8 +27,7 @@ class StartError(RuntimeError):
     """The station cannot start; the message is one line for the user."""
 
 
-@dataclass(frozen=True, slots=True)
-class StartedStation:
+class StartedStation(msgspec.Struct, frozen=True):
     """What a station runs with."""
 
     endpoints: tuple[str, ...]

@@ -9,7 +9,6 @@ repeats, too: on a bad line the release may be late or lost, and such a key must
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import msgspec
 
@@ -26,8 +25,7 @@ MAX_EVENTS = 8
 """Events of one read above which it is pasted text: 0.25 s of repeats every 33 ms, when the machine was late."""
 
 
-@dataclass(frozen=True, slots=True)
-class HoldProgress:
+class HoldProgress(msgspec.Struct, frozen=True):
     """A hold that has begun."""
 
     action: OperatorAction
@@ -36,8 +34,7 @@ class HoldProgress:
     """s since the press, at most HOLD_TIME."""
 
 
-@dataclass(frozen=True, slots=True)
-class HoldResult:
+class HoldResult(msgspec.Struct, frozen=True):
     """What one read of keys means."""
 
     passing: list[KeyEvent]
@@ -46,8 +43,7 @@ class HoldResult:
     """The intent of the action that this read has confirmed."""
 
 
-@dataclass(slots=True)
-class _Hold:
+class _Hold(msgspec.Struct):
     """The events of one key since its press."""
 
     key: str

@@ -7,7 +7,8 @@ windows: a long one after the press and a short one once the key repeats. Both a
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+
+import msgspec
 
 PRESS_WINDOW = 0.75
 """Window after a press, s: longer than X11's repeat delay of 0.66 s. Also the longest time that a tap drives, unless
@@ -45,8 +46,7 @@ GAPS_TO_LEARN = 20
 """Repeats seen before the short window is changed: one second of holding."""
 
 
-@dataclass(slots=True)
-class KeyTrace:
+class KeyTrace(msgspec.Struct):
     """Times of the events of one key, from its press on."""
 
     pressed: float
@@ -63,12 +63,11 @@ class KeyTrace:
         return self.repeats > 0
 
 
-@dataclass(slots=True)
-class RepeatWindows:
+class RepeatWindows(msgspec.Struct):
     """The two windows, learned in this session from the newest events: a user may change keyboards."""
 
-    _delays: deque[float] = field(default_factory=lambda: deque(maxlen=5))
-    _gaps: deque[float] = field(default_factory=lambda: deque(maxlen=GAPS_TO_LEARN))
+    _delays: deque[float] = msgspec.field(default_factory=lambda: deque(maxlen=5))
+    _gaps: deque[float] = msgspec.field(default_factory=lambda: deque(maxlen=GAPS_TO_LEARN))
 
     @property
     def press_window(self) -> float:

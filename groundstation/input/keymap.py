@@ -6,7 +6,6 @@ The actions and their usual keys are in groundstation/actions.py. Key names are 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
 import msgspec
 
@@ -19,8 +18,7 @@ class KeymapError(ValueError):
     """A key map that cannot be used; the message is one line for the user."""
 
 
-@dataclass(frozen=True, slots=True)
-class KeyEvent:
+class KeyEvent(msgspec.Struct, frozen=True):
     """One key event of the terminal."""
 
     key: str
@@ -47,12 +45,11 @@ KEYMAPS: dict[str, dict[str, str]] = {
 which use W, so it has no WASD."""
 
 
-@dataclass(frozen=True, slots=True)
-class Keymap:
+class Keymap(msgspec.Struct, frozen=True):
     """The key map in use."""
 
     name: str
-    bindings: Mapping[str, str] = field(default_factory=dict)
+    bindings: Mapping[str, str] = msgspec.field(default_factory=dict)
 
     def get_action(self, key: str) -> OperatorAction | None:
         """Return the action bound to a key, or None."""

@@ -6,7 +6,6 @@ A frame is the whole state: a lost one is replaced by the next.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import msgspec
 
@@ -19,8 +18,7 @@ EARLY = 0.005
 """s that a frame may be early: half of the time between two readings, so that the rate is kept on average."""
 
 
-@dataclass(frozen=True, slots=True)
-class PadReading:
+class PadReading(msgspec.Struct, frozen=True):
     """One gamepad as it was read. Axes by SDL's names, -1..1, up and right positive; buttons that are down."""
 
     device: int

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.axes import NEUTRAL, Axes
 from groundstation.input.key_repeat import PRESS_WINDOW, REPEAT_GAP, KeyTrace, RepeatWindows
@@ -15,8 +16,7 @@ STEP = 0.1
 """What one press adds in the style "step", as a fraction of full deflection."""
 
 
-@dataclass(slots=True)
-class _Held:
+class _Held(msgspec.Struct):
     """A key that counts as held."""
 
     throttle: int

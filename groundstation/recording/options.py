@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
 
-@dataclass(frozen=True, slots=True)
-class RecordOptions:
+
+class RecordOptions(msgspec.Struct, frozen=True):
     """Where the station records the session; sizes in MB."""
 
     folder: Path

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enum_names import enum_names
@@ -114,8 +115,7 @@ class EventList:
         return tuple(self._events[first : first + count])
 
 
-@dataclass(slots=True)
-class _Vehicle:
+class _Vehicle(msgspec.Struct):
     """What was last heard of a vehicle."""
 
     found: float
@@ -127,15 +127,14 @@ class _Vehicle:
     failsafes: int = 0
 
 
-@dataclass(slots=True)
-class EventFinder:
+class EventFinder(msgspec.Struct):
     """Turns messages into events."""
 
-    events: EventList = field(default_factory=EventList)
-    stations: set[tuple[int, int]] = field(default_factory=set)
+    events: EventList = msgspec.field(default_factory=EventList)
+    stations: set[tuple[int, int]] = msgspec.field(default_factory=set)
     """Ground stations: system and component."""
-    vehicles: dict[int, _Vehicle] = field(default_factory=dict)
-    beating: dict[tuple[int, int], _Vehicle] = field(default_factory=dict)
+    vehicles: dict[int, _Vehicle] = msgspec.field(default_factory=dict)
+    beating: dict[tuple[int, int], _Vehicle] = msgspec.field(default_factory=dict)
     """System and component -> the vehicle that its HEARTBEATs are of."""
 
     def handle(self, found: Found) -> None:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
+
+import msgspec
 
 from dialects import messages as m
 from dialects.codec import decode_frame
@@ -68,12 +69,11 @@ class _Key(NamedTuple):
     upload: bool
 
 
-@dataclass(slots=True)
-class _Transfer:
+class _Transfer(msgspec.Struct):
     count: int
     """Of the items of the plan."""
     plan_id: int = 0
-    items: dict[int, int] = field(default_factory=dict)
+    items: dict[int, int] = msgspec.field(default_factory=dict)
     """Sequence -> offset of the newest record of the item."""
     parts: range | None = None
     """Sequences of the items that are replaced, the others stay; None: all."""

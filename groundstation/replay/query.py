@@ -6,8 +6,9 @@ import math
 import operator
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from dialects.enums import ModeFlag
 from dialects.messages import MESSAGES, Heartbeat, Message
@@ -35,8 +36,7 @@ class QueryError(ValueError):
     """Not something that can be searched; the message is one line for the user."""
 
 
-@dataclass(frozen=True, slots=True)
-class Query:
+class Query(msgspec.Struct, frozen=True):
     """What is searched: a text in the events, or messages of one id."""
 
     text: str

@@ -6,7 +6,8 @@ https://www.ros.org/reps/rep-0103.html: x is forward, and a positive turn is cou
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.axes import NEUTRAL, Axes
 
@@ -31,8 +32,7 @@ class RefusedDemandError(ValueError):
     """A message is no demand; the text says why, in one line."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scale:
+class Scale(msgspec.Struct, frozen=True):
     """What full deflection is, and how much of it a word demands."""
 
     speed: float = DEFAULT_SPEED

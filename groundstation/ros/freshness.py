@@ -7,7 +7,7 @@ after a router stood still for five seconds, the commands of those seconds arriv
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 MAX_LATENESS = 0.3
 """s more than the fastest message."""
@@ -16,8 +16,7 @@ MEMORY = 5.0
 MAX_PUBLISHERS = 256
 
 
-@dataclass(slots=True)
-class _Publisher:
+class _Publisher(msgspec.Struct):
     """The smallest difference of the current and of the last period, s."""
 
     began: float
@@ -25,11 +24,10 @@ class _Publisher:
     last: float
 
 
-@dataclass(slots=True)
-class LatenessCheck:
+class LatenessCheck(msgspec.Struct):
     """All publishers, by their ids."""
 
-    _publishers: dict[bytes, _Publisher] = field(default_factory=dict)
+    _publishers: dict[bytes, _Publisher] = msgspec.field(default_factory=dict)
 
     def lateness(self, gid: bytes, stamp: int, now: float) -> float:
         """Return by how many s a message came later than the fastest. `stamp`: ns of its clock, `now`: s of ours."""

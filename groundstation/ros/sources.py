@@ -8,7 +8,8 @@ the one that drives.
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass, field
+
+import msgspec
 
 from dialects.axes import NEUTRAL, Axes
 
@@ -21,8 +22,7 @@ MAX_SOURCES = 64
 """Publishers that are known at once."""
 
 
-@dataclass(slots=True)
-class _Source:
+class _Source(msgspec.Struct):
     """One publisher."""
 
     axes: Axes = NEUTRAL
@@ -32,8 +32,7 @@ class _Source:
     """It must show neutral, or fall silent, before it drives again."""
 
 
-@dataclass(slots=True)
-class DemandSources:
+class DemandSources(msgspec.Struct):
     """All publishers of one program; a key is what tells them apart, e.g. topic and id.
 
     `push` what arrives, `remove` who leaves, and ask `axes` for the demand at a moment.
@@ -41,7 +40,7 @@ class DemandSources:
 
     driving: Hashable | None = None
     """Key of the publisher that drives; None: nobody does."""
-    _sources: dict[Hashable, _Source] = field(default_factory=dict)
+    _sources: dict[Hashable, _Source] = msgspec.field(default_factory=dict)
 
     def push(self, key: Hashable, axes: Axes, silence: float, now: float) -> bool:
         """Take a demand that ends after `silence` s. Returns False if it moves, and is ignored."""

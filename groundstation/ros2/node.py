@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
 
 from groundstation.ros.freshness import MAX_LATENESS, LatenessCheck
 from groundstation.ros.rmw.attachment import Attachment, gid_of
@@ -25,8 +26,7 @@ Serve = Callable[[Any], Awaitable[Values]]
 """Takes a request, returns the values of the response."""
 
 
-@dataclass(frozen=True, slots=True)
-class NodeNames:
+class NodeNames(msgspec.Struct, frozen=True):
     """How the node is called, and where it lives."""
 
     router: Router
@@ -35,8 +35,7 @@ class NodeNames:
     name: str
 
 
-@dataclass(slots=True)
-class _Plan:
+class _Plan(msgspec.Struct):
     """An endpoint before the session is open."""
 
     kind: Kind
@@ -45,8 +44,7 @@ class _Plan:
     qos: str
 
 
-@dataclass(slots=True)
-class _Topic:
+class _Topic(msgspec.Struct):
     """A topic that is published."""
 
     endpoint: Endpoint
@@ -54,8 +52,7 @@ class _Topic:
     count: int = 0
 
 
-@dataclass(slots=True)
-class Ros2Node:
+class Ros2Node(msgspec.Struct):
     """Add topics and services, then start(); close() at the end."""
 
     names: NodeNames
@@ -67,13 +64,13 @@ class Ros2Node:
     """With all types and services that it will have, prepared."""
     ready: bool = False
     """The node is seen by others."""
-    _plans: list[_Plan] = field(default_factory=list)
-    _topics: dict[str, _Topic] = field(default_factory=dict)
-    _takes: dict[int, Take] = field(default_factory=dict)
+    _plans: list[_Plan] = msgspec.field(default_factory=list)
+    _topics: dict[str, _Topic] = msgspec.field(default_factory=dict)
+    _takes: dict[int, Take] = msgspec.field(default_factory=dict)
     """Number of an endpoint -> what takes its messages; one topic may have several types."""
-    _serves: dict[int, Serve] = field(default_factory=dict)
-    _calls: set[asyncio.Task[None]] = field(default_factory=set)
-    _lateness: LatenessCheck = field(default_factory=LatenessCheck)
+    _serves: dict[int, Serve] = msgspec.field(default_factory=dict)
+    _calls: set[asyncio.Task[None]] = msgspec.field(default_factory=set)
+    _lateness: LatenessCheck = msgspec.field(default_factory=LatenessCheck)
     _wire: Wire | None = None
     _told: str = ""
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import zenoh
 
 from link.fleet.config import OPEN_TIMEOUT, apply_settings
@@ -27,8 +27,7 @@ SETTINGS: dict[str, Any] = {
 _LOCATOR = re.compile(r"(tcp|udp|tls|quic|ws)/\S+:\d+(\?\S*)?")
 
 
-@dataclass(frozen=True, slots=True)
-class Router:
+class Router(msgspec.Struct, frozen=True):
     """The router of a session."""
 
     locator: str

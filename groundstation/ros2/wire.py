@@ -11,9 +11,9 @@ import contextlib
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import msgspec
 import zenoh
 
 from groundstation.ros.rmw.attachment import Attachment, decode, gid_of
@@ -36,8 +36,7 @@ class Arrived(NamedTuple):
     attachment: Attachment
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
+class Request(msgspec.Struct, frozen=True):
     """A request to a service; `reply` takes the response, once."""
 
     endpoint: Endpoint
@@ -46,8 +45,7 @@ class Request:
     reply: Callable[[bytes], None]
 
 
-@dataclass(frozen=True, slots=True)
-class WireEvents:
+class WireEvents(msgspec.Struct, frozen=True):
     """Called in the event loop."""
 
     opened: Callable[[str], None]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 
-@dataclass(frozen=True, slots=True)
-class SimulatorRow:
+class SimulatorRow(msgspec.Struct, frozen=True):
     """One choice of the Connect screen."""
 
     kind: str

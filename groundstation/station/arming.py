@@ -11,8 +11,9 @@ The texts of refusals are made in commander.py.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum, auto
+
+import msgspec
 
 from dialects.enums import Autopilot, Command, ModeFlag, Result
 from dialects.modes import STANDING_MODES, Mode, custom_mode
@@ -40,8 +41,7 @@ class ArmStep(Enum):
     DONE = auto()
 
 
-@dataclass(slots=True)
-class ArmSequence:
+class ArmSequence(msgspec.Struct):
     """One attempt to arm one vehicle."""
 
     vehicle: VehicleState

@@ -5,14 +5,13 @@ A claim ends when the vehicle disarms, or when it becomes armed without us: then
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.vehicles.vehicle_state import VehicleState
 
 
-@dataclass(slots=True)
-class _Claim:
+class _Claim(msgspec.Struct):
     vehicle: VehicleState
     seen_armed: bool
     """The vehicle has reported armed while this claim was held."""

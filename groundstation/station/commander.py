@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from dialects.enums import Command, Result, Severity
 from dialects.messages import Message
@@ -24,8 +24,7 @@ DISARM_RETRY, DISARM_TIMEOUT = 1.5, 6.0
 """s after which disarm is repeated while the heartbeat reports armed, and after which that is reported as a failure."""
 
 
-@dataclass(slots=True)
-class _Disarm:
+class _Disarm(msgspec.Struct):
     vehicle: VehicleState
     due: float
     until: float

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.enums import Sensor
 from groundstation.doctor.facts import DoctorFacts, SensorBits, SettingFact
@@ -30,8 +31,7 @@ SENSOR_NAMES: Mapping[Sensor, str] = {
 """Bits of SYS_STATUS that are listed, in this order."""
 
 
-@dataclass(slots=True)
-class VehicleReport:
+class VehicleReport(msgspec.Struct):
     """What the doctor keeps of one vehicle."""
 
     checks: ArmingChecks

@@ -6,7 +6,8 @@ Two commands, because vehicles differ: the safety switch (locks our rover) and a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.enums import Command, Result
 from groundstation.snapshot import EmergencyProgress
@@ -26,8 +27,7 @@ ACK_TIMEOUT = 1.0
 """s without an acknowledgement after which the request counts as not acknowledged: three repeats of each command."""
 
 
-@dataclass(slots=True)
-class EmergencyLock:
+class EmergencyLock(msgspec.Struct):
     """One emergency stop, from the key until it is cleared."""
 
     vehicle: VehicleState

@@ -6,7 +6,7 @@ A vehicle that refuses REQUEST_OPERATOR_CONTROL forwards it to the ground statio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from dialects.enums import Command, Severity
 from dialects.messages import CommandLong
@@ -34,8 +34,7 @@ REPEAT_PERIOD = 1.0
 """s between our requests to a vehicle that has become free; the command client repeats each in between."""
 
 
-@dataclass(slots=True)
-class _Notice:
+class _Notice(msgspec.Struct):
     """Another ground station asks for a vehicle that we control."""
 
     contact: Contact
@@ -43,8 +42,7 @@ class _Notice:
     until: float
 
 
-@dataclass(slots=True)
-class _Release:
+class _Release(msgspec.Struct):
     """We release a vehicle: the final neutrals first, then the command."""
 
     contact: Contact
@@ -52,8 +50,7 @@ class _Release:
     sent: bool = False
 
 
-@dataclass(slots=True)
-class _Asked:
+class _Asked(msgspec.Struct):
     """We have asked for a vehicle."""
 
     contact: Contact

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from dialects.enums import Severity
 from dialects.modes import Mode
@@ -64,8 +65,7 @@ SECOND_STOP_WITHIN = 3.0
 """s after an emergency stop within which another one goes to every vehicle, not only to ours."""
 
 
-@dataclass(frozen=True, slots=True)
-class VehicleCommand:
+class VehicleCommand(msgspec.Struct, frozen=True):
     """How an intent becomes a command to the selected vehicle."""
 
     send: Callable[[Commander, VehicleState, Any, float], None]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.snapshot import LinkView
 from groundstation.views.links import LinkRow
@@ -18,8 +19,7 @@ MAX_PEERS = 4
 """Peers of a link that a row names."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Sample:
+class _Sample(msgspec.Struct, frozen=True):
     time: float
     report: LinkReport
     vehicle: SourceCount

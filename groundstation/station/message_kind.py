@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+
+import msgspec
 
 from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
 from dialects.messages import Message
@@ -20,8 +21,7 @@ Tap = Callable[[Message, float], None]
 """Gets each message of a kind, with the time."""
 
 
-@dataclass(slots=True)
-class MessageKind:
+class MessageKind(msgspec.Struct):
     """Counter and newest message of a kind."""
 
     newest: Message
@@ -30,7 +30,7 @@ class MessageKind:
     count: int = 0
     taps: tuple[Tap, ...] = ()
     """Who gets each message."""
-    _counts: deque[int] = field(default_factory=lambda: deque([0] * (BUCKETS + 1), BUCKETS + 1))
+    _counts: deque[int] = msgspec.field(default_factory=lambda: deque([0] * (BUCKETS + 1), BUCKETS + 1))
     """`count` at the ends of the last buckets."""
 
     def end_bucket(self) -> None:

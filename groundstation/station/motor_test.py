@@ -10,7 +10,8 @@ IDLE --key of a motor--> TURNING --release, another key, 2 s, lease, link, armed
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result, result_name
@@ -40,8 +41,7 @@ TIME_STEP, TIMES = 0.01, 10
 ALONE = "release the key, then press it again"
 
 
-@dataclass(slots=True)
-class _Run:
+class _Run(msgspec.Struct):
     """A motor that turns."""
 
     contact: Contact
@@ -58,8 +58,7 @@ class _Run:
     acknowledged: bool = False
 
 
-@dataclass(slots=True)
-class _Stop:
+class _Stop(msgspec.Struct):
     """Stops that are still to be sent."""
 
     contact: Contact

@@ -8,7 +8,8 @@ stops sending heartbeats.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import OperatorFlag as Flag
@@ -44,8 +45,7 @@ IGNORED_SHOWN = 3.0
 """s for which the reason is shown after the last event of a key that does not count."""
 
 
-@dataclass(slots=True)
-class _Ignored:
+class _Ignored(msgspec.Struct):
     """Why a drive key does not count, and its newest event."""
 
     reason: str = ""

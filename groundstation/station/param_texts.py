@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import MutableMapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from groundstation.formats.docs_files import DocsFile
 
 
-@dataclass(frozen=True, slots=True)
-class ParamTexts:
+class ParamTexts(msgspec.Struct, frozen=True):
     """Texts that the station's process has read before it starts."""
 
     files: tuple[DocsFile, ...] = ()
     """Files of the user; the first that fits counts."""
-    cache: MutableMapping[int, bytes] = field(default_factory=dict)
+    cache: MutableMapping[int, bytes] = msgspec.field(default_factory=dict)
     """Files that vehicles have served, by the checksum of the general file beside them."""
 
     @property

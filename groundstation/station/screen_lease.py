@@ -6,7 +6,7 @@ without a renewal for LEASE_TIMEOUT the station is neutral (operator.py). It nev
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 from dialects.enums import Severity
 from dialects.modes import Mode
@@ -37,8 +37,7 @@ _DRIVES = DriveKeyDown | DriveKeyUp | DrivePad | ReleasePad
 _CLOSED = SetKeyGate(open=False, reason="starting")
 
 
-@dataclass(slots=True, eq=False)
-class Screen:
+class Screen(msgspec.Struct, eq=False):
     """One screen. `number` counts those of this station from 0."""
 
     number: int
@@ -54,14 +53,12 @@ class Screen:
         return self.number * NUMBERS + 1
 
 
-@dataclass(slots=True)
-class _Asked:
+class _Asked(msgspec.Struct):
     screen: Screen
     until: float
 
 
-@dataclass(slots=True)
-class ScreenLease:
+class ScreenLease(msgspec.Struct):
     """The screens of one station."""
 
     operator: OperatorSession
@@ -69,7 +66,7 @@ class ScreenLease:
     log: MessageLog
     holder: Screen | None = None
     _asked: _Asked | None = None
-    _count: int = field(default=0)
+    _count: int = 0
 
     def join(self, name: str, now: float, *, watches: bool = False) -> Screen:
         """Take a screen; it drives if no other one does, unless it only `watches` at first."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from dialects.enums import Command, MissionType
 from groundstation.formats.plan import Plan, PlannedHome, for_vehicle
@@ -45,8 +46,7 @@ from groundstation.vehicles.services import VehicleServices
 from link.services.mission.items import Items, MissionItem
 
 
-@dataclass(frozen=True, slots=True)
-class ServiceCall:
+class ServiceCall(msgspec.Struct, frozen=True):
     """How an intent becomes a request."""
 
     service: str

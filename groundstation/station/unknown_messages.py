@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+
+import msgspec
 
 from groundstation.views.messages import MessageRequest, MessageRow, MessageView
 from link.core import LinkReport
@@ -16,8 +17,7 @@ Ids = tuple[int, int]
 """System and component."""
 
 
-@dataclass(slots=True)
-class _Unknown:
+class _Unknown(msgspec.Struct):
     meter: RateMeter
     count: int = 0
     length: int = 0
@@ -25,12 +25,11 @@ class _Unknown:
     at: float = 0.0
 
 
-@dataclass(slots=True)
-class UnknownMessages:
+class UnknownMessages(msgspec.Struct):
     """Kinds of unknown messages by source; at most as many as the links count. `window`: s of the rates."""
 
     window: float
-    _kinds: dict[Ids, dict[int, _Unknown]] = field(default_factory=dict)
+    _kinds: dict[Ids, dict[int, _Unknown]] = msgspec.field(default_factory=dict)
 
     def observe(self, reports: Iterable[LinkReport], now: float) -> None:
         """Take the counts of all links, about once a second."""

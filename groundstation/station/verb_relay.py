@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
 
 from dialects import messages as m
 from dialects.axes import NEUTRAL, axis_map, build_manual_control
@@ -43,8 +44,7 @@ ARMS_WITHIN = 5.0
 """s for a vehicle to answer the arming of a verb."""
 
 
-@dataclass(slots=True, eq=False)
-class Verb:
+class Verb(msgspec.Struct, eq=False):
     """One verb. `deliver` gets what the station receives, `report` its links, `refuse` why a demand is not sent."""
 
     name: str
@@ -55,7 +55,7 @@ class Verb:
     follows: bool = False
     """It keeps the session going that a verb has used just before."""
     heard_at: float = 0.0
-    demands: dict[tuple[type[m.Message], int], m.Message] = field(default_factory=dict)
+    demands: dict[tuple[type[m.Message], int], m.Message] = msgspec.field(default_factory=dict)
     """Kind and vehicle -> the newest demand that moves."""
     refused: str = ""
     """Why no more demands are taken."""
@@ -63,8 +63,7 @@ class Verb:
     """Takes a message of the verb that our role does not allow, and why."""
 
 
-@dataclass(slots=True)
-class _Ending:
+class _Ending(msgspec.Struct):
     """A demand that ends with neutral."""
 
     contact: Contact

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, TypeVar
+
+import msgspec
 
 from groundstation.views.base import View, ViewRequest
 
 _R = TypeVar("_R", bound=ViewRequest)
 
 
-@dataclass(frozen=True, slots=True)
-class ViewSource:
+class ViewSource(msgspec.Struct, frozen=True):
     """Where the views of one kind of request come from."""
 
     build: Callable[[Any, float, float], View | None]
@@ -22,8 +22,7 @@ class ViewSource:
     """Least time between two views, s. The first one after a screen opens is due at once."""
 
 
-@dataclass(slots=True)
-class _Watched:
+class _Watched(msgspec.Struct):
     """A request of the screen on top."""
 
     request: ViewRequest

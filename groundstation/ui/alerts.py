@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from enum import Enum, auto
+
+import msgspec
 
 from groundstation.intents.driving import HOLD_TIME
 from groundstation.snapshot import EmergencyProgress, VehicleView
@@ -30,8 +31,7 @@ class AlertLevel(Enum):
     """A key is held to confirm an action."""
 
 
-@dataclass(frozen=True, slots=True)
-class Alert:
+class Alert(msgspec.Struct, frozen=True):
     """One line of text."""
 
     level: AlertLevel

@@ -142,8 +142,6 @@ class ConsoleApp(App[int]):
         for each in self._ticks:
             each.start(self._own_loop)
         self._tmux.start(self._own_loop)
-        if self._terminal is not None:
-            self.call_after_refresh(interpreter.freeze)
         if self._gamepad is not None:
             self._gamepad.start()
 
@@ -220,6 +218,8 @@ class ConsoleApp(App[int]):
             self._quitting.handle_station_ended()
 
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
+        if self._terminal is not None and not self._snapshot.number:
+            self.call_after_refresh(interpreter.freeze)  # not before something is shown: it takes 30 ms
         self._replay.follow(snapshot.replay)
         self._snapshot = snapshot
         vehicle, operator = snapshot.vehicle, snapshot.operator

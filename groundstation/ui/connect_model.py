@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
+
+import msgspec
 
 from groundstation.intents.links import AddLink
 from groundstation.recent.recent import RecentEndpoint, RecentEndpoints
@@ -30,8 +31,7 @@ class Panel(IntEnum):
     """Only where there is room for it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(msgspec.Struct, frozen=True):
     """What ENTER would do."""
 
     text: str

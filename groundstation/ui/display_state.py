@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
 
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.input.keymap import Keymap
@@ -14,8 +15,7 @@ from groundstation.ui.keys.keynames import format_key, main_key
 from groundstation.ui.keys.pad_state import PadState
 
 
-@dataclass(frozen=True, slots=True)
-class ScreenKey:
+class ScreenKey(msgspec.Struct, frozen=True):
     """A key of one screen, beside the actions that work everywhere."""
 
     key: str
@@ -25,8 +25,7 @@ class ScreenKey:
     help: str
 
 
-@dataclass(frozen=True, slots=True)
-class ScreenInfo:
+class ScreenInfo(msgspec.Struct, frozen=True):
     """What the parts that all screens have must know of the one they are on."""
 
     id: str = "drive"
@@ -46,8 +45,7 @@ class ScreenInfo:
 DRIVE_INFO = ScreenInfo()
 
 
-@dataclass(frozen=True, slots=True)
-class DisplayState:
+class DisplayState(msgspec.Struct, frozen=True):
     """Input of the alert rules, of every instrument and of every screen."""
 
     snapshot: Snapshot
@@ -76,7 +74,7 @@ class DisplayState:
     """Nothing may move by itself."""
     gamepad: PadState | None = None
     """The gamepad; None where none was asked for."""
-    kept: Mapping[type, Any] = field(default_factory=dict)
+    kept: Mapping[type, Any] = msgspec.field(default_factory=dict)
     """What screens keep while they are closed, by its class (ScreenContext.keep)."""
 
     def key(self, action: str) -> str:

@@ -13,7 +13,6 @@ import sys
 from collections import deque
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
@@ -34,8 +33,7 @@ _DONE, _PARTLY = 0, 8
 """Exit codes of the verb (groundstation/verbs/exit_codes.py, which loads the dialect)."""
 
 
-@dataclass(frozen=True, slots=True)
-class ExportRequest:
+class ExportRequest(msgspec.Struct, frozen=True):
     """What to write of which log."""
 
     log: Path

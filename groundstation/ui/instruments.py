@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, TypeVar
+
+import msgspec
 
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.hints import hint
@@ -30,8 +31,7 @@ from groundstation.ui.widgets.waiting import WaitingPage, WaitingValue
 Value = TypeVar("Value")
 
 
-@dataclass(frozen=True, slots=True)
-class InstrumentRow:
+class InstrumentRow(msgspec.Struct, frozen=True):
     """One instrument of the Drive screen."""
 
     id: str

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 MAX_HERE = 500
 """Files that are listed, the newest ones."""
@@ -13,8 +14,7 @@ LOG_ENDINGS = (".tlog", ".bin", ".ulg")
 """Endings of telemetry and flight logs."""
 
 
-@dataclass(frozen=True, slots=True)
-class LocalFile:
+class LocalFile(msgspec.Struct, frozen=True):
     """A file."""
 
     name: str

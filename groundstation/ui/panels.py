@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 BORDERS = 2
 """Rows of the border of a panel."""
@@ -11,8 +11,7 @@ LEAST_CHOSEN = 3
 """Rows that the chosen panel needs inside its border; below that the others are hidden."""
 
 
-@dataclass(frozen=True, slots=True)
-class PanelHeights:
+class PanelHeights(msgspec.Struct, frozen=True):
     """Rows inside the border of each panel: what it needs, and the least that it can be cut to."""
 
     wanted: tuple[int, ...]

@@ -7,9 +7,10 @@ only while it is shown.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeVar
+
+import msgspec
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.display_state import DisplayState
@@ -37,12 +38,11 @@ ROWS = 60
 """Rows of messages that are requested: as many as the largest terminal shows."""
 
 
-@dataclass(frozen=True, slots=True)
-class PaneInput:
+class PaneInput(msgspec.Struct, frozen=True):
     """What a pane draws from."""
 
     now: DisplayState
-    views: Mapping[type[View], View] = field(default_factory=dict)
+    views: Mapping[type[View], View] = msgspec.field(default_factory=dict)
     """The newest view of each kind."""
     zoom: int = 0
     plans: PlanCopies | None = None
@@ -54,8 +54,7 @@ class PaneInput:
         return found if isinstance(found, kind) else None
 
 
-@dataclass(frozen=True, slots=True)
-class Pane:
+class Pane(msgspec.Struct, frozen=True):
     """One pane."""
 
     id: str

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 ANSWER_WITHIN = 10.0
 """s within which a question must be answered; for one with a word, between two of its letters."""
 
 
-@dataclass(slots=True)
-class Question:
+class Question(msgspec.Struct):
     """A question of a screen."""
 
     text: Callable[[], str]

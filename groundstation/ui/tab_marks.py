@@ -6,7 +6,8 @@ A mark is a function of the display state: of the snapshot, or of what a screen 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.look.colours import BLUE, RED
@@ -14,8 +15,7 @@ from groundstation.ui.map.model import MapModel
 from groundstation.ui.params.model import ParamModel
 
 
-@dataclass(frozen=True, slots=True)
-class TabMark:
+class TabMark(msgspec.Struct, frozen=True):
     """A mark behind the name of a screen."""
 
     text: str

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.views.requests import RequestLine, RequestsView
 
@@ -17,8 +18,7 @@ SHOWN_ENDED = 4
 """Requests that have ended and are still listed."""
 
 
-@dataclass(frozen=True, slots=True)
-class Speed:
+class Speed(msgspec.Struct, frozen=True):
     """How fast a transfer goes."""
 
     per_second: float

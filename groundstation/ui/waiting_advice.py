@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum, auto
+
+import msgspec
 
 from groundstation.snapshot import LinkView, Snapshot
 from link.endpoint import ANY_ADDRESSES, Endpoint, EndpointError, is_loopback, parse_endpoint
@@ -25,8 +26,7 @@ class AdviceKind(Enum):
     WARNING = auto()
 
 
-@dataclass(frozen=True, slots=True)
-class Advice:
+class Advice(msgspec.Struct, frozen=True):
     """One line."""
 
     kind: AdviceKind

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Command, Result, Sensor
@@ -20,8 +20,7 @@ READY = "ready to arm"
 """What our rover says when nothing is wrong."""
 
 
-@dataclass(slots=True)
-class ArmingChecks:
+class ArmingChecks(msgspec.Struct):
     """The newest report of one vehicle. `component` is the one that the station talks to."""
 
     component: int
@@ -29,7 +28,7 @@ class ArmingChecks:
     checked_at: float | None = None
     """When the vehicle has accepted a request for the checks, whoever has made it."""
 
-    _texts: dict[str, float] = field(default_factory=dict)
+    _texts: dict[str, float] = msgspec.field(default_factory=dict)
     """Reason -> when it arrived."""
 
     def receive(self, received: Received, now: float) -> None:

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 ParamCheck = Callable[[float, int], str | None]
 """Takes the value and our system id; returns a warning that names the remedy, or None."""
 
 
-@dataclass(frozen=True, slots=True)
-class AutopilotSettings:
+class AutopilotSettings(msgspec.Struct, frozen=True):
     """The parameters of one autopilot that decide what it does with our demands, and without us."""
 
     checks: Mapping[str, ParamCheck]
     """Parameter -> its check."""
     without_link: Callable[[Mapping[str, float]], str | None]
     """Takes the known values; returns what the vehicle does when it loses us, or None if that is not known."""
-    former_names: Mapping[str, str] = field(default_factory=dict)
+    former_names: Mapping[str, str] = msgspec.field(default_factory=dict)
     """Parameter -> its name in older versions; a vehicle has one of them. Both are in `checks`."""
     obeyed: tuple[str, ...] = ()
     """Parameters with the ground station that the vehicle obeys; their warning goes before all others."""

@@ -8,7 +8,8 @@ compass_calibration.py, its RC sticks in stick_calibration.py. PX4 reports both 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command
@@ -46,8 +47,7 @@ CALIBRATION_TEXT = "[cal] "
 """What PX4's texts about a calibration begin with."""
 
 
-@dataclass(frozen=True, slots=True)
-class CalibrationKind:
+class CalibrationKind(msgspec.Struct, frozen=True):
     """What can be calibrated."""
 
     title: str

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from dialects import messages as m
 
@@ -22,17 +23,16 @@ FAILURES: Mapping[int, str] = {
 """MAG_CAL_STATUS -> how it ended."""
 
 
-@dataclass(slots=True)
-class CompassCalibration:
+class CompassCalibration(msgspec.Struct):
     """The compasses of one vehicle by their number, from 0."""
 
     mask: int = 0
     """Bitmask of the compasses that are calibrated."""
-    progress: dict[int, tuple[int, int]] = field(default_factory=dict)
+    progress: dict[int, tuple[int, int]] = msgspec.field(default_factory=dict)
     """Percent and attempt of those that measure."""
-    fits: dict[int, float] = field(default_factory=dict)
+    fits: dict[int, float] = msgspec.field(default_factory=dict)
     """RMS of the residuals of those that are done, mGauss; less is better."""
-    failed: dict[int, str] = field(default_factory=dict)
+    failed: dict[int, str] = msgspec.field(default_factory=dict)
     saved: bool = False
     """The vehicle has written the result by itself."""
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from dialects.enums import ControlFlag
 from dialects.messages import ControlStatus, RoverControl
 
 
-@dataclass(slots=True)
-class ControlReport:
+class ControlReport(msgspec.Struct):
     """The newest report of one vehicle."""
 
     driver: int | None = None

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum, auto
 from pathlib import PurePosixPath
+
+import msgspec
 
 
 class DiskWork(Enum):
@@ -22,8 +23,7 @@ class DiskWork(Enum):
     """Compute the checksum of a file."""
 
 
-@dataclass(frozen=True, slots=True)
-class DiskJob:
+class DiskJob(msgspec.Struct, frozen=True):
     """One job."""
 
     number: int
@@ -34,8 +34,7 @@ class DiskJob:
     overwrite: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class DiskResult:
+class DiskResult(msgspec.Struct, frozen=True):
     """The answer to a job."""
 
     number: int

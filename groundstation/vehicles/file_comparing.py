@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import PurePath
+
+import msgspec
 
 from groundstation.intents.files import DIFFERS, SAME
 from groundstation.vehicles.disk_jobs import DiskJob, DiskResult, DiskWork
@@ -14,8 +15,7 @@ FIRST_STEP = -2_000_000
 """Numbers of the steps of comparisons count down from here, below those of transfers."""
 
 
-@dataclass(slots=True)
-class _Comparison:
+class _Comparison(msgspec.Struct):
     number: int
     path: str
     """On the vehicle."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+
+import msgspec
 
 from dialects.axes import Axes, AxisMap, axis_map
 from dialects.enums import Severity
@@ -28,8 +29,7 @@ from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
 
 
-@dataclass(slots=True)
-class Contact:
+class Contact(msgspec.Struct):
     """A vehicle's state and what the station tracks for it."""
 
     state: VehicleState
@@ -40,8 +40,8 @@ class Contact:
     details: VehicleDetails
     drive: DriveReadings
     settings_check: SettingsCheck | None = None
-    demand_stream: DemandStream = field(default_factory=lambda: DemandStream(DemandCopies()))
-    dialect_probe: DialectProbe = field(default_factory=DialectProbe)
+    demand_stream: DemandStream = msgspec.field(default_factory=lambda: DemandStream(DemandCopies()))
+    dialect_probe: DialectProbe = msgspec.field(default_factory=DialectProbe)
     services: VehicleServices | None = None
     """Parameters, plans and files; None before the first request."""
     ours: bool = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.requests import RequestReport
@@ -15,8 +15,7 @@ MAX_ENTRIES = 1000
 """Entries of a folder that are kept."""
 
 
-@dataclass(frozen=True, slots=True)
-class ListedFolder:
+class ListedFolder(msgspec.Struct, frozen=True):
     """One folder."""
 
     entries: tuple[Entry, ...] = ()

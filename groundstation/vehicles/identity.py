@@ -5,7 +5,7 @@ Requests for messages are answered by COMMAND_ACK one at a time, so whoever owns
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Capability
@@ -20,8 +20,7 @@ NOT_SELECTABLE = 2
 """MAV_MODE_PROPERTY_NOT_USER_SELECTABLE."""
 
 
-@dataclass(frozen=True, slots=True)
-class RequestedMessage:
+class RequestedMessage(msgspec.Struct, frozen=True):
     """Parameters 1 and 2 of REQUEST_MESSAGE."""
 
     message: int
@@ -32,8 +31,7 @@ VERSION = RequestedMessage(m.AutopilotVersion.id)
 METADATA = RequestedMessage(m.ComponentMetadata.id)
 
 
-@dataclass(frozen=True, slots=True)
-class AvailableMode:
+class AvailableMode(msgspec.Struct, frozen=True):
     """One mode, as AVAILABLE_MODES reports it."""
 
     name: str

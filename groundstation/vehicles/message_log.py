@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import islice, takewhile
 
 import msgspec
@@ -41,8 +40,7 @@ CHUNK_TIMEOUT = 2.0
 """s after which an incomplete text is shown without its missing chunks."""
 
 
-@dataclass(slots=True)
-class _Line:
+class _Line(msgspec.Struct):
     time: float
     severity: int
     label: str
@@ -55,8 +53,7 @@ class _Line:
     count: int = 1
 
 
-@dataclass(slots=True)
-class _Chunks:
+class _Chunks(msgspec.Struct):
     """An incomplete text."""
 
     started: float

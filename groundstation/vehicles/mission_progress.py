@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enum_names import enum_names
@@ -26,8 +27,7 @@ MAX_LEGS = 40
 """Legs in a snapshot: more cannot be told apart on a line of the screen."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Route:
+class _Route(msgspec.Struct, frozen=True):
     """The items of a plan that have a place."""
 
     places: tuple[tuple[int, Place], ...] = ()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result, result_name
@@ -18,8 +19,7 @@ CONFIRM_WITHIN = 3.0
 """s for the heartbeat to report the mode that was accepted: three heartbeats."""
 
 
-@dataclass(frozen=True, slots=True)
-class VehicleMode:
+class VehicleMode(msgspec.Struct, frozen=True):
     """A mode that the operator may choose."""
 
     name: str
@@ -33,8 +33,7 @@ class VehicleMode:
         return self.name not in DRIVABLE_MODES | STANDING_MODES
 
 
-@dataclass(slots=True)
-class _Change:
+class _Change(msgspec.Struct):
     """A change of mode under way."""
 
     number: int

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command
@@ -24,8 +25,7 @@ ARDUPILOT_INSTANCES: Mapping[float, int] = {70: 1, 26: 2, 73: 3, 74: 4}
 (AR_Motors/AP_MotorsUGV.h, motor_test_order)."""
 
 
-@dataclass(frozen=True, slots=True)
-class TestedMotor:
+class TestedMotor(msgspec.Struct, frozen=True):
     """A motor that can be tested."""
 
     name: str

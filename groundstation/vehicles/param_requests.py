@@ -6,8 +6,9 @@ How integers are encoded must be known first: requests wait until the vehicle's 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from dialects.enums import ParamErrorCode
 from dialects.result_texts import param_error_text
@@ -26,8 +27,7 @@ FILE_PATIENCE = 3
 """Requests for param.pck without a reply before the list is requested: 2 s, for vehicles without a file service."""
 
 
-@dataclass(slots=True)
-class _Access:
+class _Access(msgspec.Struct):
     """A read, or a set (`wanted`), of one parameter."""
 
     number: int

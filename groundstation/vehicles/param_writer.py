@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.vehicles.param_requests import ParamRequests
 from groundstation.vehicles.requests import RequestBook, RequestReport, RequestState
@@ -12,8 +13,7 @@ MAX_CHANGES = 2000
 """Parameters of one request; more than any vehicle has."""
 
 
-@dataclass(slots=True)
-class _Write:
+class _Write(msgspec.Struct):
     """A request under way. Its sets are requests of their own, with numbers below 0."""
 
     number: int

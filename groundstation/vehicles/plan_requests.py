@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.enums import MissionResult, MissionType
 from dialects.result_texts import mission_result_name
@@ -21,8 +22,7 @@ _NAMES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class _PlanJob:
+class _PlanJob(msgspec.Struct, frozen=True):
     """A request that waits, or is under way."""
 
     number: int

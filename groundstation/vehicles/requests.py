@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
 from enum import Enum
+
+import msgspec
+from msgspec.structs import replace
 
 from dialects.enums import Severity
 
@@ -32,8 +34,7 @@ class RequestState(Enum):
         return self is not RequestState.RUNNING
 
 
-@dataclass(frozen=True, slots=True)
-class RequestReport:
+class RequestReport(msgspec.Struct, frozen=True):
     """How one request stands."""
 
     number: int

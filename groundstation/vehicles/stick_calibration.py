@@ -8,7 +8,8 @@ vehicle RC_CHANNELS may be a ground station's demand, and the sticks may drive: 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects import messages as m
 from groundstation.views.doctor import ParamFix, StickRow
@@ -26,8 +27,7 @@ RATE = 10.0
 """Hz of RC_CHANNELS while it runs: an end that is held for 0.2 s is seen."""
 
 
-@dataclass(frozen=True, slots=True)
-class Travel:
+class Travel(msgspec.Struct, frozen=True):
     """Where a channel has been, us."""
 
     low: int

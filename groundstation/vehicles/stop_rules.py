@@ -7,17 +7,17 @@ vehicle, has no bound; nothing is assumed.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from dialects.enums import VehicleType
 from groundstation.snapshot.drive import StopBound
 
 
-@dataclass(frozen=True, slots=True)
-class StopFacts:
+class StopFacts(msgspec.Struct, frozen=True):
     """What is known of a vehicle. Times in s."""
 
-    params: Mapping[str, float] = field(default_factory=dict)
+    params: Mapping[str, float] = msgspec.field(default_factory=dict)
     """Parameters that were read."""
     kind: int = VehicleType.GROUND_ROVER
     """MAV_TYPE."""
@@ -50,8 +50,7 @@ class StopFacts:
 StopRule = Callable[[StopFacts], StopBound]
 
 
-@dataclass(frozen=True, slots=True)
-class StopRules:
+class StopRules(msgspec.Struct, frozen=True):
     """The rules of one autopilot, most important first, and the parameters that they read."""
 
     rules: tuple[StopRule, ...]

@@ -14,7 +14,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Autopilot, DataStream, Result
@@ -45,8 +46,7 @@ REBOOT_PERIOD = 5.0
 otherwise start all requests again: 200 PARAM_REQUEST_READ/s to each such vehicle."""
 
 
-@dataclass(frozen=True, slots=True)
-class StreamRate:
+class StreamRate(msgspec.Struct, frozen=True):
     """Rate at which the Drive screen needs a message, Hz, and ArduPilot's stream group that contains it."""
 
     rate: float

@@ -7,8 +7,9 @@ written under its name only when it is whole. If the vehicle is lost meanwhile, 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import Enum, auto
+
+import msgspec
 
 from dialects.enums import Autopilot
 from groundstation.vehicles.disk_jobs import DiskJob, DiskResult, DiskWork, name_problem
@@ -34,8 +35,7 @@ class _Phase(Enum):
     """For the vehicle to be back."""
 
 
-@dataclass(slots=True)
-class _Transfer:
+class _Transfer(msgspec.Struct):
     number: int
     remote: str
     """Path on the vehicle; "" for a log that has none."""

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from dialects.enums import Autopilot, VehicleType
 from dialects.messages import Heartbeat, Message
-from link.protocol.peer_table import MAX_PEERS
 
 MAX_VEHICLES = 128
 """A hundred and some. A flood of invented system ids must not grow a table."""
-
-PLACES = MAX_VEHICLES + MAX_PEERS
-"""Peers on one link: each vehicle may have an address of its own, and ground stations come beside them."""
 
 
 def is_vehicle(message: Message) -> bool:

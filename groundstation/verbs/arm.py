@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects import messages as m
 from dialects.enums import Command, Result
@@ -30,8 +31,7 @@ ANSWER_WITHIN = 0.3
 """s for SYS_STATUS behind the acknowledgement of its request; a vehicle without pre-arm checks never reports them."""
 
 
-@dataclass(slots=True)
-class ArmJob:
+class ArmJob(msgspec.Struct):
     """The sequence as a request."""
 
     number: int

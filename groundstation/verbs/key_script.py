@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from dialects.axes import Axes
 from groundstation.actions import OperatorAction
@@ -27,8 +28,7 @@ _PLAYED = (DriveKeyDown, Stop, EmergencyStop, ScaleLimits, SetStyle, SetMode)
 """What keys of a script may request, beside what `when_armed` of an action does."""
 
 
-@dataclass(frozen=True, slots=True)
-class KeyLine:
+class KeyLine(msgspec.Struct, frozen=True):
     """One line of a script."""
 
     at: float

@@ -10,8 +10,9 @@ import signal
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from dialects.extra.errors import DialectError
 from dialects.extra.option import use_dialect

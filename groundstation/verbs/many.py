@@ -9,8 +9,9 @@ import argparse
 import asyncio
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from groundstation.config.groups import VehicleGroup
 from groundstation.formats.errors import FileFormatError
@@ -40,8 +41,7 @@ RESULTS = {
 """Exit code of one vehicle -> how the table says it."""
 
 
-@dataclass(frozen=True, slots=True)
-class VehicleResult:
+class VehicleResult(msgspec.Struct, frozen=True):
     """How the verb ended for one vehicle."""
 
     system: int

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from operator import eq, ge, gt, le, lt, ne
 from typing import Any
+
+import msgspec
 
 from dialects.enum_names import enum_names
 from dialects.field_values import field_value
@@ -21,8 +22,7 @@ _SIGNS: dict[str, Callable[[Any, Any], bool]] = {
 _INDEXED = re.compile(r"(?P<name>\w+)\[(?P<index>\d{1,3})\]")
 
 
-@dataclass(frozen=True, slots=True)
-class FieldPath:
+class FieldPath(msgspec.Struct, frozen=True):
     """A field of a message, or one item of it."""
 
     name: str
@@ -39,8 +39,7 @@ class FieldPath:
         return value[self.index] if isinstance(value, list) and self.index < len(value) else None
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
+class Condition(msgspec.Struct, frozen=True):
     """What a field is compared with."""
 
     field: FieldPath

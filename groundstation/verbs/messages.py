@@ -8,8 +8,9 @@ import csv
 import fnmatch
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
+
+import msgspec
 
 from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
 from dialects.field_values import field_value
@@ -32,8 +33,7 @@ QUIET_AFTER = 2.0
 """s without the message before `watch` says so."""
 
 
-@dataclass(slots=True)
-class _Count:
+class _Count(msgspec.Struct):
     count: int = 0
     bytes: int = 0
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import msgspec
+
 from dialects.enums import Autopilot, Command, Result, result_name
 from dialects.modes import Mode, custom_mode
 from groundstation.snapshot import EmergencyProgress
@@ -97,8 +99,7 @@ def hold_job(number: int, state: VehicleState, services: VehicleServices, until:
     return RepeatedCommand(number, Command.DO_SET_MODE, send, is_held, "another mode", until)
 
 
-@dataclass(slots=True)
-class EmergencyJob:
+class EmergencyJob(msgspec.Struct):
     """The emergency stop, as the station makes it (station/emergency.py)."""
 
     number: int

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from dialects.enums import MissionType
 from groundstation.formats.param_form import ParamForm
@@ -91,14 +92,13 @@ else:
     stops = LaterModule("stops")
 
 
-@dataclass(frozen=True, slots=True)
-class VerbAction:
+class VerbAction(msgspec.Struct, frozen=True):
     """One action of a verb."""
 
     help: str
     run: Callable[[Any, argparse.Namespace, Output], Awaitable[int]]
     """Gets a VerbSession, a StationSession, or None; returns the exit code."""
-    arguments: tuple[Argument, ...] = field(default=())
+    arguments: tuple[Argument, ...] = ()
     aliases: tuple[str, ...] = ()
     """Other words for it."""
     offline: bool = False

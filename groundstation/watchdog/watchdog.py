@@ -11,6 +11,8 @@ import math
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
+import msgspec
+
 from dialects import codec
 from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, Message, RoverDriveStatus, VfrHud
@@ -49,8 +51,7 @@ _STATION = {
 }
 
 
-@dataclass(slots=True)
-class _Target:
+class _Target(msgspec.Struct):
     """A vehicle that gets neutral."""
 
     vehicle: DrivenVehicle

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import hmac
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 TOKEN = "token"
 """Parameter of the first address."""
@@ -29,8 +30,7 @@ HEADERS = {
 """Of every answer: nothing from outside is loaded, no other page embeds this one, and the token is passed to nobody."""
 
 
-@dataclass(frozen=True, slots=True)
-class WebRequest:
+class WebRequest(msgspec.Struct, frozen=True):
     """What decides of a request; headers as often as they were sent."""
 
     path: str
@@ -41,16 +41,14 @@ class WebRequest:
     cookie: str | None
 
 
-@dataclass(frozen=True, slots=True)
-class Refusal:
+class Refusal(msgspec.Struct, frozen=True):
     """An HTTP status and one line."""
 
     status: int
     line: str
 
 
-@dataclass(frozen=True, slots=True)
-class Guard:
+class Guard(msgspec.Struct, frozen=True):
     """The rules for one port and one token."""
 
     port: int

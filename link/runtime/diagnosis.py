@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from enum import Enum
 from typing import Generic, TypeVar
 
@@ -43,8 +42,7 @@ class Finding(msgspec.Struct, frozen=True):
     """What to do; "" without a remedy."""
 
 
-@dataclass(frozen=True, slots=True)
-class Row(Generic[Found]):
+class Row(msgspec.Struct, Generic[Found], frozen=True):
     """One row of a report."""
 
     id: str
@@ -52,8 +50,7 @@ class Row(Generic[Found]):
     found: Found
 
 
-@dataclass(frozen=True, slots=True)
-class Check(Generic[Facts, Found]):
+class Check(msgspec.Struct, Generic[Facts, Found], frozen=True):
     """One row of a table: its function judges the facts."""
 
     id: str

@@ -8,7 +8,7 @@ from groundstation.intents.session import RenewLease, SetKeyGate
 from groundstation.intents.watch import Watch
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
-from groundstation.vehicles.vehicle_heartbeat import PLACES
+from groundstation.vehicles.places import PLACES
 from groundstation.views.base import View, ViewRequest
 from link.protocol.channel import Channel
 from tests.groundstation.fake_vehicle import FakeVehicle

@@ -7,16 +7,15 @@ https://github.com/ros2/rmw_zenoh/blob/rolling/docs/design.md#publishers
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 
+import msgspec
 import xxhash
 
 GID_SIZE = 16
 _LAYOUT = struct.Struct("<qqB16s")
 
 
-@dataclass(frozen=True, slots=True)
-class Attachment:
+class Attachment(msgspec.Struct, frozen=True):
     """One attachment."""
 
     number: int

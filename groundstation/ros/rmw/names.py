@@ -9,8 +9,9 @@ In a token each slash of a name is a percent sign. https://github.com/ros2/rmw_z
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from enum import StrEnum
+
+import msgspec
 
 ADMIN_SPACE = "@ros2_lv"
 RELIABLE_10, BEST_EFFORT_5 = "::,10:,:,:,,", "2::,5:,:,:,,"
@@ -30,8 +31,7 @@ class Kind(StrEnum):
     CLIENT = "SC"
 
 
-@dataclass(frozen=True, slots=True)
-class Node:
+class Node(msgspec.Struct, frozen=True):
     """A node of one session. `namespace` begins with a slash, as in ROS."""
 
     domain: int
@@ -57,8 +57,7 @@ class Node:
         return f"{ADMIN_SPACE}/{self.domain}/{self.session}/0/{entity}/{kind}/{names}"
 
 
-@dataclass(frozen=True, slots=True)
-class Endpoint:
+class Endpoint(msgspec.Struct, frozen=True):
     """A publisher, subscription, service or client of a node. `number` is > 0 and its own in the session."""
 
     node: Node

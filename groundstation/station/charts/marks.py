@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.intents.driving import PAD, STOP_KEY, DriveKeyDown, DrivePad, EmergencyStop, Stop
 from groundstation.intents.union import AnyIntent
@@ -37,8 +38,7 @@ class MarkList:
         return len(self.take(after, limit))
 
 
-@dataclass(frozen=True, slots=True)
-class _Seen:
+class _Seen(msgspec.Struct, frozen=True):
     """The state of a vehicle of which changes are marked."""
 
     system: int

@@ -5,7 +5,8 @@ from __future__ import annotations
 from array import array
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 SPAN = 600.0
 """s that are kept."""
@@ -22,8 +23,7 @@ CAPACITY = 2 * (round(SPAN / SLOT) + 1) + SPARE
 """Points of one field at most: 6252, of 24 bytes each 150 kB. All 48 fields of a screen: 7 MB."""
 
 
-@dataclass(slots=True)
-class _Slot:
+class _Slot(msgspec.Struct):
     """The samples of one slot: the lowest and the highest, each with its time."""
 
     ends: float

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+
+import msgspec
 
 from groundstation.ui.charts.series import SeriesSpec
 from groundstation.views.charts import FieldId, ReadyView
@@ -12,16 +13,14 @@ MAX_CHARTS, MAX_LINES = 6, 4
 """Charts of a view, and lines of a chart."""
 
 
-@dataclass(slots=True)
-class Chart:
+class Chart(msgspec.Struct):
     """Lines on one scale."""
 
     title: str
-    lines: list[SeriesSpec] = field(default_factory=list)
+    lines: list[SeriesSpec] = msgspec.field(default_factory=list)
 
 
-@dataclass(slots=True)
-class NamedView:
+class NamedView(msgspec.Struct):
     """Charts under a name."""
 
     name: str

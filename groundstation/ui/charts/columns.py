@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.ui.charts.points import Points
 
 
-@dataclass(slots=True)
-class DotColumn:
+class DotColumn(msgspec.Struct):
     """The points in one column of dots."""
 
     number: int

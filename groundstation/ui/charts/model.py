@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, replace
 from pathlib import Path
+
+import msgspec
+from msgspec.structs import replace
 
 from groundstation.intents.charts import PinSeries
 from groundstation.ui.charts.chart_set import ChartSet, NamedView, next_view, ready_view
@@ -30,8 +32,7 @@ from groundstation.views.charts import (
 MAX_MARKS = 500
 
 
-@dataclass(frozen=True, slots=True)
-class Stats:
+class Stats(msgspec.Struct, frozen=True):
     """Lowest, mean and highest value of a line in the window."""
 
     low: float
@@ -254,7 +255,7 @@ class ChartsModel:
     def _replace(self, **changes: object) -> None:
         spec = self.charts.chosen_spec
         if spec is not None:
-            self.charts.replace_chosen(replace(spec, **changes))  # type: ignore[arg-type]
+            self.charts.replace_chosen(replace(spec, **changes))
             self._forget_lines()
 
     def _forget_lines(self) -> None:

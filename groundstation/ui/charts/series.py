@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.ui.charts.points import Points, PointStore
 from groundstation.views.charts import FieldId, FieldInfo
@@ -12,8 +13,7 @@ LEAST_STEP = 0.15
 """s between two points of which the rate is taken: those of one slot of the station are closer."""
 
 
-@dataclass(frozen=True, slots=True)
-class SeriesSpec:
+class SeriesSpec(msgspec.Struct, frozen=True):
     """What a line shows: (field - minus) x factor, or its change a second."""
 
     field: FieldId

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
+
+import msgspec
 
 from groundstation.ui.exports import LOG_SUFFIX, NAMES, ExportRequest, Exports, parse_request
 from groundstation.ui.local_files import short_path
@@ -27,8 +28,7 @@ class ExportScreen(Protocol):
         """Ask before an action."""
 
 
-@dataclass(frozen=True, slots=True)
-class ChosenLog:
+class ChosenLog(msgspec.Struct, frozen=True):
     """What the key exports."""
 
     path: Path

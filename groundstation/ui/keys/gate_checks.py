@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.ui.keys.key_gate import LENT, REPLAY, GateClosure
 
 
-@dataclass(frozen=True, slots=True)
-class AppCondition:
+class AppCondition(msgspec.Struct, frozen=True):
     """What decides, as it is now."""
 
     leaving: GateClosure | None

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol
+
+import msgspec
 
 from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
 from groundstation.input.keymap import SPLIT, KeyEvent, Keymap
@@ -65,8 +66,7 @@ class GateLevel(Enum):
     """Only stops that are no text: a text field has the keys, and SPACE is a letter there."""
 
 
-@dataclass(frozen=True, slots=True)
-class GateClosure:
+class GateClosure(msgspec.Struct, frozen=True):
     """Why the gate is not open."""
 
     reason: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from groundstation.input.pad import PadFrame
 from groundstation.input.pad_mapping import BUTTONS, PadMapping
@@ -10,8 +10,7 @@ from groundstation.input.pad_mapping import BUTTONS, PadMapping
 ARM = "vehicle.arm"
 
 
-@dataclass(frozen=True, slots=True)
-class PadState:
+class PadState(msgspec.Struct, frozen=True):
     """The gamepad, as far as the screen knows it."""
 
     frame: PadFrame

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.log.filter import SEVERITY_NAMES, first_time, tag_of
@@ -36,8 +37,7 @@ PLACES = {"you": "you, at this ground station", "line": "the : line of this grou
 """Label of a line without a vehicle -> its source."""
 
 
-@dataclass(frozen=True, slots=True)
-class DetailRow:
+class DetailRow(msgspec.Struct, frozen=True):
     """A named text, wrapped by the widget."""
 
     name: str
@@ -46,8 +46,7 @@ class DetailRow:
     """MAV_SEVERITY, for its colour."""
 
 
-@dataclass(frozen=True, slots=True)
-class LogDetail:
+class LogDetail(msgspec.Struct, frozen=True):
     """Everything of one line."""
 
     title: str = "detail"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from groundstation.snapshot import LogLine
 
@@ -25,8 +25,7 @@ LIMIT = ">="
 """Begins the word of a filter that names the mildest severity to show, e.g. ">=warning"."""
 
 
-@dataclass(frozen=True, slots=True)
-class LogFilter:
+class LogFilter(msgspec.Struct, frozen=True):
     """Which lines are shown."""
 
     text: str = ""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.log.filter import first_time
@@ -19,8 +20,7 @@ REQUESTS = ("you", COMMAND_LINE)
 """Labels of lines (LogLine.label)."""
 
 
-@dataclass(frozen=True, slots=True)
-class LogGroup:
+class LogGroup(msgspec.Struct, frozen=True):
     """What belongs to one answer; empty where a line stands alone."""
 
     request: LogLine | None = None

@@ -5,7 +5,9 @@ from __future__ import annotations
 import time
 from bisect import bisect_left
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.log.filter import LogFilter, tag_of
@@ -17,8 +19,7 @@ KEPT = 2000
 """Lines kept; as many as the station keeps (message_log.MAX_LINES)."""
 
 
-@dataclass(frozen=True, slots=True)
-class LogRow:
+class LogRow(msgspec.Struct, frozen=True):
     """One row of the screen: a part of a wrapped line."""
 
     line: LogLine
@@ -32,8 +33,7 @@ class LogRow:
         return self.line.number, self.part
 
 
-@dataclass(frozen=True, slots=True)
-class LogWindow:
+class LogWindow(msgspec.Struct, frozen=True):
     """The rows that are on the screen."""
 
     rows: tuple[LogRow, ...] = ()

@@ -6,8 +6,9 @@ The screen's process does not load the dialect, so that frames are told by their
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 HEAD, TAIL = 64 * 1024, 8 * 1024
 """Bytes that are read at the beginning and at the end."""
@@ -24,8 +25,7 @@ _GCS, _NO_AUTOPILOT = 6, 8
 """MAV_TYPE of a ground station, and MAV_AUTOPILOT of what is no vehicle."""
 
 
-@dataclass(frozen=True, slots=True)
-class LogSummary:
+class LogSummary(msgspec.Struct, frozen=True):
     """A telemetry log."""
 
     length: float | None

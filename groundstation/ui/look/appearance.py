@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 from textual.app import App
 from textual.filter import LineFilter, Monochrome
 from textual.screen import Screen
@@ -18,8 +18,7 @@ from groundstation.ui.look.no_colour import NoColourFilter
 from groundstation.ui.look.themes import THEMES, build_textual_theme
 
 
-@dataclass(frozen=True, slots=True)
-class Look:
+class Look(msgspec.Struct, frozen=True):
     """What the user has chosen."""
 
     theme: ThemeName = ThemeName.DARK

@@ -8,8 +8,8 @@ it have 16. Rich takes the nearest one. The colours are chosen so that all text 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
+import msgspec
 from textual.theme import Theme
 
 from groundstation.config.settings import ThemeName
@@ -18,13 +18,12 @@ from groundstation.ui.look.roles import Role
 Colours = Mapping[Role, str]
 
 
-@dataclass(frozen=True, slots=True)
-class ColourTheme:
+class ColourTheme(msgspec.Struct, frozen=True):
     """One theme."""
 
     help: str
     colours: Colours
-    sixteen: Colours = field(default_factory=dict)
+    sixteen: Colours = msgspec.field(default_factory=dict)
     """Colours in place of those where there are 16. Their values are those of Rich's standard palette."""
     dark: bool = True
     attributes: bool = False

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.geo import MAX_LATITUDE, MAX_LONGITUDE, LocalFrame, Point
 from groundstation.ui.map.commands import CIRCLE_IN, CIRCLES, DO_JUMP, POLYGON_IN, has_location
@@ -16,8 +17,7 @@ from groundstation.views.plan import PlanItem
 LEAST_CORNERS = 3
 
 
-@dataclass(frozen=True, slots=True)
-class FenceShape:
+class FenceShape(msgspec.Struct, frozen=True):
     """A polygon, or a circle as a polygon; points in m."""
 
     corners: tuple[Point, ...]
@@ -39,8 +39,7 @@ class FenceShape:
         return min(distance_to_line(point, start, end) for start, end in zip(self.corners, ends, strict=True))
 
 
-@dataclass(frozen=True, slots=True)
-class FenceCheck:
+class FenceCheck(msgspec.Struct, frozen=True):
     """Where a point is with regard to a fence."""
 
     inside: bool

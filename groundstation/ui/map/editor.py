@@ -6,7 +6,6 @@ Knows no widget, no clock and no file. Nothing goes to the vehicle before the sc
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
 
 import msgspec
 
@@ -32,8 +31,7 @@ RELATIVE = 3
 """MAV_FRAME_GLOBAL_RELATIVE_ALT."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Step:
+class _Step(msgspec.Struct, frozen=True):
     """What undo goes back to."""
 
     rows: dict[PlanKind, Rows]

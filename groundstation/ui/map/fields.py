@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import dataclass
 
 import msgspec
 
@@ -23,8 +22,7 @@ _LARGEST = 3.4e38
 """Larger numbers do not fit into a float32."""
 
 
-@dataclass(frozen=True, slots=True)
-class ItemField:
+class ItemField(msgspec.Struct, frozen=True):
     """One editable value of an item."""
 
     key: str

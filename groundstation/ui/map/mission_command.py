@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 
-@dataclass(frozen=True, slots=True)
-class CommandParam:
+class CommandParam(msgspec.Struct, frozen=True):
     """One parameter, 1 to 7."""
 
     number: int
@@ -18,8 +17,7 @@ class CommandParam:
     """1.0: whole numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class MissionCommand:
+class MissionCommand(msgspec.Struct, frozen=True):
     """One MAV_CMD."""
 
     name: str

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -15,8 +14,7 @@ from groundstation.views.plan import PlanItem
 Items = tuple[PlanItem, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(msgspec.Struct, frozen=True):
     """One item of the plan that is edited."""
 
     item: PlanItem
@@ -27,8 +25,7 @@ class Row:
 Rows = tuple[Row, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class PlanDiff:
+class PlanDiff(msgspec.Struct, frozen=True):
     """What an upload would change."""
 
     changed: int = 0

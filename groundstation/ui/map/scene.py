@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+
+import msgspec
 
 from groundstation.geo import LocalFrame, Place, Point
 from groundstation.ui.map.checks import fence_shapes
@@ -20,13 +21,12 @@ MAX_LEGS = 500
 """Legs drawn; of a longer mission every n-th item."""
 
 
-@dataclass(frozen=True, slots=True)
-class Route:
+class Route(msgspec.Struct, frozen=True):
     """The items of a mission that have a place, in the order in which they are driven."""
 
     indices: tuple[int, ...] = ()
     points: tuple[Point, ...] = ()
-    number: Mapping[int, int] = field(default_factory=dict)
+    number: Mapping[int, int] = msgspec.field(default_factory=dict)
     """Index of an item -> its place in `points`."""
 
     def at(self, index: int | None) -> Point | None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from groundstation.geo import Point
 
@@ -18,8 +19,7 @@ MARGIN = 0.42
 """Share of the width and height on each side of the middle in which everything lies after a fit."""
 
 
-@dataclass(frozen=True, slots=True)
-class MapWindow:
+class MapWindow(msgspec.Struct, frozen=True):
     """The middle (north, east) in m, and the index of its scale in SCALES."""
 
     north: float = 0.0

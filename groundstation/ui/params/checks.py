@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import Enum
+
+import msgspec
 
 from groundstation.ui.params.reasons import is_risky
 from groundstation.views.params import ParamInfo
@@ -26,8 +27,7 @@ class Level(Enum):
     WARNING = "!"
 
 
-@dataclass(frozen=True, slots=True)
-class ValueCheck:
+class ValueCheck(msgspec.Struct, frozen=True):
     """A check of a value, as it is shown."""
 
     level: Level

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 MAX_SIZE = 200_000
 """Bytes of a file that is compared; QGroundControl's form of 1235 parameters has 60 kB."""
@@ -11,8 +12,7 @@ FORMS = ("mavproxy", "qgc", "mp")
 PARTS = ("all", "changed", "group")
 
 
-@dataclass(frozen=True, slots=True)
-class SaveChoice:
+class SaveChoice(msgspec.Struct, frozen=True):
     """What to save where."""
 
     path: Path

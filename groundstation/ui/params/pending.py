@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from link.services.param.float32 import same_float32
 
@@ -11,8 +12,7 @@ MAX_UNDO = 100
 """Steps that can be undone."""
 
 
-@dataclass(frozen=True, slots=True)
-class PendingChange:
+class PendingChange(msgspec.Struct, frozen=True):
     """A value that is not written yet."""
 
     name: str

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
+
+import msgspec
 
 from groundstation.views.params import ParamPage
 
@@ -18,8 +19,7 @@ class ScopeKind(Enum):
     GROUP = "group"
 
 
-@dataclass(frozen=True, slots=True)
-class ParamScope:
+class ParamScope(msgspec.Struct, frozen=True):
     """A choice of parameters."""
 
     kind: ScopeKind = ScopeKind.ALL
@@ -35,8 +35,7 @@ ALL = ParamScope()
 CHANGED = ParamScope(ScopeKind.CHANGED)
 
 
-@dataclass(frozen=True, slots=True)
-class ScopeRow:
+class ScopeRow(msgspec.Struct, frozen=True):
     """A row of the list."""
 
     scope: ParamScope

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
+from msgspec.structs import replace
 from textual import events
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
@@ -53,6 +53,8 @@ class DriveScreen(ConsoleScreen):
         )
         self._chart = SPEED_CHART(ChartValue(), id="speeds")
         self._views: dict[type[View], View] = {}
+        # Before the first style update, which would have to be made again.
+        self.add_class(*(name for name, applies in _conditions(self._state).items() if applies), update=False)
 
     @property
     def snapshot(self) -> Snapshot:
@@ -62,7 +64,6 @@ class DriveScreen(ConsoleScreen):
     def compose(self) -> ComposeResult:
         """Lay out the places of INSTRUMENTS; drive.tcss sets their sizes."""
         self._choose_layout(self.app.size)  # before there are widgets, which need no second style then
-        self._mark_condition(self._state)
         with Vertical(id="console"):
             yield from self.build_place("top")
             with Horizontal(id="body"):
@@ -132,12 +133,7 @@ class DriveScreen(ConsoleScreen):
     def show_body(self, now: DisplayState) -> None:
         """Show what depends on the size, the vehicle and the alerts."""
         self._show_small()
-        self._mark_condition(now)
-
-    def _mark_condition(self, now: DisplayState) -> None:
-        vehicle = now.snapshot.vehicle
-        no_legs = vehicle is None or vehicle.mission is None or not vehicle.mission.legs
-        self.update_classes({"-waiting": vehicle is None, "-no-legs": no_legs, "-alert": bool(active_alerts(now))})
+        self.update_classes(_conditions(now))
 
     # ---- panes ----
 
@@ -229,6 +225,13 @@ class DriveScreen(ConsoleScreen):
             self.context.send(StartSimulator())
             return True
         return False
+
+
+def _conditions(now: DisplayState) -> dict[str, bool]:
+    """Return the style classes that depend on the state, and whether they apply."""
+    vehicle = now.snapshot.vehicle
+    no_legs = vehicle is None or vehicle.mission is None or not vehicle.mission.legs
+    return {"-waiting": vehicle is None, "-no-legs": no_legs, "-alert": bool(active_alerts(now))}
 
 
 def format_arming(vehicle: VehicleView | None) -> str:

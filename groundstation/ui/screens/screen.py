@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
+import msgspec
+from msgspec.structs import replace
 from textual import events
 from textual.app import ComposeResult
 from textual.screen import Screen
@@ -33,8 +34,7 @@ NOTE_TIME = 10.0
 """s for which a note is shown in the hint line."""
 
 
-@dataclass(frozen=True, slots=True)
-class ScreenContext:
+class ScreenContext(msgspec.Struct, frozen=True):
     """What every screen gets from the app."""
 
     keymap: Keymap
@@ -50,9 +50,9 @@ class ScreenContext:
     """Shows a telemetry log from a time on, "" for its start, in place of this app; returns why not, or ""."""
     dialect: str | None = None
     """File of a further dialect, for the programs that a screen starts."""
-    numbers: RequestNumbers = field(default_factory=RequestNumbers)
+    numbers: RequestNumbers = msgspec.field(default_factory=RequestNumbers)
     """Numbers for requests to the station."""
-    kept: dict[type, Any] = field(default_factory=dict)
+    kept: dict[type, Any] = msgspec.field(default_factory=dict)
     """What screens keep while they are closed, by its class."""
 
     def keep(self, kind: type[Kept], *args: Any) -> Kept:

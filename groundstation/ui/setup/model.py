@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from groundstation.intents.setup import TurnMotor
 from groundstation.intents.union import AnyIntent
@@ -19,8 +19,7 @@ TEST_PATIENCE = 30.0
 MOTOR_KEYS = "1234"
 
 
-@dataclass(frozen=True, slots=True)
-class ChainLine:
+class ChainLine(msgspec.Struct, frozen=True):
     """A line of the chain: one row, or a run of rows that are well."""
 
     rows: tuple[DoctorRow, ...]

@@ -8,8 +8,8 @@ https://invisible-island.net/xterm/ctlseqs/ctlseqs.html. Time is an argument.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
+import msgspec
 from textual.constants import ESCAPE_DELAY
 
 ESC = "\x1b"
@@ -64,8 +64,7 @@ def is_string(text: str) -> bool:
     return _STRING.match(text) is not None
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
+class Piece(msgspec.Struct, frozen=True):
     """A part of the input."""
 
     text: str

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple, cast
 
+import msgspec
 from rich.style import Style
 from textual._compositor import ChopsUpdate, Compositor
 from textual.color import Color
@@ -24,8 +24,7 @@ Span = tuple[int, int, int]
 """Line, first column, column after the last one."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Shown:
+class _Shown(msgspec.Struct, frozen=True, eq=False):
     """A widget and where it is."""
 
     widget: Widget

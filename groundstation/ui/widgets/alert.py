@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -26,8 +26,7 @@ BACK = "ESC goes back"
 MARKS = {AlertLevel.WARNING: "!", AlertLevel.DANGER: "■", AlertLevel.QUESTION: "?"}
 
 
-@dataclass(frozen=True, slots=True)
-class AlertValue:
+class AlertValue(msgspec.Struct, frozen=True):
     """The alerts that hold now, most urgent first."""
 
     alerts: tuple[Alert, ...] = ()

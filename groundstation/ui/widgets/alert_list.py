@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.alerts import Alert
@@ -17,8 +17,7 @@ MARGIN = 3
 """Cells of the mark, and of the space at both sides of it."""
 
 
-@dataclass(frozen=True, slots=True)
-class AlertListValue:
+class AlertListValue(msgspec.Struct, frozen=True):
     """The alerts, and the first of their rows that is shown."""
 
     alerts: tuple[Alert, ...] = ()

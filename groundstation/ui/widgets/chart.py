@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import DIM, LINE, style
@@ -27,8 +27,7 @@ NOISE = 0.1
 """Share of a step by which values may leave the scale: a speed that is measured is a little below 0, too."""
 
 
-@dataclass(frozen=True, slots=True)
-class Series:
+class Series(msgspec.Struct, frozen=True):
     """One line of a chart."""
 
     name: str
@@ -37,8 +36,7 @@ class Series:
     """Drawn as dots, so that no colour is needed to tell it from a line."""
 
 
-@dataclass(frozen=True, slots=True)
-class ChartValue:
+class ChartValue(msgspec.Struct, frozen=True):
     """Samples by time, oldest first, and how much of them is shown."""
 
     samples: Samples = ()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot.signing import SigningState
@@ -17,8 +17,7 @@ OLD_REPORT = 3.0
 """s since the vehicle reported who is in control from which on the age is shown: it reports once a second."""
 
 
-@dataclass(frozen=True, slots=True)
-class ControlPanelValue:
+class ControlPanelValue(msgspec.Struct, frozen=True):
     """The view, and the keys that its lines name."""
 
     view: ControlView | None = None

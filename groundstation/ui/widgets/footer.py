@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.actions import ACTIONS
@@ -38,8 +38,7 @@ REPLAY_ACTIONS = ("app.goto", "view.pane", "vehicle.next", "app.help", "app.quit
 """On the Drive screen while a log is shown."""
 
 
-@dataclass(frozen=True, slots=True)
-class FooterValue:
+class FooterValue(msgspec.Struct, frozen=True):
     """What decides on the keys and their labels: one key disarms while armed and arms else."""
 
     keymap: Keymap

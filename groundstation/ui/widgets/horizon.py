@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import groupby
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
@@ -18,8 +18,7 @@ HALF_VIEW = math.radians(25)
 _BLOCKS = " ▁▂▃▄▅▆▇█"
 
 
-@dataclass(frozen=True, slots=True)
-class HorizonValue:
+class HorizonValue(msgspec.Struct, frozen=True):
     """Roll (right side down is positive) and pitch (nose up is positive), rad."""
 
     roll: float

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot import Snapshot, VehicleView
@@ -21,8 +20,7 @@ OLD, STALE = 0.5, 1.0
 UNKNOWN = KeyToMotor()
 
 
-@dataclass(frozen=True, slots=True)
-class WayValue:
+class WayValue(msgspec.Struct, frozen=True):
     """Times in ms, rounded to what is drawn."""
 
     way: KeyToMotor = UNKNOWN

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -32,8 +32,7 @@ STYLES: dict[str, tuple[str, Callable[[], Style]]] = {
 """Drive style -> its label and look; the styles that keep driving without a key held are in loud colours."""
 
 
-@dataclass(frozen=True, slots=True)
-class KeycapsValue:
+class KeycapsValue(msgspec.Struct, frozen=True):
     """The lit actions, and the operator's settings rounded to what can be seen to change."""
 
     keymap: Keymap

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from dataclasses import dataclass
 
+import msgspec
 from textual import events
 from textual.actions import SkipAction, parse
 from textual.widgets import Input
@@ -20,8 +20,7 @@ def _no_text(key: str) -> str | None:
     return None
 
 
-@dataclass(frozen=True, slots=True)
-class FieldUse:
+class FieldUse(msgspec.Struct, frozen=True):
     """What a text is asked for."""
 
     submit: Callable[[str], None]

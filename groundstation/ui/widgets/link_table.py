@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -36,8 +36,7 @@ MUCH_LOSS, SLOW_TRIP, FULL_LINE = 0.02, 0.2, 0.6
 the vehicle grow."""
 
 
-@dataclass(frozen=True, slots=True)
-class LinkTableValue:
+class LinkTableValue(msgspec.Struct, frozen=True):
     """The links, and the first of the lines below the titles that is shown."""
 
     view: LinksView | None = None

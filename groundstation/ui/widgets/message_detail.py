@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import msgspec
 from rich.style import Style
@@ -25,8 +24,7 @@ SHARE = 0.55
 UNKNOWN = "this id is in no dialect known here: start with --dialect FILE.xml, the file of the vehicle's dialect"
 
 
-@dataclass(frozen=True, slots=True)
-class MessageDetailValue:
+class MessageDetailValue(msgspec.Struct, frozen=True):
     """A message, the first of its lines that is shown, and the chosen field."""
 
     view: MessageView | None = None
@@ -36,8 +34,7 @@ class MessageDetailValue:
     """Values as they are sent, without units that people use and without names of enum values."""
 
 
-@dataclass(frozen=True, slots=True)
-class DetailLine:
+class DetailLine(msgspec.Struct, frozen=True):
     """A line, and the field that it belongs to."""
 
     field: str

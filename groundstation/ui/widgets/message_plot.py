@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from array import array
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.charts.columns import Columns
@@ -21,8 +21,7 @@ STATS_FROM = 6
 """Rows from which on the last one has numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class MessagePlotValue:
+class MessagePlotValue(msgspec.Struct, frozen=True):
     """The plot of a field; None: there is none, and why."""
 
     plot: FieldPlot | None = None

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, style
@@ -19,8 +19,7 @@ SILENT = 0.05
 """Messages/s below which a message counts as silent."""
 
 
-@dataclass(frozen=True, slots=True)
-class MessageTableValue:
+class MessageTableValue(msgspec.Struct, frozen=True):
     """The rows in the window."""
 
     rows: tuple[MessageRow, ...] = ()

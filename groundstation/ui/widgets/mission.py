@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
@@ -19,8 +19,7 @@ FAR = 9999.5
 """m from which on distances are in km."""
 
 
-@dataclass(frozen=True, slots=True)
-class MissionValue:
+class MissionValue(msgspec.Struct, frozen=True):
     """The mission, with figures rounded to what is drawn."""
 
     mission: MissionProgress | None = None

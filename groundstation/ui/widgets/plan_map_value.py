@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from enum import Enum
+
+import msgspec
+from msgspec.structs import replace
 
 from groundstation.geo import Point
 from groundstation.ui.map.window import MapWindow
@@ -17,8 +19,7 @@ class Leg(Enum):
     TO_GO = "to go"
 
 
-@dataclass(frozen=True, slots=True)
-class MapLeg:
+class MapLeg(msgspec.Struct, frozen=True):
     """A leg of the mission."""
 
     start: Point
@@ -26,8 +27,7 @@ class MapLeg:
     look: Leg = Leg.TO_GO
 
 
-@dataclass(frozen=True, slots=True)
-class MapMark:
+class MapMark(msgspec.Struct, frozen=True):
     """A label at a point."""
 
     point: Point
@@ -36,16 +36,14 @@ class MapMark:
     """A key of MARKS (plan_drawing.py)."""
 
 
-@dataclass(frozen=True, slots=True)
-class MapOutline:
+class MapOutline(msgspec.Struct, frozen=True):
     """A polygon of the fence; closed."""
 
     corners: tuple[Point, ...]
     inclusion: bool = True
 
 
-@dataclass(frozen=True, slots=True)
-class MapShape:
+class MapShape(msgspec.Struct, frozen=True):
     """A shape of a layer: a point, a line, or an area (`closed`)."""
 
     points: tuple[Point, ...]
@@ -53,8 +51,7 @@ class MapShape:
     name: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class PlanMapValue:
+class PlanMapValue(msgspec.Struct, frozen=True):
     """Contents of the map; points are (north, east) in m around one place."""
 
     note: str = "no position yet"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, FAINT, GREEN, TEXT, WHITE, YELLOW, style
@@ -14,8 +13,7 @@ LABEL = 14
 """Width of the labels."""
 
 
-@dataclass(frozen=True, slots=True)
-class PanelLine:
+class PanelLine(msgspec.Struct, frozen=True):
     """A label, a value and a note at the right edge."""
 
     label: str
@@ -25,8 +23,7 @@ class PanelLine:
     """"good", "edited" or "warned"."""
 
 
-@dataclass(frozen=True, slots=True)
-class PanelValue:
+class PanelValue(msgspec.Struct, frozen=True):
     """Lines of a panel."""
 
     lines: tuple[PanelLine, ...] = ()
@@ -73,8 +70,7 @@ class TextLine(Instrument[str]):
         return [strip((f" {self.value}".ljust(width), style(TEXT))).crop(0, width)]
 
 
-@dataclass(frozen=True, slots=True)
-class ProgressValue:
+class ProgressValue(msgspec.Struct, frozen=True):
     """The mission as one line to scale, and texts about it."""
 
     stops: tuple[tuple[float, str, str], ...] = ()

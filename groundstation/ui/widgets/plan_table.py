@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+import msgspec
+from msgspec.structs import replace
 from rich.style import Style
 from textual.strip import Strip
 
@@ -23,8 +23,7 @@ _COLOURS = {"done": DIM, "now": YELLOW, "edited": BLUE, "warned": AMBER, "": TEX
 _MARKS = {"✓": GREEN, "▶": YELLOW, "✎": BLUE, "+": BLUE, "!": AMBER}
 
 
-@dataclass(frozen=True, slots=True)
-class PlanTableRow:
+class PlanTableRow(msgspec.Struct, frozen=True):
     """One item as texts."""
 
     number: str
@@ -38,8 +37,7 @@ class PlanTableRow:
     """"done", "now", "edited" or "warned"."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlanTableValue:
+class PlanTableValue(msgspec.Struct, frozen=True):
     """The rows in view."""
 
     rows: tuple[PlanTableRow, ...] = ()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import BACKGROUND, BLUE, DIM, FAINT, TEXT, style
@@ -13,8 +13,7 @@ from groundstation.ui.widgets.instrument import Instrument, strip
 from groundstation.ui.wrap import wrap
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(msgspec.Struct, frozen=True):
     """One text of a row."""
 
     text: str
@@ -24,15 +23,14 @@ class Cell:
     """Share of the column that is filled, 0..1, in place of the text."""
 
 
-@dataclass(frozen=True, slots=True)
-class RowTableValue:
+class RowTableValue(msgspec.Struct, frozen=True):
     """What a table shows. The first column, for the cursor's mark, is the table's own."""
 
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...] = ()
     cursor: int | None = None
     """Row with the cursor; None: it is in another panel."""
-    notes: tuple[Cell, ...] = field(default=())
+    notes: tuple[Cell, ...] = ()
     """Lines below the rows, wrapped."""
     titled: bool = True
     """The titles of the columns are shown, if there are rows."""

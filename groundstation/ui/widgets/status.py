@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
@@ -35,8 +35,7 @@ _BARS, _NO_BAR = "▂▄▆█", "▁"
 _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
 
 
-@dataclass(frozen=True, slots=True)
-class StatusBarValue:
+class StatusBarValue(msgspec.Struct, frozen=True):
     """The snapshot, and what is not in it."""
 
     snapshot: Snapshot
@@ -57,8 +56,7 @@ class StatusBarValue:
         return cls(now.snapshot, now.keymap, now.terminal_round_trip, now.screen.drives, now.key("app.drive"), runs)
 
 
-@dataclass(frozen=True, slots=True)
-class StatusField:
+class StatusField(msgspec.Struct, frozen=True):
     """One reading; those of small weight stay longest where the line is short."""
 
     weight: int

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -19,8 +19,7 @@ MARK = "┃"
 _PARTIAL = " ▏▎▍▌▋▊▉"
 
 
-@dataclass(frozen=True, slots=True)
-class Bar:
+class Bar(msgspec.Struct, frozen=True):
     """One bar, in percent; `obeyed` is what the vehicle reports (ROVER_DRIVE_STATUS)."""
 
     label: str

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -29,8 +28,7 @@ SHORT = {
 _UNITS = {"deg": "°", "V": " V", "m": " m"}
 
 
-@dataclass(frozen=True, slots=True)
-class StopsValue:
+class StopsValue(msgspec.Struct, frozen=True):
     """The bounds, with values rounded to what is drawn."""
 
     stops: tuple[StopBound, ...] = ()

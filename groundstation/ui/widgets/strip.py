@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot import LogLine, OperatorView
@@ -31,8 +31,7 @@ HINT_LINES = 2
 """Lines of the hint, above the footer."""
 
 
-@dataclass(frozen=True, slots=True)
-class StripValue:
+class StripValue(msgspec.Struct, frozen=True):
     """What the strip shows."""
 
     status: StatusBarValue

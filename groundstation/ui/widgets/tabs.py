@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
@@ -22,13 +22,12 @@ GOTO_WIDTH = 10
 """Cells of the go-to menu's key with its label."""
 
 
-@dataclass(frozen=True, slots=True)
-class TabBarValue:
+class TabBarValue(msgspec.Struct, frozen=True):
     """The screen on top, and the marks of all screens."""
 
     keymap: Keymap
     screen: str = "drive"
-    marks: Mapping[str, TabMark] = field(default_factory=dict)
+    marks: Mapping[str, TabMark] = msgspec.field(default_factory=dict)
     """By the id of the screen."""
 
     @classmethod

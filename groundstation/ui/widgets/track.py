@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
@@ -24,8 +24,7 @@ _STEPS = (1.0, 1.4, 2.0, 3.0, 5.0, 7.0)
 _RINGS = (1.0, 2.0, 5.0)
 
 
-@dataclass(frozen=True, slots=True)
-class TrackValue:
+class TrackValue(msgspec.Struct, frozen=True):
     """Contents of the map; positions are (north, east) in m."""
 
     position: Point | None = None
@@ -55,8 +54,7 @@ class TrackValue:
         return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, track, ascii, zoom)
 
 
-@dataclass(frozen=True, slots=True)
-class MapView:
+class MapView(msgspec.Struct, frozen=True):
     """The visible area: its middle (north, east), m per dot, and the spacing of its rings in m."""
 
     north: float

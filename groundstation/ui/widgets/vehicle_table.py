@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, RED, TEXT, WHITE, YELLOW, style
@@ -34,8 +33,7 @@ QUIET = 1.0
 _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
 
 
-@dataclass(frozen=True, slots=True)
-class VehicleTableValue:
+class VehicleTableValue(msgspec.Struct, frozen=True):
     """The vehicles, which one is selected and which one is under the cursor, by system id."""
 
     view: VehiclesView | None = None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from dataclasses import dataclass
 
 import msgspec
 from textual.strip import Strip
@@ -23,8 +22,7 @@ STILL = "·"
 _COLOURS = {AdviceKind.TEXT: DIM, AdviceKind.WARNING: AMBER}
 
 
-@dataclass(frozen=True, slots=True)
-class WaitingValue:
+class WaitingValue(msgspec.Struct, frozen=True):
     """What the page shows; empty once there is a vehicle, so that the hidden page costs nothing."""
 
     snapshot: Snapshot = _NO_SNAPSHOT

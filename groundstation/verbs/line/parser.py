@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import shlex
-from dataclasses import dataclass
 from typing import NoReturn
+
+import msgspec
 
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES, LineRule
@@ -36,8 +37,7 @@ class LineParser(CommandLineParser):
         return self.prog.removeprefix("groundstation ")
 
 
-@dataclass(frozen=True, slots=True)
-class ParsedLine:
+class ParsedLine(msgspec.Struct, frozen=True):
     """What a line asks for."""
 
     name: str

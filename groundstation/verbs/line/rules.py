@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Awaitable, Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from dialects.modes import DRIVABLE_MODES, STANDING_MODES
 from groundstation.verbs.line import own
@@ -18,8 +19,7 @@ from groundstation.verbs.line.session import LineOutput, LineSession
 Own = Callable[[LineSession, argparse.Namespace, LineOutput], Awaitable[int]]
 
 
-@dataclass(frozen=True, slots=True)
-class LineRule:
+class LineRule(msgspec.Struct, frozen=True):
     """One verb or action."""
 
     asks: Callable[[Any], bool] = lambda _: False

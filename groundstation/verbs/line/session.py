@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import count
+
+import msgspec
 
 from groundstation.intents.base import Intent
 from groundstation.station.station import Station
@@ -23,8 +24,7 @@ NUMBERS = count(1 << 40)
 """Numbers of requests, far from those that screens take."""
 
 
-@dataclass(frozen=True, slots=True)
-class LineContact:
+class LineContact(msgspec.Struct, frozen=True):
     """The vehicle, as verbs see it."""
 
     contact: Contact

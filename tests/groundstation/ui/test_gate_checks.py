@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
-
 import pytest
+from msgspec.structs import fields, replace
 
 from groundstation.ui.keys.gate_checks import AppCondition, find_closure
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, GateClosure
@@ -38,7 +37,7 @@ def test_keys_drive_when_nothing_is_wrong() -> None:
 @pytest.mark.parametrize("name", WRONG)
 def test_each_condition_alone_keeps_keys_from_driving(name: str) -> None:
     value, reason = WRONG[name]
-    closure = find_closure(replace(FINE, **{name: value}))  # type: ignore[arg-type]
+    closure = find_closure(replace(FINE, **{name: value}))
     assert closure is not None
     assert closure.reason == reason
 
@@ -46,7 +45,7 @@ def test_each_condition_alone_keeps_keys_from_driving(name: str) -> None:
 def test_the_first_in_the_table_is_the_one_that_is_shown() -> None:
     for later in range(1, len(WRONG)):
         first, second = list(WRONG)[later - 1 : later + 1]
-        both = replace(FINE, **{first: WRONG[first][0], second: WRONG[second][0]})  # type: ignore[arg-type]
+        both = replace(FINE, **{first: WRONG[first][0], second: WRONG[second][0]})
         closure = find_closure(both)
         assert closure is not None
         assert closure.reason == WRONG[first][1]

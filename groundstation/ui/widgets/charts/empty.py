@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import DIM, GREEN, TEXT, WHITE, YELLOW, style
@@ -11,8 +10,7 @@ from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean
 
 
-@dataclass(frozen=True, slots=True)
-class EmptyValue:
+class EmptyValue(msgspec.Struct, frozen=True):
     """Names of the views, each with the titles of its charts."""
 
     views: tuple[tuple[str, str], ...] = ()

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, YELLOW, style
@@ -15,8 +14,7 @@ VALUE = 9
 """Cells of a value."""
 
 
-@dataclass(frozen=True, slots=True)
-class ChartRow:
+class ChartRow(msgspec.Struct, frozen=True):
     """A chart."""
 
     number: int
@@ -24,8 +22,7 @@ class ChartRow:
     unit: str
 
 
-@dataclass(frozen=True, slots=True)
-class SeriesRow:
+class SeriesRow(msgspec.Struct, frozen=True):
     """A line of the chart above it."""
 
     slot: int
@@ -41,8 +38,7 @@ class SeriesRow:
     """Its message has arrived."""
 
 
-@dataclass(frozen=True, slots=True)
-class CandidateRow:
+class CandidateRow(msgspec.Struct, frozen=True):
     """A field that matches what is typed."""
 
     name: str
@@ -50,8 +46,7 @@ class CandidateRow:
     first: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ViewRow:
+class ViewRow(msgspec.Struct, frozen=True):
     """A view."""
 
     name: str
@@ -61,8 +56,7 @@ class ViewRow:
     own: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class TextRow:
+class TextRow(msgspec.Struct, frozen=True):
     """A heading or a hint."""
 
     text: str

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -19,6 +19,8 @@ AXIS = 8
 
 MAX_DECIMALS = 9
 
+LEAST_SPAN = 1e-300
+"""Of a scale: the powers of ten below it are not exact, or 0."""
 LEAST_SHARE = 0.02
 """Share of its value that a scale spans at least: the noise of a constant value must not fill the chart."""
 
@@ -32,8 +34,7 @@ SAMPLES = ("━━", "╌╌", "··", "━╌")
 """The same for legends."""
 
 
-@dataclass(frozen=True, eq=False)
-class PaneLine:
+class PaneLine(msgspec.Struct, frozen=True, eq=False):
     """One line: its columns from the left of the picture on, and the one before, see Columns.between."""
 
     name: str
@@ -45,8 +46,7 @@ class PaneLine:
     chosen: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class PaneValue:
+class PaneValue(msgspec.Struct, frozen=True, eq=False):
     """A chart. Two values are equal only if they are the same object: the model makes a new one when it has changed."""
 
     number: int
@@ -99,7 +99,7 @@ def nice_scale(low: float, high: float, least: float = 0.0) -> tuple[float, floa
     if 0 <= low < high / 2:
         low = 0.0  # a scale from 0 shows at once how much it is
     largest = max(abs(low), abs(high))
-    span = max(high - low, LEAST_SHARE * largest, least) if largest else max(1.0, least)
+    span = max(high - low, LEAST_SHARE * largest, least, LEAST_SPAN) if largest else max(1.0, least)
     power = 10.0 ** math.floor(math.log10(span))
     step = next(power * each / 5 for each in (1, 2, 5, 10) if power * each >= span)
     bottom, top = math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import DIM, style
@@ -18,8 +17,7 @@ WIDE = 44
 """Cells from which on there is room for the unit."""
 
 
-@dataclass(frozen=True, slots=True)
-class StatsRow:
+class StatsRow(msgspec.Struct, frozen=True):
     """A line of a chart."""
 
     name: str

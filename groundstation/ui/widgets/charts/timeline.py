@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -36,8 +36,7 @@ HEADER, ROWS = 4, 3
 """Rows from which on there is a header, and rows without it."""
 
 
-@dataclass(frozen=True, slots=True)
-class TimelineMode:
+class TimelineMode(msgspec.Struct, frozen=True):
     """A mode, from one column of dots to another, counted from the left edge."""
 
     first: int
@@ -45,8 +44,7 @@ class TimelineMode:
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class TimelineMark:
+class TimelineMark(msgspec.Struct, frozen=True):
     """An event or a key at a column of dots."""
 
     column: int
@@ -54,8 +52,7 @@ class TimelineMark:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class ChartTimelineValue:
+class ChartTimelineValue(msgspec.Struct, frozen=True):
     """What happened in the window."""
 
     dots: int = 2

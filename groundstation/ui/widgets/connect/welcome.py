@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import BLUE, DIM, GREEN, TEXT, WHITE, YELLOW, style
@@ -16,8 +16,7 @@ SPOKES = 8
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
 
 
-@dataclass(frozen=True, slots=True)
-class WelcomeValue:
+class WelcomeValue(msgspec.Struct, frozen=True):
     """What the station does. `turn` counts quarter seconds."""
 
     state: str = ""

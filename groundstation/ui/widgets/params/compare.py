@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BACKGROUND, DIM, FAINT, GREEN, TEXT, style
@@ -18,8 +17,7 @@ COUNTS = 2
 NAME = 17
 
 
-@dataclass(frozen=True, slots=True)
-class CompareValue:
+class CompareValue(msgspec.Struct, frozen=True):
     """The comparison, the row at the cursor, and the names with a change that is not written."""
 
     diff: ParamDiff | None = None

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, WHITE, style
@@ -25,8 +25,7 @@ MAX_TEXT = 3
 _CHECK_COLOURS = {Level.GOOD: GREEN, Level.WARNING: AMBER, Level.UNKNOWN: DIM}
 
 
-@dataclass(frozen=True, slots=True)
-class DetailValue:
+class DetailValue(msgspec.Struct, frozen=True):
     """What the detail shows."""
 
     info: ParamInfo | None = None

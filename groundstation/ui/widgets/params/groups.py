@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, TEXT, YELLOW, style
@@ -18,8 +17,7 @@ _MARKS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class GroupListValue:
+class GroupListValue(msgspec.Struct, frozen=True):
     """The rows, the one at the cursor, and the one that the table shows."""
 
     rows: tuple[ScopeRow, ...] = ()

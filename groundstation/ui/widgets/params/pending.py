@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
@@ -26,12 +26,11 @@ COLUMNS = (
 _CHECK_COLOURS = {Level.GOOD: GREEN, Level.WARNING: AMBER, Level.UNKNOWN: DIM}
 
 
-@dataclass(frozen=True, slots=True)
-class PendingValue:
+class PendingValue(msgspec.Struct, frozen=True):
     """The changes, and what is known of their parameters."""
 
     changes: tuple[PendingChange, ...] = ()
-    infos: Mapping[str, ParamInfo] = field(default_factory=dict)
+    infos: Mapping[str, ParamInfo] = msgspec.field(default_factory=dict)
     armed: bool = False
     """Those that need care while armed are marked."""
     last: str = ""

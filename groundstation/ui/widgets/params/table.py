@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, MUTED, TEXT, WHITE, YELLOW, style
@@ -29,15 +29,14 @@ TITLES = 1
 """Line of titles."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParamTableValue:
+class ParamTableValue(msgspec.Struct, frozen=True):
     """What the table draws."""
 
     rows: tuple[ParamRow, ...] = ()
     selected: int = -1
     """Index of the selected row in `rows`; -1: none."""
-    pending: Mapping[str, PendingChange] = field(default_factory=dict)
-    infos: Mapping[str, ParamInfo] = field(default_factory=dict)
+    pending: Mapping[str, PendingChange] = msgspec.field(default_factory=dict)
+    infos: Mapping[str, ParamInfo] = msgspec.field(default_factory=dict)
     favourites: frozenset[str] = frozenset()
     note: str = ""
     """In place of rows, where there are none."""

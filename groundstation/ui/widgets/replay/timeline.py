@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
+import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
@@ -33,16 +33,14 @@ BELOW_BAR = 4
 """Rows below the bar, where all is shown."""
 
 
-@dataclass(frozen=True, slots=True)
-class TimelineValue:
+class TimelineValue(msgspec.Struct, frozen=True):
     """The view, and which characters the terminal has."""
 
     view: ReplayView | None = None
     ascii: bool = False
 
 
-@dataclass(slots=True)
-class _Sheet:
+class _Sheet(msgspec.Struct):
     """A canvas with a scale."""
 
     canvas: Canvas

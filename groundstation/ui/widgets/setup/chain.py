@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, FAINT, GREEN, RED, TEXT, WHITE, style
@@ -26,8 +26,7 @@ STRIP = ("keys", "station", "link", "vehicle", "control", "pre_arm", "mode", "ar
 """Rows of the picture of the chain."""
 
 
-@dataclass(frozen=True, slots=True)
-class ChainValue:
+class ChainValue(msgspec.Struct, frozen=True):
     """The rows, the one under the cursor, and what to do next."""
 
     rows: tuple[DoctorRow, ...] = ()

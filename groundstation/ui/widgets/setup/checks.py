@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import BLUE, DIM, GREEN, RED, TEXT, WHITE, style
@@ -15,8 +15,7 @@ from groundstation.views.doctor import DoctorView
 from link.runtime.diagnosis import Health
 
 
-@dataclass(frozen=True, slots=True)
-class ChecksValue:
+class ChecksValue(msgspec.Struct, frozen=True):
     """The view; None until the first one has arrived."""
 
     view: DoctorView | None = None

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import BLUE, DIM, GREEN, RED, TEXT, YELLOW, style
@@ -25,8 +24,7 @@ def calibration_key(row: CalibrationRow) -> str:
     return CALIBRATION_KEYS.get(row.kind.partition("-")[0], "?")
 
 
-@dataclass(frozen=True, slots=True)
-class ListValue:
+class ListValue(msgspec.Struct, frozen=True):
     """The view; None until the first one has arrived."""
 
     view: DoctorView | None = None

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.look.colours import AMBER, DIM, GREEN, TEXT, YELLOW, style
@@ -18,8 +18,7 @@ WIDE = 60
 """Cells from which on the bar is shown beside the names."""
 
 
-@dataclass(frozen=True, slots=True)
-class MotorsValue:
+class MotorsValue(msgspec.Struct, frozen=True):
     """The view, and what the screen itself knows."""
 
     view: DoctorView | None = None

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace as replaced
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
+from msgspec.structs import replace as replaced
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.log.filter import LogFilter

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from groundstation.ui.charts.columns import Columns
 from groundstation.ui.charts.points import Points
@@ -92,6 +92,8 @@ def test_a_pane_is_ascii_where_the_terminal_is() -> None:
 
 
 @given(st.floats(-1e12, 1e12), st.floats(0, 1e12), st.sampled_from([0.0, 1.0]))
+@example(0.0, 5e-324, 0.0)
+@example(-2e-308, 2e-308, 0.0)
 def test_a_scale_has_all_values_in_it_whatever_they_are(low: float, span: float, least: float) -> None:
     bottom, top, decimals = nice_scale(low, low + span, least)
     slack = 1e-6 * (top - bottom)
