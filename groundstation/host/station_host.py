@@ -113,6 +113,7 @@ class StationHost:
         if problem := self._listener.start():
             self.add_to_log(loop.time(), f"no other program can use this station: {problem}")
         show = loop.create_task(self._send_snapshots())
+        self._station.fleet.on_first = lambda: loop.call_soon(lambda: self._send_snapshot(loop.time()))
         try:
             await self._runner.run()
         finally:

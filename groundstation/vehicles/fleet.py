@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import msgspec
 
@@ -126,6 +126,8 @@ class Fleet:
         self.signing = SigningWatch(system)
         self._contacts: dict[int, Contact] = {}
         self._selected: Contact | None = None
+        self.on_first: Callable[[], object] = lambda: None
+        """Called when the first vehicle is found."""
         self._not_shown: dict[int, float] = {}
         """System id of a vehicle for which there is no place -> when it was heard last."""
 
@@ -216,8 +218,10 @@ class Fleet:
         self._contacts[received.system] = contact
         if state.autopilot in SETTINGS:
             contact.settings_check = SettingsCheck(SETTINGS[state.autopilot], *self._own_id, target=target)
-        self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
+        if self._selected is None:
+            self._selected = contact
+            self.on_first()
         return contact
 
     def _leave_out(self, system: int, now: float) -> None:
