@@ -18,8 +18,9 @@ from groundstation.vehicles.places import PLACES
 from groundstation.views.connect import LinkAttempt
 from link.core import LinkReport
 from link.endpoint import EndpointError, Side, parse_endpoint, parse_endpoints
+from link.links import build_link
 from link.protocol.sent_frames import SentFrames
-from link.runner import Runner, build_link
+from link.runner import Runner
 from link.runtime.worker import Worker
 from link.transport.backoff import Backoff
 from link.transport.transport import LinkError, Transport

@@ -18,8 +18,8 @@ from groundstation.station.component import COMPONENT
 from groundstation.vehicles.places import PLACES
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, Side, parse_endpoint
+from link.links import open_links
 from link.protocol.sent_frames import SentFrames
-from link.runner import open_links
 from link.transport.transport import Link, LinkError
 
 

@@ -231,7 +231,8 @@ async def run_session(
         runner = StationRunner(core, station, PERIOD, lambda links: core.observe(links.reports, 0.0), log_tap)
     else:
         from link.endpoint import Side
-        from link.runner import Runner, open_links  # a verb through a station does without
+        from link.links import open_links
+        from link.runner import Runner  # a verb through a station does without
 
         links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION)
         sent = guard.record_sent if guard else None

@@ -21,7 +21,8 @@ from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.station_link import StationLink, StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
 from link.endpoint import Side
-from link.runner import Runner, open_links
+from link.links import open_links
+from link.runner import Runner
 
 PERIOD = 0.02
 """s between two ticks, as of the other verbs."""

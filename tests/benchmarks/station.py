@@ -10,7 +10,8 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, ModeFlag, Result, SystemState, VehicleType
 from link.core import LinkReport, Outgoing, Received
 from link.endpoint import Side
-from link.runner import Runner, open_links
+from link.links import open_links
+from link.runner import Runner
 from link.services.ftp.client import FtpClient
 from link.services.mission.client import MissionClient
 from link.services.param.client import ParamClient

@@ -14,8 +14,9 @@ import pytest
 
 from dialects.messages import Heartbeat, ManualControl, Message
 from link.core import REST_PERIOD, LinkReport, Outgoing, Received
+from link.links import open_links
 from link.protocol.log_tap import LogTap
-from link.runner import Runner, open_links
+from link.runner import Runner
 from link.runtime.multiples import next_multiple
 from link.transport.transport import Link
 from tests.link.frames import demand, heartbeat

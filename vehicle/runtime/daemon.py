@@ -15,8 +15,9 @@ from collections.abc import Sequence
 
 from dialects.enums import Severity
 from link.endpoint import SERIAL, EndpointError, Side, parse_endpoint
+from link.links import open_links
 from link.protocol.log_tap import LogTap
-from link.runner import Runner, open_links
+from link.runner import Runner
 from link.runtime import startup_gc
 from link.runtime.command_line import USAGE_ERROR
 from link.runtime.event_loop import run_loop, running_loop

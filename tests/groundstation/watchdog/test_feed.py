@@ -15,7 +15,7 @@ from groundstation.station.driven import DrivenVehicle
 from groundstation.watchdog.feed import WatchdogFeed
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
 from link.endpoint import Side
-from link.runner import open_links
+from link.links import open_links
 from link.transport.transport import Link
 
 ROVER = DrivenVehicle(system=1, component=1, name="rover 1", autopilot=3)

@@ -10,8 +10,8 @@ import pytest
 from dialects.messages import Heartbeat, RoverOperatorPresence
 from link.core import Outgoing
 from link.endpoint import Side
+from link.links import open_links
 from link.protocol.sequence import NEW, FrameOrder, SequenceTracker
-from link.runner import open_links
 from tests.ports import free_port
 
 FRAMES = 24

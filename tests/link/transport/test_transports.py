@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from link.runner import open_links
+from link.links import open_links
 from link.transport.transport import LinkError
 from tests.ports import free_port
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from link.endpoint import parse_endpoint
-from link.runner import open_links
+from link.links import open_links
 from link.signing.key_actions import make_key
 from link.signing.key_file import FILE
 from link.signing.memory_file import load_memory

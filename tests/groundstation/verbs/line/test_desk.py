@@ -14,7 +14,8 @@ from groundstation.verbs.line.desk import LABEL
 from groundstation.verbs.line.loader import LineLoader
 from groundstation.views.line import ASKS, DONE, FAILED, RUNNING, LineRequest, LineView
 from groundstation.views.log import LogRequest
-from link.runner import Runner, open_links
+from link.links import open_links
+from link.runner import Runner
 from tests.groundstation.foreign_vehicle import ForeignParam, ForeignVehicle
 
 PATIENCE = 60.0
