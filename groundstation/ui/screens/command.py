@@ -98,7 +98,8 @@ class CommandLine(ModalScreen[str]):
         event.stop()
         action = self.context.keymap.get_action(event.key)
         if action is not None and action.id in _SCREENS and not is_character(event.key):
-            self.dismiss("")
+            if self.is_current:  # the second key of one read comes here, too, and would close the Drive screen
+                self.dismiss("")
             self.context.perform(action)
             return
         if not self.is_current or (self._asked is not None and isinstance(event, KeyRepeat)):
@@ -115,7 +116,7 @@ class CommandLine(ModalScreen[str]):
 
     def on_paste(self, event: events.Paste) -> None:
         """Give pasted text to the field."""
-        if self.field.is_open:
+        if self.field.is_open and self.is_current:
             self.field.take_paste(event)
 
     def _open(self, text: str) -> None:

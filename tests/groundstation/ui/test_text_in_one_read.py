@@ -8,6 +8,8 @@ import pytest
 
 from groundstation.screens import SCREENS
 from groundstation.ui.screens.command import CommandLine
+from groundstation.ui.screens.drive import DriveScreen
+from groundstation.ui.screens.log import LogScreen
 from groundstation.ui.screens.messages import MessagesScreen
 from groundstation.ui.screens.screen import ConsoleScreen
 from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
@@ -16,6 +18,7 @@ from tests.groundstation.ui.ptys import until
 
 ESC, LEFT, BACKSPACE = "\x1b[27u", "\x1b[D", "\x7f"
 """Escape as the kitty keyboard protocol sends it: alone, whatever follows."""
+F1, F6 = "\x1bOP", "\x1b[17~"
 EDITS = f"ab{BACKSPACE}c{LEFT}d"
 """Leaves "adc", if each key acts where it stands."""
 FILTERED = ("3", "4", "6")
@@ -76,3 +79,28 @@ async def test_lines_that_follow_each_other_on_the_command_line() -> None:
         await until(lambda: isinstance(screen.app.screen, CommandLine))
         type_in(screen, f"mapp{BACKSPACE}\r")
         await until(lambda: "map" in type(screen.app.screen).__name__.lower())
+
+
+@pytest.mark.parametrize(
+    ("keys", "shown"), [(F1 * 4, DriveScreen), (f"{F1}{F6}", LogScreen), (f"{F6}{F1}{F1}", DriveScreen)]
+)
+async def test_function_keys_on_the_command_line_close_it_and_nothing_else(
+    keys: str, shown: type[ConsoleScreen]
+) -> None:
+    async with console() as screen:
+        type_in(screen, ":")
+        await until(lambda: isinstance(screen.app.screen, CommandLine))
+        type_in(screen, keys)
+        await until(lambda: isinstance(screen.app.screen, shown))
+        await screen.pilot.pause()
+        assert screen.app.drive in screen.app.screen_stack
+
+
+async def test_text_pasted_behind_the_end_of_the_command_line_closes_nothing() -> None:
+    async with console() as screen:
+        type_in(screen, ":")
+        await until(lambda: isinstance(screen.app.screen, CommandLine))
+        type_in(screen, f"{F1}\x1b[200~\r\r\x1b[201~")
+        await until(lambda: screen.app.drive.is_current)
+        await screen.pilot.pause()
+        assert screen.app.drive.is_current
