@@ -35,6 +35,7 @@ class ReportScreen(Intent, frozen=True):
     """Another screen came up. The station only notes it in the telemetry log."""
 
     is_input = False
+    valid_when_late = True
     screen: str
     """Its id."""
 
