@@ -34,6 +34,15 @@ def test_the_first_vehicle_is_selected() -> None:
     assert texts(log) == ["Rover 7 found", "Rover 3 found"]
 
 
+def test_the_first_vehicle_is_announced_once_it_can_be_shown() -> None:
+    fleet, _ = fleet_of()
+    shown: list[int] = []
+    fleet.on_first = lambda: shown.append(0 if fleet.selected is None else fleet.selected.state.system)
+    for system in (7, 3, 7):
+        fleet.get_or_add(beat(system), 1.0)
+    assert shown == [7]
+
+
 def test_only_a_heartbeat_of_a_vehicle_adds_one() -> None:
     fleet, _ = fleet_of()
     assert not is_vehicle(beat(1, autopilot=Autopilot.INVALID).message)
