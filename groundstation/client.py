@@ -143,10 +143,11 @@ class StationClient:
                 process.send_arguments(arguments)
             meanwhile()
             ready = _read_ready(process.pipe, START_TIMEOUT)
-        except BaseException as error:
+        except ArgumentsError as error:
+            process.end()
+            raise StationError(str(error)) from error
+        except BaseException:
             process.end(CLOSE_TIMEOUT)
-            if isinstance(error, ArgumentsError):
-                raise StationError(str(error)) from error
             raise
         process.pipe.setblocking(False)
         return cls(*process.release(), ready)
