@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import pytest
 from msgspec.structs import replace
 
 from link.endpoint import Side, parse_endpoint
-from link.fleet.config import LEASE, load_config
+from link.fleet.config import LEASE, THREADS, THREADS_VARIABLE, load_config, load_zenoh
 from link.fleet.transport import open_fleet
 from link.signing.role import Role
 from link.transport.reach import is_private
@@ -115,3 +116,12 @@ def test_without_the_package_one_line_says_how_to_install_it(monkeypatch: pytest
     with pytest.raises(LinkError, match=r"^fleets need the package eclipse-zenoh: pip install 'mavhelm\[fleet\]'$"):
         open_fleet(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
     assert not is_private(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
+
+
+def test_zenoh_has_one_pool_of_threads_unless_the_user_chooses_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(THREADS_VARIABLE, "(rx: (worker_threads: 3))")
+    load_zenoh()
+    assert os.environ[THREADS_VARIABLE] == "(rx: (worker_threads: 3))"
+    monkeypatch.delenv(THREADS_VARIABLE)
+    load_zenoh()
+    assert os.environ[THREADS_VARIABLE] == THREADS
