@@ -15,6 +15,7 @@ from groundstation.screens import SCREENS
 from groundstation.ui.command_history import CommandHistory, complete_text
 from groundstation.ui.keys.keynames import is_character
 from groundstation.ui.local_lines import complete_local, find_local
+from groundstation.ui.screens.own_dismissal import OwnDismissal
 from groundstation.ui.screens.screen import ScreenContext
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.line_field import FieldUse, LineField
@@ -26,7 +27,7 @@ _SCREENS = frozenset(row.action for row in SCREENS)
 HINT = "verb, screen, endpoint or /filter · TAB completes · ↑ ↓ lines before · ESC closes"
 
 
-class CommandLine(ModalScreen[str]):
+class CommandLine(OwnDismissal[str], ModalScreen[str]):
     """Gives the line that is done here, or "". Keys do not drive meanwhile; all but stop keys are text."""
 
     AUTO_FOCUS = ""
@@ -98,8 +99,7 @@ class CommandLine(ModalScreen[str]):
         event.stop()
         action = self.context.keymap.get_action(event.key)
         if action is not None and action.id in _SCREENS and not is_character(event.key):
-            if self.is_current:  # the second key of one read comes here, too, and would close the Drive screen
-                self.dismiss("")
+            self.dismiss("")
             self.context.perform(action)
             return
         if not self.is_current or (self._asked is not None and isinstance(event, KeyRepeat)):

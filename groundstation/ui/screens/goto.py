@@ -14,6 +14,7 @@ from groundstation.actions import ACTIONS, OperatorAction
 from groundstation.screens import SCREENS
 from groundstation.ui.keys.keynames import format_key
 from groundstation.ui.look.colours import DIM, YELLOW
+from groundstation.ui.screens.own_dismissal import OwnDismissal
 from groundstation.ui.screens.screen import ScreenContext
 from groundstation.ui.terminal.key_parser import KeyRepeat
 
@@ -23,7 +24,7 @@ BEFORE = "before"
 """Result: the screen that was shown before."""
 
 
-class GoToMenu(ModalScreen[str]):
+class GoToMenu(OwnDismissal[str], ModalScreen[str]):
     """Gives the id of a row of SCREENS, BEFORE, or "" to stay. Keys do not drive meanwhile."""
 
     AUTO_FOCUS = ""

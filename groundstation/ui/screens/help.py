@@ -15,6 +15,7 @@ from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.keys.keynames import format_key
 from groundstation.ui.look.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.navigation import load_screen
+from groundstation.ui.screens.own_dismissal import OwnDismissal
 from groundstation.ui.screens.screen import ConsoleScreen
 
 TITLES = {
@@ -53,7 +54,7 @@ _MIN_WIDTH = 12
 _SCROLL_KEYS = ("up", "down", "pageup", "pagedown", "home", "end")
 
 
-class HelpScreen(ConsoleScreen):
+class HelpScreen(OwnDismissal[None], ConsoleScreen):
     """Two columns of text; any key that does not scroll goes back, the key of another screen opens it."""
 
     AUTO_FOCUS = "#page"
@@ -72,8 +73,7 @@ class HelpScreen(ConsoleScreen):
         action = self.context.keymap.get_action(event.key)
         if event.key in _SCROLL_KEYS or (action is not None and action.id in _OTHER_SCREENS):
             return False
-        if self.is_current:  # the second key of one read comes here too, and would close the Drive screen
-            self.dismiss()
+        self.dismiss()
         return True
 
     def _lines(self) -> Iterator[tuple[str, str]]:
