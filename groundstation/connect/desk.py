@@ -62,13 +62,8 @@ class ConnectDesk:
             case CloseLink():
                 self._keeper.close(intent.link, now)
             case StartSimulator():
-                self.start_simulator(now, intent.kind)
-
-    def start_simulator(self, now: float, kind: str = "rover") -> None:
-        """Start simulators that send to the first of our links that listens on this machine, or to a new one."""
-        error = self._start_simulator(kind)
-        if error is not None:
-            self._warn(now, error)
+                if (problem := self._start_simulator(intent.kind)) is not None:
+                    self._warn(now, problem)
 
     def tick(self, now: float) -> None:
         """Open and close what is due, and notice the end of a simulator."""
@@ -93,6 +88,7 @@ class ConnectDesk:
     # ---- parts ----
 
     def _start_simulator(self, kind: str) -> str | None:
+        """Start simulators that send to the first of our links that listens, or to a new one; return what failed."""
         if self._simulators.running:
             return None
         if not any(_takes_simulator(link) for link in self._runner.links):

@@ -58,8 +58,6 @@ def run(options: argparse.Namespace, pipe: socket.socket | None, started: Starte
         host.add_to_log(now, note.text, note.severity)
     for problem in texts.problems:
         host.add_to_log(now, problem, Severity.WARNING)
-    if options.sitl:
-        host.connect.start_simulator(now)
     startup_gc.resume()
     try:
         return run_loop(host.run())

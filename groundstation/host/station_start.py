@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from dialects.enums import Severity
 from dialects.extra.errors import DialectError
 from dialects.extra.option import Note, use_dialect
 from groundstation.connect.signing import SigningError, StationSigning
@@ -37,7 +38,7 @@ class StartedStation(msgspec.Struct, frozen=True):
     signing: StationSigning
     simulators: SimulatorControl
     notes: Sequence[Note]
-    """On the dialect file."""
+    """For the log: on the dialect file, and on a simulator that did not start."""
 
 
 def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedStation:
@@ -59,8 +60,9 @@ def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedSta
         watchdog.close()
         raise StartError(_one_line(error)) from error
     simulators = SimulatorControl()
-    if options.sitl:  # an error shows later: one that does not run is started again
-        simulators.start([link.endpoint for link in links])
+    problem = simulators.start([link.endpoint for link in links]) if options.sitl else None
+    if problem is not None:
+        notes = (*notes, Note(problem, Severity.WARNING))
     return StartedStation(known, links, watchdog, sent, signing, simulators, notes)
 
 
