@@ -144,6 +144,13 @@ class GroundStation:
         """Hold a key down, with auto-repeat, until the condition `until`; then release it."""
         assert self.held(key, until, within), f"holding {key!r} for {within} s did not do it\n{self.drawn()}"
 
+    def press_until(self, key: str, until: Callable[[], bool]) -> None:
+        """Hold a key down until the condition, from time to time anew: a late machine may have closed the gate."""
+        deadline = time.monotonic() + PATIENCE
+        while not self.held(key, until, 5.0):
+            assert time.monotonic() < deadline, f"pressing {key!r} for {PATIENCE} s did not do it\n{self.drawn()}"
+            self.look(LET_GO)
+
     def held(self, key: str, until: Callable[[], bool], within: float) -> bool:
         """Do the same; return False if the condition is not true within `within` s."""
         deadline = time.monotonic() + within

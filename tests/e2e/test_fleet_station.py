@@ -49,7 +49,7 @@ def driven(tmp_path: Path) -> Iterator[Driven]:
 
 def test_the_vehicle_stops_by_its_own_rule(driven: Driven) -> None:
     vehicle, screen, waits = driven.vehicle, driven.screen, Waits(driven.vehicle.process.pid)
-    screen.hold("i", vehicle.at_full)
+    screen.press_until("i", vehicle.at_full)
     at = time.monotonic()
     os.kill(driven.station, signal.SIGKILL)
     screen.wait_for(vehicle.stands, PATIENCE, "the wheels stop")

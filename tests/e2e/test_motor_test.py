@@ -46,20 +46,20 @@ def test_a_wheel_turns_while_its_key_is_held_and_stops_with_everything_else(rig:
     program.wait_for(lambda: b"DISARMED" in program.screen, PATIENCE, "a vehicle")
     begin(program)
 
-    program.hold("1", vehicle.turning)
+    program.press_until("1", vehicle.turning)
     world.watch()
     let_go = time.monotonic()
     assert stopped_after(world, let_go) < 1.1 + MARGIN + world.asking.total(), "the key is released"
 
     program.look(1.2)
-    program.hold("2", vehicle.turning)
+    program.press_until("2", vehicle.turning)
     world.watch()
     switched = time.monotonic()
     program.type(F6)
     assert stopped_after(world, switched) < MARGIN + world.asking.total(), "another screen"
 
     begin(program)
-    program.hold("1", vehicle.turning)
+    program.press_until("1", vehicle.turning)
     station = station_of(program)
     world.watch()
     killed = time.monotonic()

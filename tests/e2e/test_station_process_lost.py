@@ -78,9 +78,9 @@ class Bench:
         self.before = termios.tcgetattr(self.program._terminal)
         self.program.wait_for(lambda: b"DISARMED" in self.program.screen, PATIENCE, "a vehicle")
         while not self.rover.armed:  # again, if a late machine makes two presses of one, of which the second disarms
-            self.program.hold("r", lambda: self.rover.armed)
+            self.program.press_until("r", lambda: self.rover.armed)
             self.program.look(LET_GO)
-        self.program.hold("i", lambda: self.rover.moves)
+        self.program.press_until("i", lambda: self.rover.moves)
         self.station = station_of(self.program)
         self.waits = Waits(self.program.process.pid, self.station)
 

@@ -47,9 +47,9 @@ def attach_pty(command: list[str], folder: Path) -> tuple[subprocess.Popen[bytes
 class Terminal:
     """The person's end of the pseudo-terminal: reads what is drawn, answers pings while told to."""
 
-    def __init__(self, master: int, slave: int) -> None:
+    def __init__(self, master: int, slave: int, *, answers: bool = True) -> None:
         self.drawn = bytearray()
-        self.answers = True
+        self.answers = answers
         self._master, self._slave = master, slave
         self._hung_up = False
         self._loop = asyncio.get_running_loop()
@@ -103,13 +103,13 @@ async def until(wanted: Callable[[], Value], within: float = PATIENCE) -> Value:
 
 @contextlib.asynccontextmanager
 async def app_on_a_pty(
-    size: tuple[int, int] = (100, 30), *, look: Look = PLAIN, folder: Path = Path()
+    size: tuple[int, int] = (100, 30), *, look: Look = PLAIN, folder: Path = Path(), answers: bool = True
 ) -> AsyncIterator[tuple[ConsoleApp, Recorder, Terminal]]:
     """The app with the Drive screen up and its gate open; on leaving it is quit if it has not ended by itself."""
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
     handlers = {number: signal.getsignal(number) for number in (signal.SIGTSTP, signal.SIGCONT, signal.SIGWINCH)}
-    recorder, terminal = Recorder(), Terminal(master, slave)
+    recorder, terminal = Recorder(), Terminal(master, slave, answers=answers)
     app = ConsoleApp(recorder, STANDARD, terminal=TerminalFile(slave, slave), folder=folder, look=look)
     running = asyncio.create_task(app.run_async(mouse=False))
     try:

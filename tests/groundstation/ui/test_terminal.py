@@ -83,9 +83,7 @@ async def test_a_terminal_that_stops_answering_closes_the_gate_until_it_answers_
 
 
 async def test_a_terminal_that_never_answers_may_drive() -> None:
-    async with app_on_a_pty() as (app, _, terminal):
-        terminal.answers = False
-        app.gate.ping.__init__()  # type: ignore[misc]
+    async with app_on_a_pty(answers=False) as (app, _, _):
         begun = asyncio.get_running_loop().time()
         await until(lambda: asyncio.get_running_loop().time() > begun + 1.2)
         assert app.gate.closure is None
