@@ -198,17 +198,16 @@ class PlaceKeeper(Protocol):
         """System and component id of the ground station in control, or None."""
 
 
-REST_PERIOD = 0.1
-"""s between two ticks of a core that rests."""
-
-
 @runtime_checkable
 class RestingCore(Protocol):
     """A core that has nothing to do for some time."""
 
     @property
-    def may_rest(self) -> bool:
-        """Whether ticks every REST_PERIOD are enough until the next message arrives, after which it is asked again."""
+    def rest_period(self) -> float | None:
+        """Time between ticks, s, that is enough until the next message or `Runner.flush`; then it is asked again.
+
+        None: it needs all ticks.
+        """
 
 
 @runtime_checkable

@@ -14,7 +14,6 @@ from dialects.codec import EncodeError, encode_payload
 from dialects.enums import Severity
 from dialects.messages import Message
 from link.core import (
-    REST_PERIOD,
     Core,
     EarlyActor,
     LinkReport,
@@ -82,7 +81,8 @@ class Runner:
         self._on_sent = sent
         self._keeper = core if isinstance(core, PlaceKeeper) else None
         self._resting = core if isinstance(core, RestingCore) else None
-        self._rests = False
+        self._rest: float | None = None
+        """s between ticks while the core rests."""
         self._onlooker = core if isinstance(core, Onlooker) else None
         self._looked_at: frozenset[int] | None = None
         self._early = core if isinstance(core, EarlyActor) else None
@@ -175,7 +175,11 @@ class Runner:
 
     def flush(self) -> None:
         """Send the core's messages now, after it was changed by something other than a link."""
-        self._guard(self._flush)
+        self._guard(self._flush_change)
+
+    def _flush_change(self) -> None:
+        self._flush()
+        self._shorten_rest()
 
     def _send_remaining(self) -> None:
         """Send the core's last messages when run() ends, also after an exception."""
@@ -235,8 +239,7 @@ class Runner:
             now = loop.time()  # of each: a change behind a repeat moves the ramps in this call, not a cycle later
             self._hand_over(self._links[index].channel.receive(data, address, now), now)
         self._flush()
-        if self._rests:
-            self._end_rest()
+        self._shorten_rest()
         if self._router:  # after our own replies, which go first
             self._forward(self._router.receive(index, received, loop.time()))
 
@@ -253,18 +256,21 @@ class Runner:
         self._guard(self._run_tick)
         loop = asyncio.get_running_loop()
         # Absolute deadlines do not drift. After a pause missed ticks are skipped.
-        self._rests = self._resting is not None and self._resting.may_rest
-        if self._rests:
-            self._tick_due = next_multiple(REST_PERIOD, loop.time())
+        self._rest = self._resting.rest_period if self._resting is not None else None
+        if self._rest is not None:
+            self._tick_due = next_multiple(self._rest, loop.time())
         else:
             self._tick_due = max(self._tick_due + self._period, loop.time())
         self._timer = loop.call_at(self._tick_due, self._tick)
 
-    def _end_rest(self) -> None:
-        """Tick as soon as the loop is free if a message has given the core something to do."""
-        if self._resting is None or self._resting.may_rest or self._timer is None:
+    def _shorten_rest(self) -> None:
+        """Tick as soon as the loop is free if the core has got something to do."""
+        if self._rest is None or self._resting is None or self._timer is None:
             return
-        loop, self._rests = asyncio.get_running_loop(), False
+        rest = self._resting.rest_period
+        if rest is not None and rest >= self._rest:
+            return
+        loop, self._rest = asyncio.get_running_loop(), None
         self._timer.cancel()
         self._tick_due = loop.time()
         self._timer = loop.call_at(self._tick_due, self._tick)

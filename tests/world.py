@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.core import REST_PERIOD, Core, EarlyActor, Outgoing, RestingCore, SendListener
+from link.core import Core, EarlyActor, Outgoing, RestingCore, SendListener
 from link.protocol.channel import Channel
 from link.runner import REPORT_PERIOD
 from link.transport.memory import LossyPipe
@@ -32,8 +32,8 @@ class Host:
     """The core, if it may have something to do between two ticks."""
     resting: RestingCore | None = field(init=False)
     """The core, if it may need fewer ticks."""
-    rests: bool = False
-    """It needs fewer ticks now."""
+    rest: float | None = None
+    """s between the ticks that it needs now; None: all."""
 
     def __post_init__(self) -> None:
         self.listener = self.core if isinstance(self.core, SendListener) else None
@@ -53,8 +53,8 @@ class Host:
             self.channel.expire_peers(now)
             self.core.observe([self.channel.report()], now)
         self.core.tick(now)
-        self.rests = self.resting is not None and self.resting.may_rest
-        self.tick_due = max(self.tick_due + (REST_PERIOD if self.rests else self.period), now)
+        self.rest = self.resting.rest_period if self.resting is not None else None
+        self.tick_due = max(self.tick_due + (self.period if self.rest is None else self.rest), now)
 
     def receive(self, data: bytes, address: Hashable, now: float) -> None:
         """Do what the runner does when data arrives."""
@@ -62,8 +62,14 @@ class Host:
             return
         for received in self.channel.receive(data, address, now):
             self.core.receive(received, now)
-        if self.rests and self.resting is not None and not self.resting.may_rest:
-            self.rests, self.tick_due = False, now
+        self.shorten_rest(now)
+
+    def shorten_rest(self, now: float) -> None:
+        """Tick at once if the core has got something to do."""
+        if self.rest is not None and self.resting is not None:
+            rest = self.resting.rest_period
+            if rest is None or rest < self.rest:
+                self.rest, self.tick_due = None, now
 
     def pop_frames(self, now: float, to: Hashable) -> list[bytes]:
         """Return the frames to send to an address; those to others are lost."""
@@ -138,6 +144,8 @@ class World:
     def settle(self) -> None:
         """Send what the cores have, without letting time pass: for intents that come between two steps."""
         self._exchange()
+        self.near.shorten_rest(self.now)
+        self.far.shorten_rest(self.now)
 
     def _one_step(self) -> None:
         for data in self.down.receive(self.now):

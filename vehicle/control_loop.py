@@ -5,7 +5,7 @@ It is a core like the rover inside it, so that tests run it in virtual time. Its
 - a motor driver that fails is stopped first, and reported to the rover after that;
 - the emergency-stop input is read and the motors are written each cycle, and an input that cannot be read counts as
   pressed; sensors and all that follows from them may be left out in a short cycle (Controller.tick_outputs);
-- while no motor has power cycles may be left out (`may_rest`), but not before a message that may need them;
+- while no motor has power cycles may be left out (`rest_period`), but not before a message that may need them;
 - an exception of any kind stops the motors before it propagates;
 - once closed, no motor turns again, whatever the outputs of the rover are.
 """
@@ -16,7 +16,7 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from link.core import REST_PERIOD, Core, LinkReport, Outgoing, Received
+from link.core import Core, LinkReport, Outgoing, Received
 from vehicle.drive.gate import Outputs
 from vehicle.motors import MotorError, Motors, StopPressedError
 from vehicle.readings import Readings
@@ -24,8 +24,6 @@ from vehicle.sensors import Sensors
 
 CYCLE = 0.02
 """s between two cycles, unless the controller rests: 50 Hz is the rate of servos and motor controllers of this size."""
-LONGEST_REST = REST_PERIOD + CYCLE
-"""s from which on a pause is not a rest but a late cycle, which the controller must see."""
 MOTOR_RETRY_TIME = 1.0
 """s after a motor failure until the motors are tested again, at neutral: a driver may recover from a short loss of its
 bus, and must not be tried so often that the bus stays busy."""
@@ -59,8 +57,11 @@ class Controller(Core, Protocol):
         False: nothing was done, and this cycle is a whole one. `powered`: the motors have power, or may have it.
         """
 
-    def may_rest(self, now: float) -> bool:
-        """Return whether a cycle every REST_PERIOD is enough until the next message, as long as no motor has power."""
+    def rest_period(self, now: float) -> float | None:
+        """Return the s between cycles that are enough until the next message, as long as no motor has power.
+
+        None: all cycles are needed.
+        """
 
     def shutdown(self, now: float) -> None:
         """Queue the last messages; the motors are stopped by now."""
@@ -169,13 +170,17 @@ class ControlLoop:
         self._closed = False
 
     @property
-    def may_rest(self) -> bool:
-        """Whether a cycle every REST_PERIOD is enough until the next message: without power, and with nothing to do."""
-        return not self._drivetrain.powered and self._retry_due is None and self._controller.may_rest(self._cycled)
+    def rest_period(self) -> float | None:
+        """Time between cycles, s, that is enough until the next message; None: a motor has power, or there is work."""
+        if self._drivetrain.powered or self._retry_due is not None:
+            return None
+        return self._controller.rest_period(self._cycled)
 
     def receive(self, received: Received, now: float) -> None:
         """Act on one message, down to the motors. A cycle that a rest has left out comes before it."""
-        if CYCLE < now - self._cycled < LONGEST_REST and self.may_rest:
+        pause = now - self._cycled
+        # A pause that is longer than the rest is a late cycle, which the controller must see.
+        if pause > CYCLE and (rest := self.rest_period) is not None and pause < rest + CYCLE:
             self._guard(lambda: self._cycle(now), now)
         self._guard(lambda: self._controller.receive(received, now), now)
 

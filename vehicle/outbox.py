@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from link.core import Outgoing
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.commands.dispatch import Dispatcher
-from vehicle.pace import Activity, Pace
+from vehicle.pace import PERIOD, Activity, Pace
 from vehicle.safety.state_machine import Safety
 from vehicle.safety.states import SafetyState
 from vehicle.statustext import StatusTextQueue
@@ -85,7 +85,7 @@ class Outbox:
     def _follow_cycle(self, now: float) -> None:
         failsafes = self._safety.failsafes
         condition = (self._safety.state, self._safety.mode_generation, failsafes.active, failsafes.latched)
-        if condition != self._condition or self._rack.repeating or self._telemetry.fast:
+        if condition != self._condition or self._rack.repeating or self._telemetry.shortest < PERIOD:
             self._condition = condition
             self._activity.stir(now)
         whole = self._services.is_due(now)

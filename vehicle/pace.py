@@ -6,6 +6,8 @@ from dialects.messages import Heartbeat, ManualControl, Ping, RoverOperatorPrese
 
 PERIOD = 0.1
 """s between two times while nothing is under way: every fifth control cycle."""
+REST_PERIOD = 0.2
+"""s between two control cycles of a disarmed rover with nothing under way: the interval of its fastest stream."""
 BUSY_TIME = 2.0
 """s in each cycle after the last event: longer than what is under way is silent."""
 EARLY = 0.005

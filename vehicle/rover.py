@@ -22,7 +22,7 @@ from vehicle.drive.drive import Drive
 from vehicle.drive.gate import DRIVE, Outputs
 from vehicle.modes import MODES
 from vehicle.outbox import Outbox
-from vehicle.pace import ROUTINE, Activity, Pace
+from vehicle.pace import PERIOD, REST_PERIOD, ROUTINE, Activity, Pace
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety.failsafe import FailsafeAction
@@ -225,9 +225,11 @@ class Rover:
         self._monitor.skip_cycle(now)
         return True
 
-    def may_rest(self, now: float) -> bool:
-        """Return whether a cycle every PERIOD is enough until the next message: disarmed, nothing under way."""
-        return not (self._safety.armed or self._actuator_test.running or self._activity.is_busy(now))
+    def rest_period(self, now: float) -> float | None:
+        """Return the s between cycles that are enough until the next message: disarmed, nothing under way; or None."""
+        if self._safety.armed or self._actuator_test.running or self._activity.is_busy(now):
+            return None
+        return REST_PERIOD if self._telemetry.shortest >= REST_PERIOD else PERIOD
 
     def shutdown(self, now: float) -> None:
         """Set neutral outputs, disarm, and queue one HEARTBEAT with MAV_STATE_POWEROFF. The last call."""

@@ -5,19 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable
 
+from groundstation.intents import session
+
 SLOT = 0.1
 """s between two calls: within that a screen shows who drives, what is armed, what stops, and the keys that count."""
 
 STEADY_PERIOD, REST_PERIOD = 0.2, 0.5
-"""s between snapshots that only have other readings: faster than a person reads figures; and while the station stands
-idle, when only the readings of vehicles that stand change."""
+"""s between snapshots that only have other readings: faster than a person reads figures; and while the station rests,
+when only the readings of vehicles that stand change."""
+
+CALLS_AT_REST = session.REST_PERIOD
+"""s between two calls at rest. What ends the rest brings a call at once."""
 
 LIVELY = 1.0
-"""s after an intent of a screen, or a new line of the log, for which a station that stands idle does not rest."""
+"""s after an intent of a screen, or a new line of the log, for which a station that rests sends as many as before."""
 
 
 class SnapshotPace:
-    """Decides every SLOT whether to send one."""
+    """Decides every SLOT, and at rest every CALLS_AT_REST, whether to send one."""
 
     def __init__(self) -> None:
         self._sent_at = self._lively_at = -math.inf
@@ -26,6 +31,10 @@ class SnapshotPace:
     def note(self, now: float) -> None:
         """Note that something was done, of which a screen waits to see the effect."""
         self._lively_at = now
+
+    def call_period(self, now: float, *, rests: bool) -> float:
+        """Return the s until the next call of `is_due`; `rests` as there."""
+        return CALLS_AT_REST if self._rests(now, rests=rests) else SLOT
 
     def is_due(self, now: float, *, rests: bool, decisive: Hashable) -> bool:
         """Return whether to send a snapshot now; it then counts as sent.
@@ -40,4 +49,7 @@ class SnapshotPace:
         return True
 
     def _period(self, now: float, *, rests: bool) -> float:
-        return REST_PERIOD if rests and now - self._lively_at > LIVELY else STEADY_PERIOD
+        return REST_PERIOD if self._rests(now, rests=rests) else STEADY_PERIOD
+
+    def _rests(self, now: float, *, rests: bool) -> bool:
+        return rests and now - self._lively_at > LIVELY

@@ -98,6 +98,9 @@ class StationHost:
         """Parts beside the station and its links that take intents, and the time."""
         self._last_snapshot = Snapshot()
         self._pace = SnapshotPace()
+        self._slot: asyncio.Handle | None = None
+        """The next call of `_run_slot`."""
+        self._slot_period = SLOT
         self._addresses = LocalAddresses()
         self._lasting_alerts = LastingAlerts()
         self._broken = self._ending = False
@@ -112,12 +115,14 @@ class StationHost:
             self.screens.add(self._pipe, self._screen, owner=True)
         if problem := self._listener.start():
             self.add_to_log(loop.time(), f"no other program can use this station: {problem}")
-        show = loop.create_task(self._send_snapshots())
+        self._slot = loop.call_soon(self._run_slot)
+        self._station.on_rest_end = self._rouse
         self._station.fleet.on_first = lambda: loop.call_soon(lambda: self._send_snapshot(loop.time()))
         try:
             await self._runner.run()
         finally:
-            show.cancel()
+            if self._slot is not None:
+                self._slot.cancel()
             self._listener.close()
             self.screens.close()
             self.verbs.close()
@@ -135,6 +140,7 @@ class StationHost:
     def handle(self, intent: AnyIntent, now: float, read_at: float) -> None:
         """Carry out an intent of a screen."""
         self._pace.note(now)
+        self._rouse()
         self._station.handle_intent(intent, now, read_at=read_at)
         self.connect.handle(intent, now)
         for handle in self.handlers:
@@ -173,20 +179,26 @@ class StationHost:
         self.verbs.add(caller.sock, f"{hello.name} (pid {caller.pid})", hello)
         return None
 
-    async def _send_snapshots(self) -> None:
-        """Send what is due to the screens at absolute deadlines, and do what is due for the links."""
+    def _run_slot(self) -> None:
+        """Do what is due for the links and the screens, and plan the next slot."""
+        if self._broken:
+            return
         loop = asyncio.get_running_loop()
-        while not self._broken:
-            try:
-                self._keep_up(loop.time())
-            except Exception as error:  # nothing awaits this task, so the exception would be lost
-                self._handle_crash(error)
-            now = loop.time()
-            await asyncio.sleep(next_multiple(SLOT, now) - now)
+        self._keep_up(loop.time())  # an exception ends the station, see _handle_loop_exception
+        now = loop.time()
+        self._slot_period = self._pace.call_period(now, rests=self._station.rests)
+        self._slot = loop.call_at(next_multiple(self._slot_period, now), self._run_slot)
+
+    def _rouse(self) -> None:
+        """Let the next slot come at once if it is one of a rest."""
+        if self._slot is not None and self._slot_period > SLOT:
+            self._slot.cancel()
+            self._slot_period = SLOT
+            self._slot = asyncio.get_running_loop().call_soon(self._run_slot)
 
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""
-        if not self._watchdog.report(self._station.report_to_watchdog(now), now):
+        if not self._watchdog.report(self._station.report_to_watchdog(now), now, rests=self._station.rests):
             self.add_to_log(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
 
     def _keep_up(self, now: float) -> None:
@@ -197,7 +209,7 @@ class StationHost:
         if self._recording:
             self._recording.tick(now)
         self._disk.run()
-        if self._pace.is_due(now, rests=self._station.stands_idle, decisive=self._station.decisive(now)):
+        if self._pace.is_due(now, rests=self._station.rests, decisive=self._station.decisive(now)):
             self._send_snapshot(now)
         self.screens.send_views(now)
 

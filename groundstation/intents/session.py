@@ -9,6 +9,15 @@ LEASE_TIMEOUT = 0.3
 drawing (0.1 s). A frozen screen then means neutral well within 0.5 s."""
 
 
+REST_PERIOD = 0.25
+"""s between renewals, and between ticks of the station and its reports to the watchdog, while the station rests: no
+vehicle is armed, nothing is under way. All come at the multiples of it, because to wake a process costs more than what
+it does then."""
+
+REST_LEASE_TIMEOUT = 1.0
+"""s, as LEASE_TIMEOUT, while the station rests."""
+
+
 class ReportKeyReleases(Intent, frozen=True):
     """The terminal has proved that it reports key releases: no timers are needed any more."""
 

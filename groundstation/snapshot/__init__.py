@@ -279,6 +279,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""
     replay: ReplayStatus | None = None
     """None: vehicles are heard on links."""
+    rests: bool = False
+    """The station rests: REST_LEASE_TIMEOUT (groundstation/intents/session.py) is enough for renewals of the lease."""
 
 
 class StationOutage(msgspec.Struct, frozen=True, tag=True):

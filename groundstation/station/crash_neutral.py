@@ -44,9 +44,9 @@ class CrashNeutral:
         return not (self._left or self._outbox) if self._active else self._station.finished
 
     @property
-    def may_rest(self) -> bool:
-        """The station may, and it still runs."""
-        return not self._active and self._station.may_rest
+    def rest_period(self) -> float | None:
+        """That of the station while it runs."""
+        return None if self._active else self._station.rest_period
 
     @property
     def looked_at(self) -> frozenset[int] | None:

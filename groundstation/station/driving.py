@@ -15,6 +15,9 @@ from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.latency import SentDemand
 from link.core import Outgoing
 
+EARLY = 0.02
+"""s by which a proof may be early: ticks come at the same period, and each of them a little late."""
+
 
 class DrivingController:
     """Connects the operator with the selected vehicle. `ids` are our system and component id."""
@@ -217,7 +220,8 @@ class DrivingController:
     def _queue_idle_proof(self, now: float) -> None:
         """Prove this session to the selected vehicle while it gets no demands, so that arming finds it proven."""
         contact = self._fleet.selected
-        if contact is None or self._ending or not self._operator.live or now - self._proven_at < IDLE_PROOF_PERIOD:
+        proven = now - self._proven_at < IDLE_PROOF_PERIOD - EARLY
+        if contact is None or self._ending or not self._operator.live or proven:
             return
         state = contact.state
         if state.has_rover_dialect and state.system not in self._demands:

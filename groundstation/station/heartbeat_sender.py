@@ -17,8 +17,8 @@ after a heartbeat, and drives again within 1 s of the change."""
 GREETING, GREETING_PERIOD = 1.0, 0.2
 """s for which, and s between which, heartbeats go to a vehicle at a new address: all are lost once in 400 at 30 %."""
 
-LATEST = 0.15
-"""s by which a tick may be late: one comes at least every 0.1 s."""
+EARLY, LATEST = 0.02, 0.15
+"""s by which a heartbeat may be early, because ticks come a little late, and late without being put off."""
 
 MAX_PEERS = 2 * MAX_VEHICLES
 """Addresses of vehicles remembered; each restart of a vehicle may bring another. With fewer places than vehicles all of
@@ -46,7 +46,7 @@ class HeartbeatSender:
         """Return the heartbeat to send now, if one is due. `driving`: we control an armed vehicle."""
         if driving:
             self._due = min(self._due, self._sent_at + DRIVING_PERIOD)
-        if now < self._due:
+        if now < self._due - EARLY:
             return []
         self._sent_at = self._due if now - self._due < LATEST else now  # a late tick must not lower the rate
         self._due = self._sent_at + (GREETING_PERIOD if now < self._greet_until else HEARTBEAT_PERIOD)

@@ -17,7 +17,7 @@ from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, DrivePad
-from groundstation.intents.session import LEASE_TIMEOUT, SetKeyGate
+from groundstation.intents.session import LEASE_TIMEOUT, REST_LEASE_TIMEOUT, SetKeyGate
 from groundstation.snapshot import OperatorView
 from groundstation.station.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor
@@ -30,7 +30,7 @@ NEUTRAL_LEAD = 0.15
 """s of neutral demands (three frames or four) before keys drive: the vehicle requires neutral after arming, a new mode
 or a new driver, and a key pressed in that moment would otherwise have to be released and pressed again."""
 
-IDLE_PROOF_PERIOD = 0.3
+IDLE_PROOF_PERIOD = 0.25
 """s between proofs of this session to the selected vehicle of our dialect while it gets no demand: arming, and every
 other command, counts only of a session that was proven in the last second, and two proofs in a row may get lost."""
 
@@ -72,6 +72,7 @@ class OperatorSession:
         self._input_count = 0
         self.session = session
         self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
+        self._rest_ended_at = -math.inf
         self._clock = 0
         self._live = False
         self._unreported_lapse: str | None = None
@@ -90,6 +91,12 @@ class OperatorSession:
             self._thawed_at = now + THAW if self._lease.ever_heard else now
         self._live = True
         self._lease.update(now)
+
+    def set_resting(self, rests: bool, now: float) -> None:
+        """Let the screen renew less often while the station rests. When that ends it has LEASE_TIMEOUT to renew."""
+        self._check_lease(now)
+        self._lease.timeout = REST_LEASE_TIMEOUT if rests else LEASE_TIMEOUT
+        self._rest_ended_at = -math.inf if rests else now
 
     def expire_lease(self, now: float) -> str | None:
         """Release all keys when the lease has run out. Returns what happened, once each time."""
@@ -190,7 +197,7 @@ class OperatorSession:
             self.sticks.changes_at(now),
             self._allowed_at + NEUTRAL_LEAD + LATER,
             self._thawed_at + LATER,
-            now - self._lease.silence(now) + LEASE_TIMEOUT + LATER,
+            self._lease_end(now) + LATER,
         )
         return min((at for at in ends if at is not None and at > now), default=None)
 
@@ -219,7 +226,7 @@ class OperatorSession:
         A station that stood still counts as one whose lease has run out, even if a renewal came just before.
         """
         stalled = self.stall.pop_stall(now)
-        if not self._live or (stalled is None and self._lease.is_alive(now)):
+        if not self._live or (stalled is None and now <= self._lease_end(now)):
             return
         self._live = False
         self.sticks.block(now)
@@ -227,6 +234,9 @@ class OperatorSession:
             self._unreported_lapse = f"display not responding for {self._lease.silence(now):.1f} s"
         else:
             self._unreported_lapse = f"station stopped for {stalled:.1f} s"
+
+    def _lease_end(self, now: float) -> float:
+        return max(now - self._lease.silence(now), self._rest_ended_at) + self._lease.timeout
 
     # ---- what others see ----
 

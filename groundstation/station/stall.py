@@ -11,19 +11,25 @@ STALL_TIMEOUT = 0.3
 screen, so that a busy machine causes no more stops than before."""
 
 
+REST_STALL_TIMEOUT = 1.0
+"""The same after a report that nothing is armed or under way: there is no vehicle to send neutral to."""
+
+
 class StallMonitor:
     """Time since the last report to the watchdog. Without any report, as without a watchdog, nothing is a stall."""
 
     def __init__(self) -> None:
         self._reported_at: float | None = None
+        self._timeout = STALL_TIMEOUT
 
-    def record_report(self, now: float) -> None:
-        """Record that a report was sent."""
+    def record_report(self, now: float, *, rests: bool = False) -> None:
+        """Record that a report was sent. `rests`: it says so, and the next one may follow later."""
         self._reported_at = now
+        self._timeout = REST_STALL_TIMEOUT if rests else STALL_TIMEOUT
 
     def is_stalled(self, now: float) -> bool:
-        """Return whether the last report is older than STALL_TIMEOUT."""
-        return self._reported_at is not None and now - self._reported_at > STALL_TIMEOUT
+        """Return whether the last report is older than STALL_TIMEOUT, or REST_STALL_TIMEOUT if it allowed that."""
+        return self._reported_at is not None and now - self._reported_at > self._timeout
 
     def pop_stall(self, now: float) -> float | None:
         """Return for how many s the process stood still, once each time; else None."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 
 from dialects import messages as m
 from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import REST_PERIOD
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot
 from groundstation.station.attention import Attention
@@ -58,6 +59,9 @@ DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 
 DECISIVE = (m.Heartbeat, m.ControlStatus, m.RoverControl, m.RoverDriveStatus)
 """Messages that report what decides on demands: armed, mode, who is in control, emergency stop."""
+
+TICK_PERIOD = 0.1
+"""s between ticks that are enough for demands, which have times of their own (`due_at`)."""
 
 
 class Station:
@@ -148,6 +152,10 @@ class Station:
         self._link_events = LinkEvents()
         self._outbox: list[Outgoing] = []
         self._snapshot_count = 0
+        self.rests = False
+        """No vehicle is armed or was driven just now, and nothing is under way."""
+        self.on_rest_end: Callable[[], None] = lambda: None
+        """Called at once when `rests` becomes False."""
 
     # ---- Core ----
 
@@ -185,6 +193,7 @@ class Station:
         self._doctor.receive(contact, received, now)
         if isinstance(received.message, DECISIVE):
             self.driving.handle_report(contact, now)
+            self._update_rest(now)
         elif isinstance(received.message, m.StatusText):
             self._handle_statustext(received.message, received.component, contact, now)
         if contact is self.fleet.selected:
@@ -214,6 +223,7 @@ class Station:
         self.departure.tick(now)
         self._charts.tick(now)
         self._detail.tick(now)
+        self._update_rest(now)
 
     @property
     def looked_at(self) -> frozenset[int] | None:
@@ -221,9 +231,16 @@ class Station:
         return self._attention.systems
 
     @property
-    def may_rest(self) -> bool:
-        """Whether ticks every 0.1 s are enough: nothing but demands is under way, and for them there is `due_at`."""
-        return not (
+    def rest_period(self) -> float | None:
+        """Time between ticks that are enough, s: nothing but demands is under way, and for them there is `due_at`."""
+        if self._busy:
+            return None
+        return REST_PERIOD if self.rests else TICK_PERIOD
+
+    @property
+    def _busy(self) -> bool:
+        """More than demands is under way."""
+        return (
             self._commander.busy
             or self.services.busy
             or self.relay.busy
@@ -232,11 +249,14 @@ class Station:
             or self.driving.ending
         )
 
-    @property
-    def stands_idle(self) -> bool:
-        """Whether no vehicle is armed or gets demands, and nothing is under way."""
+    def _update_rest(self, now: float) -> None:
         driven = any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
-        return self.may_rest and not driven
+        rests = not (self._busy or driven or self.driving.driven_vehicles(now))
+        if rests != self.rests:
+            self.rests = rests
+            self.operator.set_resting(rests, now)
+            if not rests:
+                self.on_rest_end()
 
     def decisive(self, now: float) -> Hashable:
         """Return what a driver must see at once if it changes: who drives what, armed, stopped, held keys, the log."""
@@ -244,7 +264,7 @@ class Station:
         state = selected.state if selected is not None else None
         vehicle = state and (state.system, state.armed, state.mode, state.driver, state.emergency_stop, state.failsafes)
         keys = (operator.sent_demand, operator.sticks.held_keys(now), operator.ignored(now))
-        others = (self.fleet.also_armed, self._handover.busy)
+        others = (self.fleet.also_armed, self._handover.busy, self.rests)
         return (self.driving.blocked_reason(now), self.log.state, vehicle, keys, others)
 
     @property
@@ -309,9 +329,10 @@ class Station:
         return not moves or not self.operator.stall.is_stalled(now)
 
     def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
-        """Return the vehicles that the watchdog stops if no further call follows within STALL_TIMEOUT."""
+        """Return the vehicles that the watchdog stops if no further call follows in time (stall.py)."""
         self._expire_lease(now)
-        self.operator.stall.record_report(now)
+        self._update_rest(now)
+        self.operator.stall.record_report(now, rests=self.rests)
         return self.driving.driven_vehicles(now)
 
     def renew_lease(self, now: float) -> bool:
@@ -347,6 +368,7 @@ class Station:
         self.driving.key_read_at = None
         self._log_driving(now)
         self.notes.handle(intent, now)
+        self._update_rest(now)
 
     @property
     def finished(self) -> bool:
@@ -380,6 +402,7 @@ class Station:
             recording=self.surroundings.recording,
             simulator=self.surroundings.simulator,
             transfers=self.services.progress,
+            rests=self.rests,
         )
         self._doctor.look(snapshot, now)
         return snapshot

@@ -20,7 +20,7 @@ from textual.screen import Screen
 from groundstation.actions import OperatorAction
 from groundstation.gamepad.child import GamepadChild
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents.session import RenewLease
+from groundstation.intents.session import REST_PERIOD, RenewLease
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import ReleaseControl
 from groundstation.snapshot import Snapshot
@@ -40,18 +40,17 @@ from groundstation.ui.replay.log_child import LogChild
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
-from groundstation.ui.terminal import drawn_lines, interpreter
+from groundstation.ui.terminal import drawn_lines, interpreter, tty_ping
 from groundstation.ui.terminal.console_driver import PING, ConsoleDriver, TerminalClosed
 from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.terminal.tmux import TmuxSession
 from groundstation.ui.terminal.tty_output import TerminalFile
-from groundstation.ui.terminal.tty_ping import PERIOD
 from groundstation.ui.ticks import Ticks
 from groundstation.ui.view_subscription import ViewSubscription
 from groundstation.views.line import LineView
 
 TICK = 0.1
-"""s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""
+"""s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows. At rest it is REST_PERIOD."""
 
 WITHOUT_SNAPSHOT, AT_REST = 0.25, 0.6
 """s without a drawing after which a tick draws: snapshots come every 0.2 s, and one that is a little late is no reason
@@ -119,9 +118,8 @@ class ConsoleApp(App[int]):
         self._subscription = ViewSubscription(self._navigator, self._send)
         self._quitting = Quitting(self, client, self.gate, self._log_child, lambda: self._snapshot.left_armed)
         self._replay = ReplayFollower(self._kept, lambda: self._navigator.shown)
-        self._ticks = [
-            Ticks(period, call, self._handle_exception) for period, call in ((TICK, self._tick), (PERIOD, self._ping))
-        ]
+        self._ticks = Ticks(TICK, self._tick, self._handle_exception)
+        self._pings = Ticks(tty_ping.PERIOD, self._ping, self._handle_exception)
         self._actions = {
             "app.quit": self._quitting.request,
             "drive.gamepad": self._choose_gamepad,
@@ -139,8 +137,8 @@ class ConsoleApp(App[int]):
         self._own_loop = asyncio.get_running_loop()
         self._own_loop.add_reader(self._client.fileno(), self._readable)
         # In this loop and not in a thread: a UI that hangs must lose its lease.
-        for each in self._ticks:
-            each.start(self._own_loop)
+        self._ticks.start(self._own_loop)
+        self._pings.start(self._own_loop)
         self._tmux.start(self._own_loop)
         if self._gamepad is not None:
             self._gamepad.start()
@@ -148,8 +146,8 @@ class ConsoleApp(App[int]):
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
         self.gate.close("quitting")
-        for each in self._ticks:
-            each.stop()
+        self._ticks.stop()
+        self._pings.stop()
         self._tmux.stop()
         asyncio.get_running_loop().remove_reader(self._client.fileno())
 
@@ -228,6 +226,7 @@ class ConsoleApp(App[int]):
         armed = vehicle is not None and vehicle.armed
         self.gate.update(armed=armed, driving=driving)
         interpreter.favour_input(driving or (armed and vehicle is not None and vehicle.in_control))
+        self._adapt_ticks()
         if self._clock() - self._shown_at >= MIN_FRAME_TIME:
             self._show()
 
@@ -276,8 +275,20 @@ class ConsoleApp(App[int]):
         if self._tmux.pop_release(now):
             self._send(ReleaseControl(all=True))
         self._pressed.expire(now)
+        self._adapt_ticks()
         if now - self._shown_at >= self._patience:
             self._show()
+
+    def _adapt_ticks(self) -> None:
+        """Tick seldom while the station rests, no key is lit and no gamepad is read; renew the lease when that ends."""
+        rests = self._snapshot.rests and not self._pressed.names and self.gate.hold is None and self._gamepad is None
+        begins = rests != (self._ticks.period == REST_PERIOD)
+        if not begins:
+            return
+        self._ticks.set_period(REST_PERIOD if rests else TICK)
+        self._pings.set_period(tty_ping.REST_PERIOD if rests else tty_ping.PERIOD)
+        if not rests:
+            self._client.send(RenewLease())
 
     @property
     def _patience(self) -> float:
@@ -375,6 +386,7 @@ class ConsoleApp(App[int]):
 
     def _light(self, key: str) -> None:
         self._pressed.press(key, self._clock())
+        self._adapt_ticks()
         if self.screen is self.drive:
             self._key_hint.press(key, self._clock())
             self.drive.light_keycaps(self._pressed.names)

@@ -16,12 +16,19 @@ class Ticks:
 
     def __init__(self, period: float, call: Callable[[], object], fail: Callable[[Exception], object]) -> None:
         """`fail` takes an exception of `call`, which is not called again."""
-        self._period, self._call, self._fail = period, call, fail
+        self.period, self._call, self._fail = period, call, fail
         self._timer: asyncio.TimerHandle | None = None
 
     def start(self, loop: asyncio.AbstractEventLoop) -> None:
         """Begin."""
-        self._timer = loop.call_at(next_multiple(self._period, loop.time()), self._run, loop)
+        self._timer = loop.call_at(next_multiple(self.period, loop.time()), self._run, loop)
+
+    def set_period(self, period: float) -> None:
+        """Change the period. A shorter one counts at once, a longer one from the next tick on."""
+        shorter, self.period = period < self.period, period
+        if shorter and self._timer is not None and not self._timer.cancelled():
+            self._timer.cancel()
+            self.start(asyncio.get_running_loop())
 
     def stop(self) -> None:
         """End; does nothing before the start."""

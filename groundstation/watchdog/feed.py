@@ -76,8 +76,8 @@ class WatchdogFeed:
         """Set fields that all further reports have."""
         self._flags |= flags
 
-    def report(self, vehicles: Sequence[DrivenVehicle], now: float) -> bool:
-        """Report that the station runs. Returns False once, when the watchdog's process has ended."""
+    def report(self, vehicles: Sequence[DrivenVehicle], now: float, *, rests: bool = False) -> bool:
+        """Report that the station runs, and if it rests. Returns False once, when the watchdog's process has ended."""
         self._forget_old(now)
         routes: list[DemandRoute] = []
         opened: list[tuple[int, object]] = []
@@ -92,7 +92,12 @@ class WatchdogFeed:
         keeps = opened == self._handed_over
         data = encode_report(
             StationReport(
-                ids=self._ids, vehicles=tuple(vehicles), routes=tuple(routes), keeps_descriptors=keeps, **self._flags
+                ids=self._ids,
+                vehicles=tuple(vehicles),
+                routes=tuple(routes),
+                keeps_descriptors=keeps,
+                rests=rests,
+                **self._flags,
             )
         )
         return self._send(data, None if keeps else opened)

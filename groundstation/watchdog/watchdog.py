@@ -1,8 +1,9 @@
 """Core of the watchdog: when to send neutral in the place of the station, to whom, until when, and what is known of it.
 
-It begins at once when the station's end of the socket is closed, or after STALL_TIMEOUT without a report. It ends when
-the station runs again, when every vehicle has reported that it stands, or after SEND_FOR. A report of the station ends
-it without a handshake: by then the station has found out that it stood still, and is neutral itself (stall.py).
+It begins at once when the station's end of the socket is closed, or after STALL_TIMEOUT without a report
+(REST_STALL_TIMEOUT if the newest one says that the station rests). It ends when the station runs again, when every
+vehicle has reported that it stands, or after SEND_FOR. A report of the station ends it without a handshake: by then the
+station has found out that it stood still, and is neutral itself (stall.py).
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, Message, RoverDriveStatus, VfrHud
 from groundstation.snapshot import StationOutage
 from groundstation.station.driven import DrivenVehicle
-from groundstation.station.stall import STALL_TIMEOUT
+from groundstation.station.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, NEUTRAL_PERIOD, SETTLE
 from groundstation.watchdog.neutral import NeutralFrames
 from groundstation.watchdog.report import StationReport
@@ -161,7 +162,7 @@ class Watchdog:
 
     def tick(self, now: float) -> list[tuple[int, int, bytes]]:
         """Return the frames to send now: route, target (for `record_sent`) and bytes."""
-        if self._takeover is None and not self._ended and now - self._heard_at > STALL_TIMEOUT:
+        if self._takeover is None and not self._ended and now - self._heard_at > self._stall_timeout:
             self._begin(Cause.STALLED, now)
         takeover = self._takeover
         if takeover is None or now < takeover.due or not takeover.is_sending(now):
@@ -180,7 +181,11 @@ class Watchdog:
         takeover = self._takeover
         if takeover is not None:
             return max(0.0, takeover.due - now) if takeover.is_sending(now) else None
-        return max(0.0, self._heard_at + STALL_TIMEOUT - now) + 0.001 if self._heard_at < math.inf else None
+        return max(0.0, self._heard_at + self._stall_timeout - now) + 0.001 if self._heard_at < math.inf else None
+
+    @property
+    def _stall_timeout(self) -> float:
+        return REST_STALL_TIMEOUT if self._report.rests else STALL_TIMEOUT
 
     def finished(self, now: float) -> bool:
         """Return whether the station has ended and nothing is left to send."""

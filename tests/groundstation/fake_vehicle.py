@@ -9,7 +9,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, ModeFlag, Result, SystemState, VehicleType
 from dialects.messages import boot_ms
 from dialects.modes import Mode, base_mode
-from groundstation.intents.session import RenewLease, SetKeyGate
+from groundstation.intents.session import REST_PERIOD, RenewLease, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import OperatorView, Snapshot, VehicleView
 from groundstation.station.crash_neutral import CrashNeutral
@@ -167,8 +167,10 @@ class Cockpit:
         self.world.run(seconds, self._renew)
 
     def _renew(self, now: float) -> None:
+        period = REST_PERIOD if self.station.rests else 0.1
+        self._lease_due = min(self._lease_due, now + period)  # the next snapshot tells of the end of a rest
         if self.leasing and now >= self._lease_due:
-            self._lease_due = now + 0.1
+            self._lease_due = now + period
             if not self.station.renew_lease(now):
                 self.station.handle_intent(RenewLease(), now)
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from dialects.messages import Heartbeat, ManualControl, Message
-from link.core import REST_PERIOD, LinkReport, Outgoing, Received
+from link.core import LinkReport, Outgoing, Received
 from link.links import open_links
 from link.protocol.log_tap import LogTap
 from link.runner import Runner
@@ -306,12 +306,15 @@ async def test_frames_that_a_program_with_two_links_hands_back_are_no_other_syst
     assert not any(report.own_id for core in cores for reports in core.reports for report in reports)
 
 
+REST_PERIOD = 0.1
+
+
 class Resting(Recorder):
     """A core that has nothing to do until a message has come."""
 
     @property
-    def may_rest(self) -> bool:
-        return not self.received
+    def rest_period(self) -> float | None:
+        return None if self.received else REST_PERIOD
 
 
 async def test_a_core_that_rests_is_ticked_less_often_until_a_message_comes(ground: socket.socket) -> None:
@@ -335,8 +338,8 @@ class Woken(Recorder):
     """A core that has something to do for one tick after each message."""
 
     @property
-    def may_rest(self) -> bool:
-        return not self.times or self.ticks[-1] > self.times[-1]
+    def rest_period(self) -> float | None:
+        return REST_PERIOD if not self.times or self.ticks[-1] > self.times[-1] else None
 
 
 async def test_a_message_ends_the_rest_of_a_core_at_once(ground: socket.socket) -> None:

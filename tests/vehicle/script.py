@@ -63,8 +63,8 @@ class Script:
     def tick_outputs(self, now: float, *, powered: bool) -> bool:
         return self.idle and not powered
 
-    def may_rest(self, now: float) -> bool:
-        return self.idle
+    def rest_period(self, now: float) -> float | None:
+        return 0.1 if self.idle else None
 
     def shutdown(self, now: float) -> None:
         self.calls.append("shutdown")

@@ -9,7 +9,7 @@ from dialects.enums import Command, Result
 from link.core import LinkReport
 from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL, logged
 from tests.vehicle.pacing import Machine, idle_machine
-from vehicle.pace import BUSY_TIME, PERIOD
+from vehicle.pace import BUSY_TIME, PERIOD, REST_PERIOD
 from vehicle.safety.states import SafetyState
 
 
@@ -55,13 +55,13 @@ def test_a_rover_that_was_just_armed_works_in_each_cycle_and_drives_at_once(idle
 
 
 def test_a_rover_rests_until_something_is_under_way(idle: Machine) -> None:
-    assert idle.body.may_rest
+    assert idle.body.rest_period == REST_PERIOD
     assert idle.arm() is Result.ACCEPTED
-    assert not idle.body.may_rest
+    assert not idle.body.rest_period
     assert idle.command(Command.COMPONENT_ARM_DISARM, 0) is Result.ACCEPTED
-    assert not idle.body.may_rest
+    assert not idle.body.rest_period
     idle.wait(BUSY_TIME + 1.0)
-    assert idle.body.may_rest
+    assert idle.body.rest_period
 
 
 def test_a_message_during_a_rest_finds_the_emergency_stop_as_it_is(idle: Machine) -> None:
@@ -71,8 +71,9 @@ def test_a_message_during_a_rest_finds_the_emergency_stop_as_it_is(idle: Machine
     assert idle.rover.state is SafetyState.ESTOP
 
 
-def test_a_rover_that_is_armed_during_a_rest_is_not_late(idle: Machine) -> None:
-    idle.freeze(0.099)
+@pytest.mark.parametrize("pause", [0.099, REST_PERIOD - 0.001, REST_PERIOD + CYCLE - 0.001])
+def test_a_rover_that_is_armed_during_a_rest_is_not_late(idle: Machine, pause: float) -> None:
+    idle.freeze(pause)
     assert idle.arm() is Result.ACCEPTED
     idle.wait(0.5, NEUTRAL)
     assert idle.armed
@@ -109,6 +110,16 @@ def test_a_parameter_list_arrives_as_fast_as_from_a_busy_rover(idle: Machine) ->
     idle.say(m.ParamRequestList(1, 1))
     idle.wait(1.0)
     assert len(idle.all(m.ParamValue)) - first == first > 50
+
+
+def test_a_stream_of_10_hz_keeps_its_rate_while_the_rover_rests(idle: Machine) -> None:
+    idle.command(Command.SET_MESSAGE_INTERVAL, m.SysStatus.id, 100_000)
+    idle.body.observe([LinkReport("udpin:127.0.0.1:14550", audience=(idle.station,))], idle.now)
+    idle.wait(BUSY_TIME + 1.0)
+    assert idle.body.rest_period == PERIOD
+    before = len(idle.all(m.SysStatus))
+    idle.wait(2.0)
+    assert len(idle.all(m.SysStatus)) - before == pytest.approx(20, abs=1)
 
 
 def test_a_fast_stream_is_fast_while_the_rover_is_idle(idle: Machine) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
 from typing import Any
 
 from dialects import messages as m
 from link.core import RECORDER, Outgoing, Peer, Received
-from vehicle.pace import PERIOD
 from vehicle.telemetry.schedule import PEER_MESSAGE_RATE_MAX, BandwidthShare, StreamSchedule
 from vehicle.telemetry.streams import STREAM_BY_ID, STREAMS, DialectLevel, Stream, level_of_command
 from vehicle.telemetry.view import TelemetryView
@@ -37,8 +37,8 @@ class Telemetry:
             self._add(RECORDER, now)
             self._schedules[RECORDER].raise_level(DialectLevel.ROVER, now)
         self._rates: Mapping[int, float] = {}
-        self.fast = False
-        """Some peer gets a stream more often than every PERIOD (vehicle/pace.py). Updated once a second."""
+        self.shortest = math.inf
+        """The shortest interval of a stream of any peer, s. Updated once a second."""
         self._change_keys: dict[int, Hashable] = {}
         """Message -> the value that was compared last."""
 
@@ -52,7 +52,7 @@ class Telemetry:
         for peer in audience:
             self._add(peer, now)
         self._share_out()
-        self.fast = any(schedule.shortest < PERIOD for schedule in self._schedules.values())
+        self.shortest = min((schedule.shortest for schedule in self._schedules.values()), default=math.inf)
 
     def observe(self, received: Received, now: float) -> None:
         """Note what a message shows of its sender: that it listens, and which messages it understands."""

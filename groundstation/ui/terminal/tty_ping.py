@@ -7,6 +7,9 @@ from collections import deque
 PERIOD = 0.25
 """s between pings."""
 
+REST_PERIOD = 1.0
+"""s between pings while nothing can be driven."""
+
 MISSES = 2
 """Unanswered pings until the terminal counts as silent: 0.5 s, as long as MAN_TIMEOUT of the vehicle."""
 

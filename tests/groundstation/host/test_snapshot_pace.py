@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from itertools import pairwise
 
-from groundstation.host.snapshot_pace import LIVELY, REST_PERIOD, SLOT, STEADY_PERIOD, SnapshotPace
+from groundstation.host.snapshot_pace import CALLS_AT_REST, LIVELY, REST_PERIOD, SLOT, STEADY_PERIOD, SnapshotPace
 
 
 class Clock:
@@ -37,6 +37,15 @@ def test_every_fifth_call_is_due_at_rest() -> None:
     sent = Clock().run(6.0, rests=True)
     assert 12 <= len(sent) <= 15, "it is lively at the start"
     assert max(later - earlier for earlier, later in pairwise(sent)) < REST_PERIOD + SLOT
+
+
+def test_calls_are_few_at_rest_once_nothing_has_happened_for_a_while() -> None:
+    clock = Clock()
+    clock.run(0.5, rests=True)
+    assert clock.pace.call_period(clock.now, rests=True) == SLOT
+    clock.run(LIVELY + SLOT, rests=True)
+    assert clock.pace.call_period(clock.now, rests=True) == CALLS_AT_REST
+    assert clock.pace.call_period(clock.now, rests=False) == SLOT
 
 
 def test_the_end_of_a_rest_shows_within_the_steady_period() -> None:

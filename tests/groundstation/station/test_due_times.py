@@ -10,8 +10,8 @@ from dialects.modes import Mode
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import LEASE_TIMEOUT
 from groundstation.station.operator import NEUTRAL_LEAD
+from groundstation.station.station import TICK_PERIOD
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD
-from link.core import REST_PERIOD
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
 
 STEP = 0.005
@@ -26,7 +26,7 @@ def test_the_lease_ends_at_its_time_and_not_at_the_next_tick() -> None:
         renewed = cockpit._lease_due - 0.1
         took = cockpit.world.run_until(lambda: not cockpit.operator.throttle, 1.0)
         ended = cockpit.now - renewed
-        assert took < REST_PERIOD + LEASE_TIMEOUT
+        assert took < TICK_PERIOD + LEASE_TIMEOUT
         assert LEASE_TIMEOUT < ended <= LEASE_TIMEOUT + 2 * STEP + 0.001
         cockpit.leasing = True
         cockpit.run(2.0)
@@ -54,7 +54,7 @@ def test_a_key_that_is_no_longer_repeated_ends_at_its_time() -> None:
 def test_demands_keep_their_rate_without_ticks_in_between() -> None:
     cockpit = driving_cockpit()
     since = cockpit.now
-    assert cockpit.station.may_rest
+    assert cockpit.station.rest_period == TICK_PERIOD
     cockpit.run(2.0)
     times = [at for at, _, _ in cockpit.demands(since)]
     assert len(times) == pytest.approx(2.0 / DRIVING_PERIOD, abs=1)

@@ -12,7 +12,7 @@ from dialects.enums import Autopilot, SystemState, VehicleType
 from dialects.modes import Mode, base_mode
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
-from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.session import LEASE_TIMEOUT, REST_LEASE_TIMEOUT, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.station.operator import OperatorSession
 from groundstation.station.station import Station
@@ -22,6 +22,14 @@ FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 REPEAT = DriveKeyDown(key="i", throttle=1, steering=0, repeat=True)
 LAPSE = "display not responding for"
 TICK = 0.025
+
+
+def armed_and_ours() -> list[Received]:
+    """What a rover reports that is armed and in our control."""
+    flags = base_mode(Mode.MANUAL, armed=True)
+    heartbeat = m.Heartbeat(VehicleType.GROUND_ROVER, Autopilot.GENERIC, flags, Mode.MANUAL, SystemState.ACTIVE, 3)
+    messages = (heartbeat, m.ControlStatus(1, 255, [0] * 10))
+    return [Received(message, 1, 1, 0, Peer(0, "vehicle"), introduced=True) for message in messages]
 
 
 class HeldKey:
@@ -47,10 +55,8 @@ class HeldKey:
                 self.station.handle_intent(intent, self.now)
 
     def beat(self) -> None:
-        flags = base_mode(Mode.MANUAL, armed=True)
-        heartbeat = m.Heartbeat(VehicleType.GROUND_ROVER, Autopilot.GENERIC, flags, Mode.MANUAL, SystemState.ACTIVE, 3)
-        for message in (heartbeat, m.ControlStatus(1, 255, [0] * 10)):
-            self.station.receive(Received(message, 1, 1, 0, Peer(0, "vehicle"), introduced=True), self.now)
+        for received in armed_and_ours():
+            self.station.receive(received, self.now)
 
     def step(self, *intents: AnyIntent) -> None:
         """One period of the station's loop."""
@@ -180,3 +186,29 @@ def test_a_slow_start_is_not_reported_and_a_lapse_with_an_armed_rover_is() -> No
     held.station.tick(held.now)
     lines = held.station.snapshot(held.now, held.now).texts
     assert lines[-1].text == "display not responding for 0.5 s: neutral, release the keys"
+
+
+def test_a_screen_that_froze_while_the_station_rested_does_not_drive_what_somebody_arms_then() -> None:
+    held = HeldKey(releases=True)
+    session = held.station.operator
+    session.set_resting(True, held.now)
+    held.now += REST_LEASE_TIMEOUT - 0.1  # it has not renewed for so long, and may still do
+    held.beat()
+    session.set_resting(False, held.now)
+    assert session.live
+    held.now += LEASE_TIMEOUT + 0.01
+    held.station.tick(held.now)
+    assert not session.live
+    assert held.throttle == 0.0
+    assert not held.moves()
+
+
+def test_repeated_ends_of_a_rest_do_not_keep_the_lease_of_a_frozen_screen() -> None:
+    session = OperatorSession(Style.HOLD, 0.6, 7)
+    session.renew_lease(100.0)
+    for each in range(20):
+        session.set_resting(True, 100.0 + each * 0.1)
+        session.set_resting(False, 100.02 + each * 0.1)
+    session.set_resting(True, 102.0)
+    session.expire_lease(102.0)
+    assert not session.live

@@ -153,7 +153,7 @@ def test_a_vehicle_that_is_only_driven_has_no_services() -> None:
 def test_a_request_can_be_cancelled() -> None:
     drive = connected()
     drive.tell(FetchParams(1))
-    drive.run(0.05)
+    drive.run(0.01)
     drive.tell(CancelRequest(1))
     assert end_of(drive, 1, within=0.1).state == "cancelled"
     drive.tell(FetchParams(2))

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from dialects import messages as m
 from groundstation.intents.driving import HOLD_TIME
-from groundstation.intents.session import LEASE_TIMEOUT, RenewLease
+from groundstation.intents.session import LEASE_TIMEOUT, REST_LEASE_TIMEOUT, REST_PERIOD, RenewLease
 from groundstation.intents.vehicle import Arm, Disarm
+from groundstation.station.driven import DEMAND_MEMORY
+from groundstation.station.station import TICK_PERIOD
+from tests.groundstation.cockpits import armed_cockpit
 from tests.groundstation.fake_vehicle import Cockpit
 
 
@@ -46,41 +51,64 @@ def test_round_trip_and_loss_are_shown() -> None:
     assert link.rate > 0
 
 
-def test_ticks_are_few_unless_a_command_is_under_way_and_it_is_idle_only_while_no_vehicle_is_armed() -> None:
+def test_ticks_are_few_unless_a_command_is_under_way_and_it_rests_only_while_no_vehicle_is_armed() -> None:
     cockpit = Cockpit()
     cockpit.run(5.0)
-    assert cockpit.station.may_rest
-    assert cockpit.station.stands_idle
+    assert cockpit.station.rest_period == REST_PERIOD
+    assert cockpit.snapshot.rests
+    ended = []
+    cockpit.station.on_rest_end = lambda: ended.append(cockpit.now)
     cockpit.do(Arm(held=HOLD_TIME))
-    assert not cockpit.station.may_rest, "commands are repeated"
-    assert not cockpit.station.stands_idle
+    assert ended == [cockpit.now], "at once"
+    assert cockpit.station.rest_period is None, "commands are repeated"
+    assert not cockpit.snapshot.rests
     cockpit.run(3.0)
     assert cockpit.vehicle.armed
-    assert cockpit.station.may_rest
-    assert not cockpit.station.stands_idle
+    assert cockpit.station.rest_period == TICK_PERIOD
     cockpit.do(Disarm())
-    cockpit.run(3.0)
+    cockpit.run(2.0)
     assert not cockpit.vehicle.armed
-    assert cockpit.station.may_rest
-    assert cockpit.station.stands_idle
+    assert cockpit.station.rest_period == TICK_PERIOD, "a vehicle that was driven just now may hold a demand"
+    cockpit.run(DEMAND_MEMORY)
+    assert cockpit.station.rest_period == REST_PERIOD
+
+
+def test_a_vehicle_that_somebody_else_arms_ends_the_rest_with_its_report() -> None:
+    cockpit = Cockpit()
+    cockpit.run(5.0)
+    assert cockpit.station.rests
+    ended = []
+    cockpit.station.on_rest_end = lambda: ended.append(cockpit.now)
+    cockpit.vehicle.armed = True
+    cockpit.vehicle.beat()
+    cockpit.run(0.01)
+    assert len(ended) == 1
+    assert not cockpit.station.rests
 
 
 def test_a_crashed_station_does_not_rest() -> None:
     cockpit = Cockpit()
     cockpit.run(5.0)
-    assert cockpit.core.may_rest
+    assert cockpit.core.rest_period == REST_PERIOD
     cockpit.core.activate(cockpit.now)
-    assert not cockpit.core.may_rest
+    assert cockpit.core.rest_period is None
 
 
-def test_a_renewal_in_time_extends_the_lease_and_a_late_one_is_an_intent() -> None:
-    cockpit = Cockpit()
+@pytest.mark.parametrize(
+    ("make", "timeout"), [(Cockpit, REST_LEASE_TIMEOUT), (armed_cockpit, LEASE_TIMEOUT)], ids=["at rest", "armed"]
+)
+def test_a_renewal_in_time_extends_the_lease_and_a_late_one_is_an_intent(
+    make: Callable[[], Cockpit], timeout: float
+) -> None:
+    cockpit = make()
+    cockpit.run(0.5)
     cockpit.leasing = False
+    cockpit.do(RenewLease())
     for _ in range(10):
-        cockpit.run(0.25)
+        cockpit.run(timeout - 0.05)
         assert cockpit.station.renew_lease(cockpit.now)
     assert cockpit.station.operator.live
-    cockpit.run(LEASE_TIMEOUT + 0.05)
+    cockpit.run(timeout + 0.05)
     assert not cockpit.station.renew_lease(cockpit.now)
     assert not cockpit.station.operator.live
     cockpit.do(RenewLease())

@@ -56,7 +56,7 @@ def test_without_key_releases_the_note_tells_when_the_key_no_longer_counts() -> 
     cockpit.do(FORWARD)
     cockpit.run(1.5)
     assert book.of_keys() == [("i", 600, 0), ("i: no repeat", 0, 0)]
-    assert 0.4 < book.notes[-1][0] - begun < 0.8
+    assert 0.4 < book.notes[-1][0] - begun < 0.9
 
 
 def test_another_key_of_the_stick_a_stop_and_the_gate_end_a_key() -> None:

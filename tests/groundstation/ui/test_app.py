@@ -9,10 +9,10 @@ from textual import events
 
 from groundstation.actions import ACTIONS
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
-from groundstation.intents.session import Quit, RenewLease, SetKeyGate
+from groundstation.intents.session import REST_PERIOD, Quit, RenewLease, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.snapshot import StationOutage
-from groundstation.ui.app import AT_REST, WITHOUT_SNAPSHOT
+from groundstation.ui.app import AT_REST, TICK, WITHOUT_SNAPSHOT
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from tests.groundstation.ui.examples import snapshot, vehicle
@@ -36,6 +36,21 @@ async def test_the_lease_is_renewed_by_the_loop_and_not_without_it() -> None:
         _busy_for(0.5)
         assert len(screen.station.of(RenewLease)) == before
         await until(lambda: len(screen.station.of(RenewLease)) > before)
+
+
+async def test_while_the_station_rests_it_is_renewed_less_often_and_at_once_when_that_ends() -> None:
+    async with console(picture=snapshot(vehicle=vehicle(armed=False), rests=True)) as screen:
+        ticks = screen.app._ticks
+        await until(lambda: ticks.period == REST_PERIOD)
+        before = len(screen.station.of(RenewLease))
+        screen.station.offer(snapshot(vehicle=vehicle(armed=True)))
+        await until(lambda: ticks.period == TICK)
+        assert len(screen.station.of(RenewLease)) > before
+        screen.station.offer(snapshot(vehicle=vehicle(armed=False), rests=True))
+        await until(lambda: ticks.period == REST_PERIOD)
+        await screen.press("j")
+        assert ticks.period == TICK, "the light of a key goes out in time"
+        await until(lambda: ticks.period == REST_PERIOD)
 
 
 def _busy_for(seconds: float) -> None:

@@ -70,3 +70,23 @@ def test_an_exception_ends_it_and_is_handed_over() -> None:
 
     run.run(Ticks(PERIOD, call, run.fail))
     assert [str(error) for error in run.errors] == ["broken"]
+
+
+def test_a_shorter_period_counts_at_once_and_a_longer_one_from_the_next_tick_on() -> None:
+    run = Run()
+
+    def call() -> None:
+        run.note()
+        ticks.set_period(2 * PERIOD)
+
+    ticks = Ticks(1000.0, call, run.fail)
+
+    async def shorten() -> None:
+        asyncio.get_running_loop().call_soon(ticks.set_period, PERIOD)
+        await run._run(ticks)
+
+    asyncio.run(shorten())
+    assert not run.errors
+    assert len(run.times) >= 5
+    later = run.times[1:]  # the second one was planned before the change
+    assert len({(at + PERIOD / 100) // (2 * PERIOD) for at in later}) == len(later)

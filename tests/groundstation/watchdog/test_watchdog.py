@@ -15,7 +15,7 @@ from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.snapshot import StationOutage
 from groundstation.station.driven import DrivenVehicle
-from groundstation.station.stall import STALL_TIMEOUT
+from groundstation.station.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT, StallMonitor
 from groundstation.station.station import Station
 from groundstation.watchdog.report import DemandRoute, StationReport
 from groundstation.watchdog.watchdog import SEND_FOR, Watchdog
@@ -100,7 +100,7 @@ class FrozenStation:
     def _report(self) -> None:
         vehicles = self.station.report_to_watchdog(self.now)
         routes = tuple(DemandRoute(index, None, 0) for index in range(len(vehicles)))
-        self.watchdog.handle_report(StationReport(vehicles=vehicles, routes=routes), self.now)
+        self.watchdog.handle_report(StationReport(vehicles=vehicles, routes=routes, rests=self.station.rests), self.now)
 
     def _lease(self) -> None:
         self.station.handle_intent(RenewLease(), self.now)
@@ -271,3 +271,25 @@ def test_packet_numbers_follow_those_of_the_station_with_a_gap() -> None:
         ((_, _, data),) = watchdog.tick(now)
         numbers.append(data[4])
     assert numbers == [51, 52]
+
+
+def test_a_station_that_rests_may_report_later_until_it_does_not_rest() -> None:
+    watchdog = Watchdog()
+    watchdog.handle_report(StationReport(rests=True), 100.0)
+    assert watchdog.timeout(100.0) == pytest.approx(REST_STALL_TIMEOUT, abs=0.01)
+    watchdog.tick(100.0 + REST_STALL_TIMEOUT - 0.01)
+    assert not watchdog.outage(100.99).text
+    watchdog.tick(100.0 + REST_STALL_TIMEOUT + 0.01)
+    assert watchdog.outage(101.01).text == "station not responding: nothing is sent"
+    watchdog.handle_report(StationReport(), 102.0)
+    watchdog.tick(102.0 + STALL_TIMEOUT + 0.01)
+    assert watchdog.outage(102.31).text
+
+
+def test_a_station_and_its_watchdog_agree_on_how_long_a_rest_may_be() -> None:
+    stall = StallMonitor()
+    stall.record_report(100.0, rests=True)
+    assert not stall.is_stalled(100.0 + REST_STALL_TIMEOUT - 0.01)
+    assert stall.is_stalled(100.0 + REST_STALL_TIMEOUT + 0.01)
+    stall.record_report(102.0)
+    assert stall.is_stalled(102.0 + STALL_TIMEOUT + 0.01)
