@@ -10,6 +10,7 @@ import pytest
 
 from groundstation.config.settings import ThemeName
 from groundstation.ui.look.colours import use_theme
+from tests.groundstation.ui import parsed_css
 from tests.groundstation.ui.programs import Program
 
 
@@ -24,6 +25,13 @@ def _utc(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
         use_theme(ThemeName.DARK)  # one for the whole process: another test may have chosen another one
         yield
     time.tzset()
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _css_parsed_once() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        parsed_css.share(patch)
+        yield
 
 
 @pytest.fixture

@@ -18,7 +18,8 @@ PARTS = (
 """Modules whose objects hold what decides about motion. Texts, telemetry and files are shared by all states."""
 WITHOUT_STATE = ("vehicle.commands.context", "vehicle.commands.params", "vehicle.commands.files")
 
-PLAIN = (float, int, bool, str, type(None))
+PLAIN = frozenset((float, int, bool, str, type(None)))
+VALUES = (int, float, str, bytes, type(None), Enum, type, tuple, frozenset)
 
 
 def attributes(owner: object) -> Iterable[str]:
@@ -28,12 +29,17 @@ def attributes(owner: object) -> Iterable[str]:
         yield from (name for name in getattr(kind, "__slots__", ()) if hasattr(owner, name))
 
 
-def is_value(item: object) -> bool:
-    """Return whether an object never changes."""
-    if item is None or isinstance(item, int | float | str | bytes | Enum | type | tuple | frozenset) or callable(item):
+def is_value(kind: type) -> bool:
+    """Return whether objects of a class never change."""
+    if issubclass(kind, VALUES) or any("__call__" in vars(each) for each in kind.__mro__):
         return True
-    kind = getattr(item, "__struct_config__", None) or getattr(item, "__dataclass_params__", None)
-    return bool(getattr(kind, "frozen", False))
+    config = getattr(kind, "__struct_config__", None) or getattr(kind, "__dataclass_params__", None)
+    return bool(getattr(config, "frozen", False))
+
+
+def is_part(kind: type) -> bool:
+    """Return whether objects of a class hold what decides about motion."""
+    return kind.__module__.startswith(PARTS) and not kind.__module__.startswith(WITHOUT_STATE)
 
 
 Saved = list[tuple[dict[str, Any], list[tuple[str, Any]]]]
@@ -45,6 +51,8 @@ class Snapshots:
 
     def __init__(self, root: object) -> None:
         self._fixed: dict[int, object] = {}
+        self._shared: dict[type, bool] = {}
+        """Class -> whether all states share its objects. Kept, because each restore asks for thousands."""
         self._find(root)
         self._values = [vars(each) for each in self._fixed.values()]
 
@@ -77,15 +85,15 @@ class Snapshots:
         elif isinstance(item, dict):
             for each in item.values():
                 self._find(each)
-        elif not is_value(item) and id(item) not in self._fixed and self._is_part(item) and hasattr(item, "__dict__"):
+        elif not self._is_shared(type(item)) and hasattr(item, "__dict__") and id(item) not in self._fixed:
             self._fixed[id(item)] = item
             for name in list(attributes(item)):
                 self._find(getattr(item, name))
 
-    @staticmethod
-    def _is_part(item: object) -> bool:
-        module = type(item).__module__
-        return module.startswith(PARTS) and not module.startswith(WITHOUT_STATE)
+    def _is_shared(self, kind: type) -> bool:
+        if kind not in self._shared:
+            self._shared[kind] = is_value(kind) or not is_part(kind)
+        return self._shared[kind]
 
     def _copy(self, item: Any) -> Any:
         kind = type(item)
@@ -97,7 +105,7 @@ class Snapshots:
             return [self._copy(each) for each in item]
         if kind is deque:
             return deque((self._copy(each) for each in item), item.maxlen)
-        if is_value(item) or not self._is_part(item):
+        if self._is_shared(kind):
             return item
         return self._copy_object(item)
 
