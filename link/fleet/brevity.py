@@ -7,7 +7,7 @@ of message goes once a second, so that nothing is missing in a table of a hundre
 from __future__ import annotations
 
 from link.fleet.traffic import TELEMETRY, traffic_class
-from link.protocol.frame import Frame
+from link.protocol.frame import Frame, Header
 
 PERIOD = 0.9
 """s between two frames of one kind; a little less than 1 s, so that a stream of 1 Hz passes whole."""
@@ -29,7 +29,7 @@ class BriefTelemetry:
         else:
             self._sent.pop(address, None)
 
-    def passes(self, frame: Frame, address: str, now: float) -> bool:
+    def passes(self, frame: Frame | Header, address: str, now: float) -> bool:
         """Return whether to send a frame to an address now."""
         times = self._sent.get(address)
         if times is None or traffic_class(frame[0]) is not TELEMETRY:

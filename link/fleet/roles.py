@@ -71,6 +71,11 @@ def needed_role(frame: Frame) -> Role:
     return _needed_for_command(frame) if number in COMMANDS else Role.DRIVE
 
 
+def depends_on_content(message_id: int) -> bool:
+    """Return whether two frames of this message may need different roles."""
+    return message_id in COMMANDS or message_id == m.FileTransferProtocol.id
+
+
 def _needed_for_file(payload: bytes) -> Role:
     opcode = payload[_FILE_OPCODE] if len(payload) > _FILE_OPCODE else 0  # zeros at the end are not sent
     return Role.WATCH if opcode in _READING_OPCODES else Role.SET_UP

@@ -6,6 +6,7 @@ Zenoh would connect again by itself, but late (link/fleet/probe.py says why), an
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import json
 import logging
 import random
@@ -35,7 +36,26 @@ def direct(callback: Callable[[Any], object]) -> Any:
     Otherwise the package runs a thread of Python for each callback, which aborts the program ("FATAL: exception not
     rethrown") if it is not through when the program ends.
     """
-    return load_zenoh().handlers.Callback(callback, indirect=False)
+
+    def call(event: Any) -> None:
+        _keep_thread_state()
+        callback(event)
+
+    return load_zenoh().handlers.Callback(call, indirect=False)
+
+
+_of_thread = threading.local()
+
+
+def _keep_thread_state() -> None:
+    """Keep Python's state of this thread, which is not one of Python's.
+
+    It is made for each callback otherwise, and freed after it, while the event loop that the callback has woken waits
+    for the interpreter: 0.1 ms for each frame of a demand.
+    """
+    if not hasattr(_of_thread, "kept"):
+        ctypes.pythonapi.PyGILState_Ensure()  # the state stays as long as one of these is not released
+        _of_thread.kept = True
 
 
 class RouterSession:
@@ -79,11 +99,16 @@ class RouterSession:
 
     @contextlib.contextmanager
     def quiet(self, what: str) -> Iterator[None]:
-        """Log an error of Zenoh: the router is away then, and whoever waits for something is told by its silence."""
+        """Log an error of Zenoh, as note_error()."""
         try:
             yield
         except self._zenoh.ZError as error:
-            log.debug("could not %s: %s", what, error)
+            self.note_error(what, error)
+
+    @staticmethod
+    def note_error(what: str, error: Exception) -> None:
+        """Log an error of Zenoh: the router is away then, and whoever waits for something is told by its silence."""
+        log.debug("could not %s: %s", what, error)
 
     def _run(self) -> None:
         used, told = None, self._problem

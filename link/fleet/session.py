@@ -62,14 +62,17 @@ class FleetSession:
         session = self._router.session
         if session is None:
             return False
-        with self._router.quiet("publish"):
-            key = self._keys_in_use.get(name)
-            if key is None:
-                if len(self._keys_in_use) >= MAX_KEYS:
-                    self._keys_in_use.clear()
-                key = self._keys_in_use[name] = self._zenoh.KeyExpr(name)
-            session.put(key, data)
+        try:
+            session.put(self._keys_in_use.get(name) or self._make_key(name), data)
+        except self._zenoh.ZError as error:
+            self._router.note_error("publish", error)
         return True
+
+    def _make_key(self, name: str) -> zenoh.KeyExpr:
+        if len(self._keys_in_use) >= MAX_KEYS:
+            self._keys_in_use.clear()
+        self._keys_in_use[name] = self._zenoh.KeyExpr(name)
+        return self._keys_in_use[name]
 
     def show_token(self, key: str) -> None:
         """Tell others that this program is here, until the session ends."""

@@ -19,11 +19,11 @@ from link.fleet.arrivals import PACE, Arrivals
 from link.fleet.brevity import BriefTelemetry
 from link.fleet.config import VEHICLE_ROLE, FleetConfig, load_config
 from link.fleet.inbox import BATCH, Inbox
-from link.fleet.keys import FleetKeys, KeyReader, Place, new_framer, read_frame
+from link.fleet.keys import MAX_KEYS, FleetKeys, KeyReader, Place, new_framer, read_frame
 from link.fleet.presence import Presence
-from link.fleet.roles import needed_role
+from link.fleet.roles import depends_on_content, needed_role
 from link.fleet.session import FleetSession
-from link.protocol.frame import Frame, read_header
+from link.protocol.frame import Frame, Header, read_header
 from link.protocol.link_events import CONNECTING
 from link.signing.role import Role
 from link.transport.priority_queue import STALE
@@ -59,6 +59,8 @@ class FleetTransport:
         self._framer = new_framer()
         self._newest: tuple[bytes, Frame | None] = (b"", None)
         """What was asked about or sent last, and the frame that it is: most frames are both."""
+        self._ways: dict[tuple[str, int], str] = {}
+        """Address and message -> the key of its frames, unless that depends on their content."""
         self._arrivals = Arrivals()
         self._inbox = Inbox()
         self._delivered_at = -math.inf
@@ -92,7 +94,7 @@ class FleetTransport:
         while data:
             header = read_header(data)
             size = len(data) if header is None else header.size
-            self._send_frame(data[:size], str(address))
+            self._send_frame(data[:size], header, str(address))
             data = data[size:]
 
     def refusal(self, data: bytes) -> str | None:
@@ -122,18 +124,33 @@ class FleetTransport:
             self._newest = data, read_frame(data, self._framer)
         return self._newest[1]
 
-    def _send_frame(self, data: bytes, address: str) -> None:
+    def _send_frame(self, data: bytes, header: Header | None, address: str) -> None:
+        way = None if header is None or header.size != len(data) else self._ways.get((address, header.message_id))
+        if way is None:
+            way = self._find_way(data, address)
+        if way is None or header is None or not self._publish(way, data, header, address):
+            self._unsent += 1
+
+    def _publish(self, way: str, data: bytes, header: Header, address: str) -> bool:
+        return not self._brief.passes(header, address, time.monotonic()) or self._session.publish(way, data)
+
+    def _find_way(self, data: bytes, address: str) -> str | None:
+        """Return the key under which to publish a frame; None for what is no whole frame, or lacks a role.
+
+        The next ones to the same address go the same way: what a channel sends or forwards is whole.
+        """
         frame = self._read(data)
         if frame is None:
-            self._unsent += 1
-            return
+            return None
         if why := self._role_missing(frame):
             self._say(f"a message was not sent: {why}", f"{frame[0]}")
-            self._unsent += 1
-        elif not self._brief.passes(frame, address, time.monotonic()):
-            pass
-        elif not self._session.publish(self._keys.place(frame, address), data):
-            self._unsent += 1
+            return None
+        way = self._keys.place(frame, address)
+        if not depends_on_content(frame[0]):
+            if len(self._ways) >= MAX_KEYS:
+                self._ways.clear()
+            self._ways[address, frame[0]] = way
+        return way
 
     def _role_missing(self, frame: Frame) -> str | None:
         if not self._keys.me or self._role is None:

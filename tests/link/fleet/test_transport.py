@@ -13,8 +13,10 @@ import zenoh
 from msgspec.structs import replace
 
 from dialects import messages as m
+from dialects import rover as dialect
 from link.endpoint import Side, parse_endpoint
 from link.fleet.config import SETTINGS, apply_settings, load_config
+from link.fleet.router_session import direct
 from link.fleet.transport import FleetTransport, open_fleet
 from tests.link.frames import demand, frame, heartbeat
 from tests.ports import free_port
@@ -90,8 +92,14 @@ async def test_frames_both_ways_and_what_is_refused(port: int) -> None:
     await until(lambda: rover.transport.refused >= 3, lambda: stranger.put(key, demand(0)))
     assert rover.transport.dropped >= 3
     assert rover.received[before:] == []
-    station.transport.send(b"no frame", vehicle)
-    assert station.transport.dropped == 1
+    for cut in (
+        b"no frame",
+        heartbeat(1)[:-3],
+        frame(m.ParamRequestList(1, 1), 2)[:-3],
+    ):  # messages went before
+        dropped = station.transport.dropped
+        station.transport.send(cut, vehicle)
+        assert station.transport.dropped == dropped + 1
     assert [each.name for each in set(threading.enumerate()) - others] == ["fleet"] * 2  # none for each callback
     for each in (station, rover):
         each.transport.close()
@@ -214,3 +222,47 @@ async def test_a_role_refuses_what_it_does_not_allow(port: int) -> None:
     ]
     assert [refusal(role, data) for role, data in allowed] == [None] * len(allowed)
     assert refusal("vehicle", demand(0), is_vehicle=True) is None
+
+
+async def test_the_key_of_a_command_follows_each_of_them(port: int) -> None:
+    station, rover = ends(port, "rover1")
+    await until(lambda: station.received and rover.received)
+    sent: list[str] = []
+
+    def publish(key: str, data: bytes) -> bool:
+        sent.append(key.split("/")[6])
+        return True
+
+    station.transport._session.publish = publish  # type: ignore[method-assign]
+    reboot, hold = (
+        frame(m.CommandLong(1, 1, number, 0, 1.0, *(0.0,) * 6), 1)
+        for number in (dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, dialect.MAV_CMD_DO_SET_MODE)
+    )
+    for data in (hold, reboot, hold, demand(0), demand(1)):
+        station.transport.send(data, "rover1")
+    assert sent == ["drive", "setup", "drive", "drive", "drive"]
+    for each in (station, rover):
+        each.transport.close()
+
+
+def test_a_thread_of_zenoh_keeps_its_state_of_python_from_callback_to_callback(port: int) -> None:
+    """Otherwise it is made and freed for each of them, which holds back the loop that the callback has woken."""
+    config = zenoh.Config()
+    apply_settings(config, SETTINGS | {"mode": "client", "connect/endpoints": [f"tcp/127.0.0.1:{port}"]})
+    counts, own, heard = {}, threading.local(), threading.Semaphore(0)
+
+    def take(sample: zenoh.Sample) -> None:
+        own.count = counts[threading.get_ident()] = getattr(own, "count", 0) + 1
+        heard.release()
+
+    with zenoh.open(config) as receiver, zenoh.open(config) as sender:
+        subscriber = receiver.declare_subscriber("kept", direct(take))
+        while not counts:
+            sender.put("kept", b"")
+            heard.acquire(timeout=0.05)
+        for _ in range(20):
+            sender.put("kept", b"")
+            assert heard.acquire(timeout=30.0)
+        subscriber.undeclare()  # type: ignore[no-untyped-call]
+    assert threading.get_ident() not in counts
+    assert sum(counts.values()) >= 21, "none was forgotten"
