@@ -224,7 +224,7 @@ async def test_a_role_refuses_what_it_does_not_allow(port: int) -> None:
     assert refusal("vehicle", demand(0), is_vehicle=True) is None
 
 
-async def test_the_key_of_a_command_follows_each_of_them(port: int) -> None:
+async def test_the_key_of_a_command_follows_each_of_them(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     station, rover = ends(port, "rover1")
     await until(lambda: station.received and rover.received)
     sent: list[str] = []
@@ -233,7 +233,7 @@ async def test_the_key_of_a_command_follows_each_of_them(port: int) -> None:
         sent.append(key.split("/")[6])
         return True
 
-    station.transport._session.publish = publish  # type: ignore[method-assign]
+    monkeypatch.setattr(station.transport._session, "publish", publish)
     reboot, hold = (
         frame(m.CommandLong(1, 1, number, 0, 1.0, *(0.0,) * 6), 1)
         for number in (dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, dialect.MAV_CMD_DO_SET_MODE)
