@@ -23,9 +23,11 @@ LAST = 0.85
 
 def mix(items: Sequence[pytest.Item]) -> list[pytest.Item]:
     """Return all items, in their order but for those that wait, which are spread; the longest of these come first."""
-    waiting = sorted(filter(waits, items), key=_is_short)
-    computing = [item for item in items if not waits(item)]
-    return list(spread(waiting, computing))
+    waiting: list[pytest.Item] = []
+    computing: list[pytest.Item] = []
+    for item in items:
+        (waiting if waits(item) else computing).append(item)
+    return list(spread(sorted(waiting, key=_is_short), computing))
 
 
 def spread(few: Sequence[Each], many: Sequence[Each]) -> Iterator[Each]:

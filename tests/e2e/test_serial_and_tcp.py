@@ -81,11 +81,22 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
     with ExitStack() as stack:
         rig: Rig = request.param(tmp_path, stack)
         drive(rig.station, rig.vehicle, rig.station.says_armed)
-        rig.waits = Waits(rig.vehicle.process.pid, rig.station.process.pid)
-        # Counting took some time; the stop must follow at once. On a busy machine the key may have to be pressed anew.
-        if not rig.station.held("i", rig.vehicle.at_full, 5.0):
-            drive_on(rig.station, rig.vehicle)
+        watch(rig)
         yield rig
+
+
+def drive_again(rig: Rig) -> None:
+    """Drive after a stop, still armed."""
+    drive_on(rig.station, rig.vehicle)
+    watch(rig)
+
+
+def watch(rig: Rig) -> None:
+    """Count the delays from now on, while the wheels turn."""
+    rig.waits = Waits(rig.vehicle.process.pid, rig.station.process.pid)
+    # Counting took some time; the stop must follow at once. On a busy machine the key may have to be pressed anew.
+    if not rig.station.held("i", rig.vehicle.at_full, 5.0):
+        drive_on(rig.station, rig.vehicle)
 
 
 def assert_stops(rig: Rig, since: float, later: float = 0.0) -> None:
@@ -106,38 +117,28 @@ def hold(rig: Rig, seconds: float) -> None:
     rig.station.hold("i", lambda: time.monotonic() > start + seconds)
 
 
-def test_key_released_and_then_a_stop_key_in_a_burst(rig: Rig) -> None:
+@pytest.mark.slow
+def test_every_stop_that_leaves_the_programs_at_work_and_then_the_terminal_closed(rig: Rig) -> None:
+    """One after the other with the same programs, because their start takes most of the time."""
+    check_released_key(rig)
+    drive_again(rig)
+    check_stop_key_in_a_burst(rig)
+    drive_again(rig)
+    check_unplugged_and_back_with_the_key_held_all_along(rig)
+    drive_again(rig)
+    check_terminal_closed(rig)
+
+
+def check_released_key(rig: Rig) -> None:
     assert_stops(rig, time.monotonic(), HOLD_TIMEOUT)
-    drive_on(rig.station, rig.vehicle)
-    rig.waits = Waits(rig.vehicle.process.pid, rig.station.process.pid)
+
+
+def check_stop_key_in_a_burst(rig: Rig) -> None:
     rig.station.type("iik")
     assert_stops(rig, time.monotonic())
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
-def test_ground_station_killed_or_frozen_with_its_children(rig: Rig, number: signal.Signals) -> None:
-    os.killpg(rig.station.process.pid, number)
-    assert_stops(rig, time.monotonic())
-
-
-def test_terminal_closed(rig: Rig) -> None:
-    rig.station.close_terminal()
-    closed = time.monotonic()
-    granted = 0.0
-
-    def stand() -> bool:
-        nonlocal granted
-        granted = rig.waits.total()  # repeatedly, because the ground station ends meanwhile
-        return rig.vehicle.stands()
-
-    until(stand, PATIENCE)
-    _, stops = rig.vehicle.falls_and_stops_after(closed)
-    assert stops <= NEUTRAL_WITHIN + NOISE + granted
-    assert rig.station.process.wait(PATIENCE) is not None
-
-
-@pytest.mark.slow
-def test_unplugged_and_back_with_the_key_held_all_along(rig: Rig) -> None:
+def check_unplugged_and_back_with_the_key_held_all_along(rig: Rig) -> None:
     """MAN_TIMEOUT stops the rover, the driver gets a text, and after the reconnect nothing moves until neutral and a
     new press."""
     unplugged = time.monotonic()
@@ -153,4 +154,25 @@ def test_unplugged_and_back_with_the_key_held_all_along(rig: Rig) -> None:
     rig.station.hold("i", lambda: b"back after" in rig.station.screen[start:])
     hold(rig, 3.0)
     assert not rig.vehicle.moved_since(stopped)
-    drive_on(rig.station, rig.vehicle)
+
+
+def check_terminal_closed(rig: Rig) -> None:
+    rig.station.close_terminal()
+    closed = time.monotonic()
+    granted = 0.0
+
+    def stand() -> bool:
+        nonlocal granted
+        granted = rig.waits.total()  # repeatedly, because the ground station ends meanwhile
+        return rig.vehicle.stands()
+
+    until(stand, PATIENCE)
+    _, stops = rig.vehicle.falls_and_stops_after(closed)
+    assert stops <= NEUTRAL_WITHIN + NOISE + granted
+    assert rig.station.process.wait(PATIENCE) is not None
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_ground_station_killed_or_frozen_with_its_children(rig: Rig, number: signal.Signals) -> None:
+    os.killpg(rig.station.process.pid, number)
+    assert_stops(rig, time.monotonic())
