@@ -105,8 +105,11 @@ class StationHost:
         self._lasting_alerts = LastingAlerts()
         self._broken = self._ending = False
 
-    async def run(self) -> int:
-        """Run until the station ends. Returns the exit code: 1 after an unhandled exception."""
+    async def run(self, listens: Callable[[], None]) -> int:
+        """Run until the station ends. Returns the exit code: 1 after an unhandled exception.
+
+        `listens` is called once other programs can use the station, or it is known why they cannot.
+        """
         loop = asyncio.get_running_loop()
         loop.set_exception_handler(self._handle_loop_exception)
         for number in (signal.SIGTERM, signal.SIGHUP, *((signal.SIGINT,) if self._pipe is None else ())):
@@ -115,6 +118,7 @@ class StationHost:
             self.screens.add(self._pipe, self._screen, owner=True)
         if problem := self._listener.start():
             self.add_to_log(loop.time(), f"no other program can use this station: {problem}")
+        listens()
         self._slot = loop.call_soon(self._run_slot)
         self._station.on_rest_end = self._rouse
         self._station.fleet.on_first = lambda: loop.call_soon(lambda: self._send_snapshot(loop.time()))

@@ -44,15 +44,17 @@ def run_station(
 ) -> int:
     """Run a station to its end; return the exit code. `ready` is called with its endpoints once they are open.
 
-    Without a pipe it has no screen, and SIGINT ends it like SIGTERM. Raises StartError.
+    Without a pipe it has no screen, SIGINT ends it like SIGTERM, and `ready` is called once programs can attach to it.
+    Raises StartError.
     """
     from groundstation.host.station_start import start
 
     started = start(options, pipe)
-    ready(started.endpoints)
+    if pipe is not None:
+        ready(started.endpoints)
     from groundstation.host.station_run import run
 
-    return run(options, pipe, started)
+    return run(options, pipe, started, (lambda: None) if pipe is not None else lambda: ready(started.endpoints))
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import logging
 import secrets
 import socket
 import time
+from collections.abc import Callable
 
 from dialects.enums import Severity
 from groundstation.disk.texts_folder import load_texts
@@ -26,8 +27,10 @@ from link.runtime.event_loop import run_loop
 log = logging.getLogger(__name__)
 
 
-def run(options: argparse.Namespace, pipe: socket.socket | None, started: StartedStation) -> int:
-    """Run the station to its end; return the exit code."""
+def run(
+    options: argparse.Namespace, pipe: socket.socket | None, started: StartedStation, listens: Callable[[], None]
+) -> int:
+    """Run the station to its end; return the exit code. `listens` is called once programs can attach to it."""
     now = time.monotonic()  # the loop's clock
     texts = load_texts(options.param_docs)
     station = Station(
@@ -60,7 +63,7 @@ def run(options: argparse.Namespace, pipe: socket.socket | None, started: Starte
         host.add_to_log(now, problem, Severity.WARNING)
     startup_gc.resume()
     try:
-        return run_loop(host.run())
+        return run_loop(host.run(listens))
     except Exception:
         log.exception("station crashed")
         return 1

@@ -25,7 +25,7 @@ from tests.e2e.chromium import PATIENCE, PROGRAM, Browser, eventually, pause
 from tests.e2e.programs import Vehicle
 from tests.e2e.relay import Relay
 from tests.groundstation.held_key import DELAY, GAP
-from tests.groundstation.screen import children, running, until
+from tests.groundstation.screen import children, running
 from tests.ports import free_port
 from tests.waits import Waits
 
@@ -58,7 +58,7 @@ class Rig:
         said = self.process.stderr.readline()
         [self.url] = re.findall(r"in a browser on this machine: (http://\S+\?token=\S{40,})", said)
         self.base = self.url.partition("/?")[0]
-        until(lambda: self.process.pid in running_stations())  # on a busy machine some seconds after the address
+        assert self.process.pid in running_stations(), "a tab that is opened at once finds the station"
         self.vehicle = Vehicle(folder, self.relay.vehicle_port)
         stack.callback(self.vehicle.end)
 
