@@ -42,6 +42,10 @@ class HeartbeatSender:
         self._known.add(peer)
         self._due, self._greet_until = now, now + GREETING
 
+    def is_greeting(self, now: float) -> bool:
+        """Return whether a vehicle has appeared at a new address in the last GREETING."""
+        return now < self._greet_until
+
     def tick(self, now: float, *, driving: bool) -> list[Outgoing]:
         """Return the heartbeat to send now, if one is due. `driving`: we control an armed vehicle."""
         if driving:
@@ -49,5 +53,5 @@ class HeartbeatSender:
         if now < self._due - EARLY:
             return []
         self._sent_at = self._due if now - self._due < LATEST else now  # a late tick must not lower the rate
-        self._due = self._sent_at + (GREETING_PERIOD if now < self._greet_until else HEARTBEAT_PERIOD)
+        self._due = self._sent_at + (GREETING_PERIOD if self.is_greeting(now) else HEARTBEAT_PERIOD)
         return [Outgoing(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))]

@@ -251,7 +251,7 @@ class Station:
 
     def _update_rest(self, now: float) -> None:
         driven = any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
-        rests = not (self._busy or driven or self.driving.driven_vehicles(now))
+        rests = not (self._busy or driven or self.driving.driven_vehicles(now) or self._heartbeat.is_greeting(now))
         if rests != self.rests:
             self.rests = rests
             self.operator.set_resting(rests, now)

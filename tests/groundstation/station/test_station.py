@@ -101,7 +101,7 @@ def test_a_renewal_in_time_extends_the_lease_and_a_late_one_is_an_intent(
     make: Callable[[], Cockpit], timeout: float
 ) -> None:
     cockpit = make()
-    cockpit.run(0.5)
+    cockpit.run(2.0)
     cockpit.leasing = False
     cockpit.do(RenewLease())
     for _ in range(10):
