@@ -101,6 +101,8 @@ class StationHost:
         self._slot: asyncio.Handle | None = None
         """The next call of `_run_slot`."""
         self._slot_period = SLOT
+        self._slot_at = 0.0
+        """When it was called last."""
         self._addresses = LocalAddresses()
         self._lasting_alerts = LastingAlerts()
         self._broken = self._ending = False
@@ -188,17 +190,18 @@ class StationHost:
         if self._broken:
             return
         loop = asyncio.get_running_loop()
-        self._keep_up(loop.time())  # an exception ends the station, see _handle_loop_exception
+        self._slot_at = loop.time()
+        self._keep_up(self._slot_at)  # an exception ends the station, see _handle_loop_exception
         now = loop.time()
         self._slot_period = self._pace.call_period(now, rests=self._station.rests)
         self._slot = loop.call_at(next_multiple(self._slot_period, now), self._run_slot)
 
     def _rouse(self) -> None:
-        """Let the next slot come at once if it is one of a rest."""
+        """Let the next slot come SLOT after the one before, or at once, if it is one of a rest."""
         if self._slot is not None and self._slot_period > SLOT:
             self._slot.cancel()
             self._slot_period = SLOT
-            self._slot = asyncio.get_running_loop().call_soon(self._run_slot)
+            self._slot = asyncio.get_running_loop().call_at(self._slot_at + SLOT, self._run_slot)
 
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""

@@ -60,6 +60,9 @@ DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 DECISIVE = (m.Heartbeat, m.ControlStatus, m.RoverControl, m.RoverDriveStatus)
 """Messages that report what decides on demands: armed, mode, who is in control, emergency stop."""
 
+REST_AFTER = 1.0
+"""s without anything under way after which the station rests: requests to many vehicles follow one another."""
+
 TICK_PERIOD = 0.1
 """s between ticks that are enough for demands, which have times of their own (`due_at`)."""
 
@@ -152,6 +155,8 @@ class Station:
         self._link_events = LinkEvents()
         self._outbox: list[Outgoing] = []
         self._snapshot_count = 0
+        self._active_at = now
+        """When something was under way last."""
         self.rests = False
         """No vehicle is armed or was driven just now, and nothing is under way."""
         self.on_rest_end: Callable[[], None] = lambda: None
@@ -251,7 +256,9 @@ class Station:
 
     def _update_rest(self, now: float) -> None:
         driven = any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
-        rests = not (self._busy or driven or self.driving.driven_vehicles(now) or self._heartbeat.is_greeting(now))
+        if self._busy or driven or self.driving.driven_vehicles(now) or self._heartbeat.is_greeting(now):
+            self._active_at = now
+        rests = now - self._active_at >= REST_AFTER
         if rests != self.rests:
             self.rests = rests
             self.operator.set_resting(rests, now)

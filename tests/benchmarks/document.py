@@ -25,6 +25,7 @@ REASONS = (
     ("link_loss", "", "Key to motor over networks that lose"),
     ("tenth_core", "", "A tenth of a core"),
     ("loop_lateness", "", "A tenth of a core"),
+    ("fleet", "", "A fleet"),
     ("fleet_path", "", "A fleet"),
     ("fleet_load", "", "A fleet"),
     ("receive_path", "", "The path of a demand, the framer and the encoder"),

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
 from dialects import messages as m
 from groundstation.intents.driving import HOLD_TIME
-from groundstation.intents.session import LEASE_TIMEOUT, REST_LEASE_TIMEOUT, REST_PERIOD, RenewLease
+from groundstation.intents.session import LEASE_TIMEOUT, REST_PERIOD, RenewLease
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.station.driven import DEMAND_MEMORY
-from groundstation.station.station import TICK_PERIOD
+from groundstation.station.station import REST_AFTER, TICK_PERIOD
 from tests.groundstation.cockpits import armed_cockpit
 from tests.groundstation.fake_vehicle import Cockpit
 
@@ -51,9 +49,17 @@ def test_round_trip_and_loss_are_shown() -> None:
     assert link.rate > 0
 
 
-def test_ticks_are_few_unless_a_command_is_under_way_and_it_rests_only_while_no_vehicle_is_armed() -> None:
+def resting_cockpit() -> Cockpit:
     cockpit = Cockpit()
-    cockpit.run(5.0)
+    for _ in range(100):
+        cockpit.run(0.1)
+        if cockpit.station.rests:
+            return cockpit
+    raise AssertionError("it does not rest")
+
+
+def test_ticks_are_few_unless_a_command_is_under_way_and_it_rests_only_while_no_vehicle_is_armed() -> None:
+    cockpit = resting_cockpit()
     assert cockpit.station.rest_period == REST_PERIOD
     assert cockpit.snapshot.rests
     ended = []
@@ -69,13 +75,12 @@ def test_ticks_are_few_unless_a_command_is_under_way_and_it_rests_only_while_no_
     cockpit.run(2.0)
     assert not cockpit.vehicle.armed
     assert cockpit.station.rest_period == TICK_PERIOD, "a vehicle that was driven just now may hold a demand"
-    cockpit.run(DEMAND_MEMORY)
+    cockpit.run(DEMAND_MEMORY + REST_AFTER)
     assert cockpit.station.rest_period == REST_PERIOD
 
 
 def test_a_vehicle_that_somebody_else_arms_ends_the_rest_with_its_report() -> None:
-    cockpit = Cockpit()
-    cockpit.run(5.0)
+    cockpit = resting_cockpit()
     assert cockpit.station.rests
     ended = []
     cockpit.station.on_rest_end = lambda: ended.append(cockpit.now)
@@ -87,28 +92,21 @@ def test_a_vehicle_that_somebody_else_arms_ends_the_rest_with_its_report() -> No
 
 
 def test_a_crashed_station_does_not_rest() -> None:
-    cockpit = Cockpit()
-    cockpit.run(5.0)
+    cockpit = resting_cockpit()
     assert cockpit.core.rest_period == REST_PERIOD
     cockpit.core.activate(cockpit.now)
     assert cockpit.core.rest_period is None
 
 
-@pytest.mark.parametrize(
-    ("make", "timeout"), [(Cockpit, REST_LEASE_TIMEOUT), (armed_cockpit, LEASE_TIMEOUT)], ids=["at rest", "armed"]
-)
-def test_a_renewal_in_time_extends_the_lease_and_a_late_one_is_an_intent(
-    make: Callable[[], Cockpit], timeout: float
-) -> None:
-    cockpit = make()
-    cockpit.run(2.0)
+def test_a_renewal_in_time_extends_the_lease_and_a_late_one_is_an_intent() -> None:
+    cockpit = armed_cockpit()
     cockpit.leasing = False
     cockpit.do(RenewLease())
     for _ in range(10):
-        cockpit.run(timeout - 0.05)
+        cockpit.run(LEASE_TIMEOUT - 0.05)
         assert cockpit.station.renew_lease(cockpit.now)
     assert cockpit.station.operator.live
-    cockpit.run(timeout + 0.05)
+    cockpit.run(LEASE_TIMEOUT + 0.05)
     assert not cockpit.station.renew_lease(cockpit.now)
     assert not cockpit.station.operator.live
     cockpit.do(RenewLease())
