@@ -15,7 +15,7 @@ STEADY_PERIOD, REST_PERIOD = 0.2, 0.5
 when only the readings of vehicles that stand change."""
 
 CALLS_AT_REST = session.REST_PERIOD
-"""s between two calls at rest. What ends the rest brings a call at once."""
+"""s between two calls at rest. What ends the rest brings the next one SLOT after the last, or at once."""
 
 LIVELY = 1.0
 """s after an intent of a screen, or a new line of the log, for which a station that rests sends as many as before."""
