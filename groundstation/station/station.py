@@ -198,7 +198,8 @@ class Station:
         self._doctor.receive(contact, received, now)
         if isinstance(received.message, DECISIVE):
             self.driving.handle_report(contact, now)
-            self._update_rest(now)
+            if self.rests:  # it ends at once; its beginning is found by a tick, which looks at all vehicles
+                self._update_rest(now)
         elif isinstance(received.message, m.StatusText):
             self._handle_statustext(received.message, received.component, contact, now)
         if contact is self.fleet.selected:
