@@ -10,7 +10,6 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, MissionType, command_name
 from dialects.modes import Mode
 from groundstation.geo import LocalFrame, Place, find_way, is_on_earth
-from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.arguments import finite
 from groundstation.verbs.exit_codes import ExitCode, VerbError
@@ -117,7 +116,7 @@ async def _finish(
     session: VerbSession, report: RequestReport, output: Output, done: str, confirmed: Callable[[], bool]
 ) -> int:
     state = session.vehicle
-    if report.state is RequestState.ACCEPTED and not await session.wait_for(confirmed, CONFIRM_WITHIN):
+    if report.state is RequestState.ACCEPTED and not await session.wait_for_report(confirmed):
         words = f"accepted, but its heartbeat reports {state.mode}, {'armed' if state.armed else 'disarmed'}"
         output.error(f"{state.name}: {report.what}: {words}")
         output.result(False, state.system, mode=state.mode, detail=words)

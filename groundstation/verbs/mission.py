@@ -8,7 +8,6 @@ from itertools import zip_longest
 
 from dialects.enums import Command, MissionType
 from groundstation.formats.plan import for_vehicle, keeps_home
-from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
@@ -46,7 +45,7 @@ async def start(session: VerbSession, options: argparse.Namespace, output: Outpu
     missions = session.services.missions
     report = await session.request(missions.start)
     accepted = report.state is RequestState.ACCEPTED
-    if accepted and not await session.wait_for(lambda: state.drives_itself, CONFIRM_WITHIN):
+    if accepted and not await session.wait_for_report(lambda: state.drives_itself):
         raise VerbError(ExitCode.REFUSED, f"{state.name}: accepted, but its heartbeat reports {state.mode}")
     code = finish(session, report, output, "drives its mission", mode=state.mode)
     if accepted:

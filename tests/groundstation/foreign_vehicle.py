@@ -78,7 +78,7 @@ class ForeignVehicle:
         self.telemetry: dict[int, Any] = {}
         """Message id -> what it sends on request."""
         self.on_command: dict[int, Callable[[], None]] = {}
-        """Command -> what it does beside the acknowledgement."""
+        """Command -> what it does when it has accepted it."""
         self.answers_timesync = False
         self.acks: dict[int, tuple[int, str]] = {}
         """Command -> MAV_RESULT, and STATUSTEXT before it."""
@@ -182,7 +182,8 @@ class ForeignVehicle:
         if text:
             self.say(text)
         self.send(mav.MAVLink_command_ack_message(message.command, result, 0, 0, *self._sender))
-        self.on_command.get(message.command, lambda: None)()
+        if result == mav.MAV_RESULT_ACCEPTED:
+            self.on_command.get(message.command, lambda: None)()
         if message.command in (176, 400) and result == 0 and self.obeys:
             self._obey(message)
         if message.command == 512 and result == 0:

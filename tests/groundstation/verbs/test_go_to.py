@@ -106,6 +106,19 @@ def test_an_answer_without_the_mode_is_no_start(capsys: Capture) -> None:
         assert "accepted, but its heartbeat reports MANUAL, armed" in refused.err
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("beat_period", "code", "said"),
+    [(5.0, ExitCode.DONE, "drives home"), (math.inf, ExitCode.NO_ANSWER, "accepted, but no heartbeat came for 8 s")],
+)
+def test_heartbeats_that_are_lost(capsys: Capture, beat_period: float, code: int, said: str) -> None:
+    with armed() as vehicle:
+        vehicle.beat_period = beat_period  # the first one comes at once
+        vehicle.on_command[RETURN] = lambda: setattr(vehicle, "mode", RTL[ARDUPILOT])
+        ended = verb(capsys, vehicle, "home")
+        assert (ended.code, said in ended.err) == (code, True), ended.err
+
+
 def test_refusals(capsys: Capture) -> None:
     with armed() as vehicle:
         vehicle.acks[REPOSITION] = (4, "Outside fence")
