@@ -66,8 +66,10 @@ THREADS_VARIABLE = "ZENOH_RUNTIME"
 THREADS = (
     "(app: (worker_threads: 2), acc: (handover: app), net: (handover: app), rx: (handover: app), tx: (handover: app))"
 )
-"""One pool for everything: between Zenoh's own five pools a frame wakes one thread after the other, which adds 0.1 ms.
-A single thread would be held up for 2 s by the end of a session whose router is silent."""
+"""One pool for everything, in an end: between Zenoh's own five pools a frame wakes one thread after the other, which
+adds 0.1 ms. A single thread would be held up for 2 s by the end of a session whose router is silent. A router keeps the
+five: who has read a frame there waits for room in the queue to others, and must not keep the thread that makes room.
+"""
 
 _CLIENT: dict[str, Any] = {
     "mode": "client",  # peers behind one router do not hear each other
@@ -100,7 +102,6 @@ class FleetConfig(msgspec.Struct, frozen=True):
 
 def load_zenoh() -> Any:
     """Return the module zenoh. Raises LinkError with the command that installs it."""
-    os.environ.setdefault(THREADS_VARIABLE, THREADS)  # read when the first session opens
     try:
         import zenoh
     except ImportError:
@@ -111,6 +112,7 @@ def load_zenoh() -> Any:
 def load_config(endpoint: Endpoint) -> FleetConfig:
     """Return the configuration of an endpoint. Raises LinkError: file, error, remedy."""
     module = load_zenoh()
+    os.environ.setdefault(THREADS_VARIABLE, THREADS)  # read when the first session opens
     config = _read_file(module, endpoint) if ".json" in endpoint.locator else module.Config()
     if "json" not in endpoint.locator:
         config.insert_json5("connect/endpoints", json.dumps([endpoint.locator]))

@@ -34,6 +34,7 @@ class Sender:
         name = f"v{number}"
         endpoint = parse_endpoint(f"zenoh:{folder}/{name}.json5/{FLEET}/{name}")
         self._keys = FleetKeys(FLEET, name, None)
+        self._first = number
         self._frames = vehicle_frames(1 + number % SYSTEMS)
         self._places: dict[str, list[Any]] = {}
         self._brief = BriefTelemetry()
@@ -44,8 +45,8 @@ class Sender:
         self._listening = live.declare_subscriber(self._keys.others, self._meet, history=True)
 
     def send(self, number: int) -> None:
-        """Send message `number` to each ground station."""
-        at = number % len(self._frames)
+        """Send message `number` to each ground station. Each vehicle begins with another one, as real ones do."""
+        at = (self._first + number) % len(self._frames)
         for address, places in list(self._places.items()):
             if self._brief.passes(self._read[at], address, time.monotonic()):
                 self._session.put(places[at], self._frames[at])

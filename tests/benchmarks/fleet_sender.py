@@ -37,7 +37,8 @@ def main(count: int, port: int) -> None:
             due = round(burst * STEP * RATE * count)
             for number in range(sent, due):
                 vehicle, message = number % count, number // count
-                sockets[vehicle].send(frames[vehicle][message % len(frames[vehicle])])
+                at = (vehicle + message) % len(frames[vehicle])  # their heartbeats do not come all at once
+                sockets[vehicle].send(frames[vehicle][at])
             sent = due
 
 

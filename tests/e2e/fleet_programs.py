@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import re
 import signal
 import subprocess
@@ -16,6 +17,7 @@ from dialects import codec
 from dialects import messages as m
 from link.bridge.fleet.members import add_member, new_fleet
 from link.endpoint import Side
+from link.fleet.config import THREADS_VARIABLE
 from link.fleet.transport import FleetTransport
 from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
@@ -55,7 +57,8 @@ class RouterProcess:
         with self.log.open("wb") as log:
             python = (*self._within, sys.executable)
             command = [*python, "-m", "link.bridge", "router", str(self._fleet / "fleet.toml"), *self._link]
-            self.process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+            environment = {name: value for name, value in os.environ.items() if name != THREADS_VARIABLE}  # of an end
+            self.process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, env=environment)
         deadline = time.monotonic() + PATIENCE
         while "ready" not in self.log.read_text():
             assert time.monotonic() < deadline, self.log.read_text()

@@ -128,6 +128,24 @@ def test_a_watcher_sees_and_stops(fleet: Fleet) -> None:
     assert not fleet.armed()
 
 
+def test_many_tokens_at_once_do_not_hold_up_the_router(fleet: Fleet) -> None:
+    """They need more room than there is in the queue of the session to which they go."""
+    wires, base = fleet.wires, "fleet/farm/rover2/gcs/bob"
+    waits = Waits(wires.vehicle.process.pid)
+    seen: set[str] = set()
+    with fleet.session("bob") as bob, fleet.session("rover2") as rover2:
+        live = rover2.liveliness()
+        tokens = [bob.liveliness().declare_token(f"{base}/{number:0100}") for number in range(500)]
+        fleet.rest()
+        wires.until(wires.vehicle.at_full, lambda now: fleet.driver.step(AHEAD))
+        wires.longest_silence = 0.0
+        heard = live.declare_subscriber(f"{base}/*", lambda each: seen.add(str(each.key_expr)), history=True)
+        wires.until(lambda: len(seen) == len(tokens), lambda now: fleet.driver.step(AHEAD), within=5.0 + waits.total())
+        assert heard
+    assert wires.longest_silence < 1.0 + waits.total()
+    assert wires.vehicle.at_full()
+
+
 def test_a_member_who_is_not_in_the_file_reaches_nobody(fleet: Fleet) -> None:
     wires = fleet.wires
     wires.transport("bob")

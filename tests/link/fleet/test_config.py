@@ -118,10 +118,13 @@ def test_without_the_package_one_line_says_how_to_install_it(monkeypatch: pytest
     assert not is_private(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
 
 
-def test_zenoh_has_one_pool_of_threads_unless_the_user_chooses_others(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_end_has_one_pool_of_threads_unless_the_user_chooses_others(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(THREADS_VARIABLE, "(rx: (worker_threads: 3))")
-    load_zenoh()
+    endpoint = parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm")
+    load_config(endpoint)
     assert os.environ[THREADS_VARIABLE] == "(rx: (worker_threads: 3))"
     monkeypatch.delenv(THREADS_VARIABLE)
     load_zenoh()
+    assert THREADS_VARIABLE not in os.environ, "a router needs the pools of Zenoh"
+    load_config(endpoint)
     assert os.environ[THREADS_VARIABLE] == THREADS
