@@ -99,6 +99,11 @@ class VehicleState:
         """The vehicle sends the private messages of our dialect (rover.xml)."""
         return self._drive is not None or self.drive_info is not None
 
+    @property
+    def heartbeat_at(self) -> float:
+        """When the newest HEARTBEAT arrived; -infinity if none has."""
+        return self._times.get(m.Heartbeat, -math.inf)
+
     def sends_drive_status(self, now: float) -> bool:
         """Return whether ROVER_DRIVE_STATUS is arriving."""
         return self._fresh(m.RoverDriveStatus, now)

@@ -15,7 +15,7 @@ from groundstation.verbs.arguments import finite
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.plan import count_text, download, has_place
-from groundstation.verbs.reports import finish
+from groundstation.verbs.reports import finish, wait_for_report
 from groundstation.verbs.session import VerbSession
 from link.services.command.client import CommandPlace
 
@@ -116,7 +116,7 @@ async def _finish(
     session: VerbSession, report: RequestReport, output: Output, done: str, confirmed: Callable[[], bool]
 ) -> int:
     state = session.vehicle
-    if report.state is RequestState.ACCEPTED and not await session.wait_for_report(confirmed):
+    if report.state is RequestState.ACCEPTED and not await wait_for_report(session, confirmed):
         words = f"accepted, but its heartbeat reports {state.mode}, {'armed' if state.armed else 'disarmed'}"
         output.error(f"{state.name}: {report.what}: {words}")
         output.result(False, state.system, mode=state.mode, detail=words)

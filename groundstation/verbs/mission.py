@@ -12,7 +12,7 @@ from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.plan import count_text, describe_item, download, plan_name, read_plan
-from groundstation.verbs.reports import finish
+from groundstation.verbs.reports import finish, wait_for_report
 from groundstation.verbs.session import VerbSession
 from link.services.mission.items import MissionItem
 from link.services.param.float32 import shortest_float32
@@ -45,7 +45,7 @@ async def start(session: VerbSession, options: argparse.Namespace, output: Outpu
     missions = session.services.missions
     report = await session.request(missions.start)
     accepted = report.state is RequestState.ACCEPTED
-    if accepted and not await session.wait_for_report(lambda: state.drives_itself):
+    if accepted and not await wait_for_report(session, lambda: state.drives_itself):
         raise VerbError(ExitCode.REFUSED, f"{state.name}: accepted, but its heartbeat reports {state.mode}")
     code = finish(session, report, output, "drives its mission", mode=state.mode)
     if accepted:

@@ -1,13 +1,18 @@
-"""How a request of a verb ended: printed, and as the exit code."""
+"""How a request of a verb ended: reported by a heartbeat, printed, and as the exit code."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.vehicles.requests import RequestReport, RequestState
-from groundstation.verbs.exit_codes import ExitCode, code_of
+from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
+
+SILENT_WITHIN = 5.0
+"""s for a heartbeat to arrive after what was accepted, if none came in CONFIRM_WITHIN."""
 
 
 def finish(session: VerbSession, report: RequestReport, output: Output, done: str = "", **fields: Any) -> int:
@@ -24,3 +29,18 @@ def finish(session: VerbSession, report: RequestReport, output: Output, done: st
         output.error(f"GCS {driver} is in control of {name}; `groundstation control request` asks for it")
     output.result(accepted, contact.state.system, **fields, detail=report.detail, text=report.reason)
     return code
+
+
+async def wait_for_report(session: VerbSession, condition: Callable[[], bool]) -> bool:
+    """Wait for a heartbeat to report what was accepted; return whether one does within CONFIRM_WITHIN.
+
+    A link that loses many frames may lose all heartbeats of that time: then the next one decides. Raises VerbError if
+    none comes within SILENT_WITHIN more.
+    """
+    state, began = session.vehicle, session.now
+    if await session.wait_for(condition, CONFIRM_WITHIN) or state.heartbeat_at >= began:
+        return condition()
+    if not await session.wait_for(lambda: state.heartbeat_at >= began, SILENT_WITHIN):
+        silence = f"{CONFIRM_WITHIN + SILENT_WITHIN:g} s"
+        raise VerbError(ExitCode.NO_ANSWER, f"{state.name}: accepted, but no heartbeat came for {silence}")
+    return condition()

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from dialects import messages as m
 from dialects.enums import Command
-from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.station.operator import NEUTRAL_LEAD
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
@@ -32,8 +31,6 @@ END_WITHIN = 1.0
 """s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
 SETTLED_WITHIN = 3.0
 """s to find out the dialect and prove the session; the question alone is repeated for 2.1 s."""
-SILENT_WITHIN = 5.0
-"""s for a heartbeat to arrive after what was accepted, if none came in CONFIRM_WITHIN."""
 PROOF_PERIOD = 0.01
 """s between looks whether a proof is due, before the first command."""
 TOLD_WITHIN = 0.5
@@ -146,20 +143,6 @@ class VerbSession:
             return True
         await self.look_for(lambda: condition() or bool(self._refusal), seconds)
         self._need_sent()
-        return condition()
-
-    async def wait_for_report(self, condition: Callable[[], bool]) -> bool:
-        """Wait for a heartbeat to report what was accepted; return whether one does within CONFIRM_WITHIN.
-
-        A link that loses many frames may lose all heartbeats of that time: then the next one decides. Raises VerbError
-        if none comes within SILENT_WITHIN more.
-        """
-        began = self.now
-        if await self.wait_for(condition, CONFIRM_WITHIN) or self.heard_at(m.Heartbeat) >= began:
-            return condition()
-        if not await self.wait_for(lambda: self.heard_at(m.Heartbeat) >= began, SILENT_WITHIN):
-            silence = f"{CONFIRM_WITHIN + SILENT_WITHIN:g} s"
-            raise VerbError(ExitCode.NO_ANSWER, f"{self.vehicle.name}: accepted, but no heartbeat came for {silence}")
         return condition()
 
     async def look_for(self, condition: Callable[[], bool], seconds: float) -> bool:
