@@ -111,9 +111,8 @@ async def test_two_panes_side_by_side_are_never_the_same() -> None:
             first, second = screen.app.drive.query(PaneFrame)
             assert first.pane is not second.pane
             await screen.press("v")
-        requests = set(watched(screen))
-        assert {TrackRequest(), SpeedRequest()} <= requests
-        assert any(isinstance(each, MessagesRequest) for each in requests)
+        await until(lambda: {TrackRequest(), SpeedRequest()} <= set(watched(screen)))  # told at the next tick
+        assert any(isinstance(each, MessagesRequest) for each in watched(screen))
 
 
 async def test_nothing_is_requested_without_a_vehicle_or_room() -> None:
