@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import time
+from collections.abc import Iterable
 
 import msgspec
 
@@ -24,6 +26,14 @@ MAX_ANSWER = 1 << 17
 """Bytes of the largest answer: 5000 parameters have 90 kB."""
 
 
+PLAIN_NAME = "[A-Za-z0-9][A-Za-z0-9_.:-]*"
+"""The names that are proposed, as a regular expression that all three shells read alike. Vehicles choose their names,
+also hostile ones: what a shell puts into the command line could be expanded, executed or taken for an option there. Who
+wants another name types it, in quotes."""
+
+_is_plain = re.compile(PLAIN_NAME, re.ASCII).fullmatch
+
+
 class Names(msgspec.Struct, frozen=True, tag=True):
     """From the station, first and last."""
 
@@ -34,14 +44,19 @@ encode_names = encode
 _decode = msgspec.msgpack.Decoder(Names).decode
 
 
+def plain_names(names: Iterable[str]) -> list[str]:
+    """Return the names that may be proposed to complete a word, in their order."""
+    return [name for name in names if _is_plain(name)]
+
+
 def find_names(kind: str, within: float = ANSWER_WITHIN) -> list[str]:
-    """Return the names that the running stations of this user know; none if no station answers in `within` s."""
+    """Return the plain names that the running stations of this user know; none if no station answers in `within` s."""
     deadline = time.monotonic() + within
     try:
         pids = [pid for pid, _ in list_sockets()]
     except FolderError:
         return []
-    return sorted({name for pid in pids for name in _ask(pid, kind, deadline - time.monotonic())})
+    return sorted({name for pid in pids for name in plain_names(_ask(pid, kind, deadline - time.monotonic()))})
 
 
 def _ask(pid: int, kind: str, within: float) -> tuple[str, ...]:

@@ -1,8 +1,9 @@
 """`groundstation completion`: a script for a shell that completes verbs, actions, options and names.
 
 It is made from the table of verbs. Names of parameters, modes and vehicles come from a station that runs, by
-`groundstation completion --names`, which opens no link; without a station there are the names of usual modes. zsh runs
-the script of bash by its own bashcompinit.
+`groundstation completion --names`, which opens no link; without a station there are the names of usual modes. bash and
+zsh share the rules that say what is proposed where. No shell expands a name of a vehicle, and one that is no PLAIN_NAME
+is left out twice, by the program and by the script.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dialects import rover
 from dialects.enums import Autopilot, Command, VehicleType
 from dialects.messages import MESSAGES
 from dialects.modes import known_modes
-from groundstation.station_socket.names import MODES, PARAMS, VEHICLES
+from groundstation.station_socket.names import MODES, PARAMS, PLAIN_NAME, VEHICLES
 from groundstation.verbs.shells import SHELLS
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
 
@@ -28,82 +29,136 @@ MANY = ("--all", "--group")
 _BASH = """\
 # completion of groundstation for bash: eval "$(groundstation completion bash)"
 _groundstation() {
-    local current=${COMP_WORDS[COMP_CWORD]} words="" options="--help" usual="" names=""
-    if ((COMP_CWORD == 1)); then
-        COMPREPLY=($(compgen -W "@VERBS@" -- "$current"))
-        return
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+    local verb=${COMP_WORDS[1]} action=${COMP_WORDS[2]} at=$COMP_CWORD
+    local known="" options="--help" usual="" names="" word
+    local -a proposed=() found=()
+    COMPREPLY=()
+@RULES@
+    IFS=' ' read -r -a proposed <<< "$known"
+    if [[ -n $names ]]; then
+        mapfile -t found < <("${COMP_WORDS[0]}" completion --names "$names" 2> /dev/null)
+        ((${#found[@]})) || IFS=' ' read -r -a found <<< "$usual"
+        for word in "${found[@]}"; do
+            [[ $word =~ ^@PLAIN@$ ]] && proposed+=("$word")
+        done
     fi
-    case "${COMP_WORDS[1]}" in
-@CASES@
-    esac
-    case "${COMP_WORDS[COMP_CWORD - 1]}" in
-@VALUES@
-    esac
+    for word in "${proposed[@]}"; do
+        [[ ${word:0:${#current}} == "$current" ]] && COMPREPLY+=("$word")
+    done
+    ((${#COMPREPLY[@]})) && return
     if [[ $current == -* ]]; then
-        words=$options
-    elif [[ -n $names ]]; then
-        names=$("${COMP_WORDS[0]}" completion --names "$names" 2> /dev/null) || names=$usual
-        words+=" $names"
+        compopt +o default 2> /dev/null
+    elif [[ -z $current ]] && compgen -G '[-~]*' > /dev/null; then
+        compopt -o filenames 2> /dev/null
+        COMPREPLY=(./*)
     fi
-    COMPREPLY=($(compgen -W "$words" -- "$current"))
 }
 complete -o default -F _groundstation groundstation
 """
-"""Where it proposes nothing, the shell proposes files (-o default)."""
+"""Where it proposes nothing, bash proposes files (-o default). It never expands a name: `compgen -W` would run what
+is in it, so that words are compared letter by letter. If a file begins with - or ~, all get ./ before them."""
 _ZSH = """\
 # completion of groundstation for zsh: eval "$(groundstation completion zsh)"
 (( $+functions[compdef] )) || { autoload -U +X compinit && compinit }
-autoload -U +X bashcompinit && bashcompinit
+_groundstation() {
+    local current=$words[CURRENT] previous=$words[CURRENT-1] verb=$words[2] action=$words[3] at=$((CURRENT - 1))
+    local known="" options="--help" usual="" names="" word
+    local -a proposed=() found=() dashed=()
+@RULES@
+    proposed=(${=known})
+    if [[ -n $names ]]; then
+        found=(${(f)"$("${words[1]}" completion --names "$names" 2> /dev/null)"})
+        (( $#found )) || found=(${=usual})
+        for word in $found; do
+            [[ $word =~ "^@PLAIN@$" ]] && proposed+=($word)
+        done
+    fi
+    compadd -a proposed && return
+    [[ $current == -* ]] && return 1
+    dashed=(-*(N))
+    if [[ -z $current ]] && (( $#dashed )); then
+        _files -P ./
+    else
+        _default
+    fi
+}
+compdef _groundstation groundstation
 """
+
+
+_FISH = """\
+# completion of groundstation for fish: groundstation completion fish | source
+function __groundstation_dashed # whether a file here would look like an option
+    set -l token (commandline -ct)
+    set -l found ./-*
+    set -q found[1]; and not string match -q '*/*' -- "$token"
+end
+function __groundstation_files
+    set -l token (commandline -ct)
+    complete -C "'' $token" | string match -v -- '-*'
+end
+complete -c groundstation -f
+"""
+_FISH_FILES = (
+    ("; and not __groundstation_dashed", " -r -F"),
+    ("; and __groundstation_dashed", " -x -a '(__groundstation_files)'"),
+)
+"""Conditions, and how files are proposed: without those that begin with -, which fish would propose as they are."""
 
 
 def build_script(shell: str, helps: Mapping[str, str]) -> str:
     """Return the script. `helps`: verb -> what it does, also of verbs without a vehicle."""
     if shell == "fish":
-        return "\n".join(_fish_lines(helps)) + "\n"
-    parts = {
-        "@VERBS@": " ".join(helps),
-        "@CASES@": "\n".join(_bash_cases(helps)),
-        "@VALUES@": "\n".join(_bash_values()),
-    }
-    bash = _BASH
-    for mark, part in parts.items():
-        bash = bash.replace(mark, part)
-    return bash if shell == "bash" else _ZSH + bash
+        return _FISH + "\n".join(_fish_lines(helps)) + "\n"
+    script = _BASH if shell == "bash" else _ZSH
+    return script.replace("@RULES@", "\n".join(_rules(helps))).replace("@PLAIN@", PLAIN_NAME)
 
 
-def _bash_cases(helps: Mapping[str, str]) -> Iterator[str]:
+def _rules(helps: Mapping[str, str]) -> Iterator[str]:
+    """Yield the lines, for bash and zsh, that set what is proposed at this place of the command line."""
+    yield '    case "$verb" in'
+    yield from _verb_cases(helps)
+    yield "    esac"
+    yield '    case "$previous" in'
+    yield from _option_cases()
+    yield "    esac"
+    yield '    if [[ $current == -* ]]; then known=$options names=""; fi'
+    yield f'    if ((at == 1)); then known="{" ".join(helps)}" names=""; fi'
+
+
+def _verb_cases(helps: Mapping[str, str]) -> Iterator[str]:
     """Yield one case for each verb, inside it one for each action."""
     for verb in helps:
         actions = VERBS.get(verb)
         if actions is None:
             if verb in LOCAL:
-                yield f'        {verb}) words="{" ".join(LOCAL[verb])}" ;;'
+                yield f'        {verb}) known="{" ".join(LOCAL[verb])}" ;;'
         elif ONLY in actions:
             yield f"        {verb}) {_assignments(verb, actions[ONLY])} ;;"
         else:
             yield f"        {verb})"
-            yield f'            if ((COMP_CWORD == 2)); then words="{" ".join(actions)}"; else'
-            yield '                case "${COMP_WORDS[2]}" in'
+            yield f'            if ((at == 2)); then known="{" ".join(actions)}"; else'
+            yield '                case "$action" in'
             for name, action in actions.items():
                 yield f"                    {name}) {_assignments(verb, action)} ;;"
             yield "                esac"
             yield "            fi ;;"
 
 
-def _bash_values() -> Iterator[str]:
+def _option_cases() -> Iterator[str]:
     """Yield one case for each option whose values are known. Behind others that take a value, files are proposed."""
-    yield '        -v | --vehicle) names=vehicles words="" usual="" ;;'
+    yield '        -v | --vehicle) names=vehicles known="" usual="" ;;'
     for option, values in _OPTION_VALUES.items():
-        yield f'        {option}) names="" words="{" ".join(values)}" ;;'
-    yield f'        {" | ".join(sorted(_FREE_VALUES))}) names="" words="" ;;'
+        yield f'        {option}) names="" known="{" ".join(values)}" ;;'
+    yield f'        {" | ".join(sorted(_FREE_VALUES))}) names="" known="" ;;'
 
 
 def _assignments(verb: str, action: VerbAction) -> str:
     """Return what bash shall know of an action: its words, the names to ask a station for, and their substitute."""
     kind = _station_names(verb, action)
     words = " ".join(_words(action)) if _positionals(action) else "$options"
-    text = f'options="{" ".join(_options(action))}" words="{words}"'
+    text = f'options="{" ".join(_options(action))}" known="{words}"'
     return f'{text} names={kind} usual="{" ".join(USUAL.get(kind, ()))}"' if kind else text
 
 
@@ -114,8 +169,6 @@ def _station_names(verb: str, action: VerbAction) -> str:
 
 
 def _fish_lines(helps: Mapping[str, str]) -> Iterator[str]:
-    yield "# completion of groundstation for fish: groundstation completion fish | source"
-    yield "complete -c groundstation -f"
     yield f"complete -c groundstation -s v -l vehicle -x -a {_quote(_fish_names(VEHICLES))}"
     for verb, text in helps.items():
         yield f"complete -c groundstation -n __fish_use_subcommand -a {verb} -d {_quote(text)}"
@@ -123,7 +176,7 @@ def _fish_lines(helps: Mapping[str, str]) -> Iterator[str]:
         if verb in LOCAL:
             yield f"complete -c groundstation -n {_quote(chosen)} -a {_quote(' '.join(LOCAL[verb]))}"
         elif verb not in VERBS:
-            yield f"complete -c groundstation -n {_quote(chosen)} -F"
+            yield from _fish_file(chosen)
         actions = VERBS.get(verb, {})
         for name, action in actions.items():
             if name != ONLY:
@@ -141,18 +194,28 @@ def _fish_action(verb: str, name: str, action: VerbAction) -> Iterator[str]:
     if words := _words(action):
         yield f"{start} -a {_quote(' '.join(words))}"
     if any(is_file(settings) for settings in _positionals(action)):
-        yield f"{start} -F"
+        yield from _fish_file(both)
     for option in _options(action):
         if option == "--vehicle":
             continue  # that of all verbs
-        values = _OPTION_VALUES.get(option)
-        needs = f" -x -a {_quote(' '.join(values))}" if values else _FREE_VALUES.get(option, "")
-        yield f"{start} -l {option[2:]}{needs}"
+        if values := _OPTION_VALUES.get(option):
+            yield f"{start} -l {option[2:]} -x -a {_quote(' '.join(values))}"
+        elif _FREE_VALUES.get(option):
+            yield from _fish_file(both, f" -l {option[2:]}")
+        else:
+            yield f"{start} -l {option[2:]}{' -x' if option in _FREE_VALUES else ''}"
+
+
+def _fish_file(condition: str, option: str = "") -> Iterator[str]:
+    """Yield what proposes files, as the value of an option or as an argument."""
+    for more, files in _FISH_FILES:
+        yield f"complete -c groundstation -n {_quote(condition + more)}{option}{files}"
 
 
 def _fish_names(kind: str) -> str:
     usual = " ".join(USUAL.get(kind, ()))
-    return f"(groundstation completion --names {kind} 2> /dev/null; or string split ' ' '{usual}')"
+    otherwise = f"; or string split ' ' '{usual}'" if usual else ""
+    return f"(groundstation completion --names {kind} 2> /dev/null | string match -r '^{PLAIN_NAME}$'{otherwise})"
 
 
 def _options(action: VerbAction) -> list[str]:
@@ -224,8 +287,8 @@ _OPTION_VALUES: Mapping[str, Sequence[str]] = {
 }
 """Option -> its values, where they are known."""
 _FREE_VALUES = {
-    name: " -r -F" if is_file(settings) else " -x"
+    name: is_file(settings)
     for name, settings in {**_FILE_OPTIONS, **_OTHER_OPTIONS, **_OWN_OPTIONS}.items()
     if name not in _OPTION_VALUES
 }
-"""Option with another value -> what fish shall know of it: files are proposed, or nothing."""
+"""Option with another value -> whether that is a file."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from groundstation.station_socket.names import MODES
+from groundstation.station_socket.names import MODES, plain_names
 from groundstation.vehicles.services import VehicleServices
 from groundstation.verbs.completion import NAMES, USUAL
 from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES
@@ -51,9 +51,12 @@ def _arguments(action: VerbAction, at: int, services: VehicleServices | None) ->
 
 
 def _names(kind: str, services: VehicleServices | None) -> list[str]:
-    """Return the words that an argument of this kind may be; the modes and parameters are those of the vehicle."""
+    """Return the words that an argument of this kind may be; the modes and parameters are those of the vehicle.
+
+    Its names that a line would read as several words, or as an option, are left out.
+    """
     if kind == "MODE":
-        return list(USUAL[MODES]) if services is None else [mode.name for mode in services.modes.modes]
+        return list(USUAL[MODES]) if services is None else plain_names(mode.name for mode in services.modes.modes)
     if services is not None and kind in ("NAME", "PATTERN"):
-        return sorted(services.params.client.params)
+        return plain_names(sorted(services.params.client.params))
     return list(NAMES.get(kind, ()))

@@ -5,33 +5,42 @@ from __future__ import annotations
 import os
 import pty
 import select
-import signal
+import shutil
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Self
+
+import pytest
 
 from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
 from groundstation.verbs.completion import build_script
 
+PROGRAM = Path(sys.executable).parent / "groundstation"
 HELPS = {**VERB_HELP, **LOCAL_HELP}
 ASK = """
 COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
 _groundstation; printf '%s\\n' "${{COMPREPLY[@]}}"
 """
 COMMANDS = {"bash": ("bash", "--norc", "-i"), "zsh": ("zsh", "-f", "-i"), "fish": ("fish", "--no-config", "-i")}
-STAND_IN = {
-    "fish": "function groundstation; if test $argv[1] = completion; command groundstation $argv; "
-    "else; printf '<%s>' $argv; printf 'end%s\\n' ed; end; end",
-}
-"""Shell -> a function in the place of the program: it prints what it is called with, but answers completions."""
-USUAL_STAND_IN = (
-    'groundstation() { if [ "$1" = completion ]; then command groundstation "$@"; '
-    "else printf '<%s>' \"$@\"; printf 'end%s\\n' ed; fi; }"
-)
+STAND_IN = """#!/bin/sh
+if [ "$1" = completion ]; then {names}; fi
+printf '%s\\0' "$@" > {arguments}
+printf 'end%s\\n' ed
+"""
+"""A program in the place of ours: it writes down what it is called with, but answers completions."""
 PATIENCE = 60.0
 """s for a shell to answer; it takes a tenth."""
+ENDED = "ended"
+
+
+def skip_without(shell: str) -> None:
+    """Skip a test on a laptop without this shell; CI has all."""
+    if shutil.which(shell) is None:
+        assert "MAVHELM_CI" not in os.environ, f"{shell} is not installed: .ci/run installs it"
+        pytest.skip(f"{shell} is not installed")
 
 
 def complete(words: str, folder: Path) -> set[str]:
@@ -44,40 +53,59 @@ def complete(words: str, folder: Path) -> set[str]:
     return set(ended.stdout.split())
 
 
-def type_and_tab(shell: str, lines: Sequence[str], folder: Path) -> list[str]:
-    """Type each line into an interactive shell, then TAB and ENTER; return the words that the program gets."""
-    script = folder / f"completion.{shell}"
-    script.write_text(build_script(shell, HELPS))
-    keyboard, screen = pty.openpty()
-    with subprocess.Popen(
-        ("setsid", "--ctty", *COMMANDS[shell]),
-        cwd=folder,
-        env=_environment(),
-        stdin=screen,
-        stdout=screen,
-        stderr=screen,
-    ) as process:
+class InteractiveShell:
+    """A shell in a pty, as a person uses it, whose `groundstation` is a stand-in that only notes its arguments."""
+
+    def __init__(self, shell: str, folder: Path, names: bytes | None = None) -> None:
+        """`folder`: where it begins. `names`: a hostile answer to `--names`; None: our program answers."""
+        self._work = Path(tempfile.mkdtemp(prefix="mavhelm-shell-"))
+        self._arguments = self._work / "arguments"
+        self._write_stand_in(names)
+        script = self._work / f"completion.{shell}"
+        script.write_text(build_script(shell, HELPS))
+        self._keyboard, screen = pty.openpty()
+        self._process = subprocess.Popen(
+            ("setsid", "--ctty", *COMMANDS[shell]),
+            cwd=folder,
+            env=_environment(self._work),
+            stdin=screen,
+            stdout=screen,
+            stderr=screen,
+        )
         os.close(screen)
-        try:
-            first = f"{STAND_IN.get(shell, USUAL_STAND_IN)}\nsource {script.name}; groundstation ready\n"
-            _ask(keyboard, first)
-            return [_ask(keyboard, f"{line}\t\n") for line in lines]
-        finally:
-            process.send_signal(signal.SIGKILL)
-            os.close(keyboard)
+        self.type(f"source {script}; groundstation ready\n")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.kill()
+        self._process.wait()
+        os.close(self._keyboard)
+        shutil.rmtree(self._work)
+
+    def tab(self, line: str) -> list[str]:
+        """Type the beginning of a line, TAB and ENTER; return the words that the program gets."""
+        return self.type(f"{line}\t\n")
+
+    def type(self, keys: str) -> list[str]:
+        """Type; return the words that the program gets."""
+        os.write(self._keyboard, keys.encode())
+        drawn, deadline = "", time.monotonic() + PATIENCE
+        while ENDED not in drawn:
+            assert time.monotonic() < deadline, drawn
+            if select.select([self._keyboard], [], [], 0.1)[0]:
+                drawn += os.read(self._keyboard, 65536).decode(errors="replace")
+        return self._arguments.read_bytes().decode().split("\0")[:-1]
+
+    def _write_stand_in(self, names: bytes | None) -> None:
+        (self._work / "names").write_bytes(names or b"")
+        answer = f"cat {self._work / 'names'}" if names is not None else f'"{PROGRAM}" "$@"'
+        program = self._work / "groundstation"
+        program.write_text(STAND_IN.format(names=f"{answer}; exit", arguments=self._arguments))
+        program.chmod(0o755)
 
 
-def _ask(keyboard: int, text: str) -> str:
-    """Type; return what the stand-in prints."""
-    os.write(keyboard, text.encode())
-    drawn, deadline = "", time.monotonic() + PATIENCE
-    while ">ended" not in drawn:
-        assert time.monotonic() < deadline, drawn
-        if select.select([keyboard], [], [], 0.1)[0]:
-            drawn += os.read(keyboard, 65536).decode(errors="replace")
-    return drawn[: drawn.index(">ended") + 1].splitlines()[-1].rpartition("\r")[2]
-
-
-def _environment() -> dict[str, str]:
-    """Return ours, with the `groundstation` of this interpreter first."""
-    return os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "TERM": "xterm"}
+def _environment(first: Path = PROGRAM.parent) -> dict[str, str]:
+    """Return ours, with the `groundstation` of the folder `first`."""
+    return os.environ | {"PATH": f"{first}:{os.environ['PATH']}", "TERM": "xterm"}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from groundstation.cli.main import main
 from groundstation.verbs.completion import COMMON, LOCAL_COMMON, MANY
 from groundstation.verbs.main import build_parser
 from groundstation.verbs.table import ONLY, VERBS
-from tests.groundstation.verbs.shell import HELPS, complete, type_and_tab
+from tests.groundstation.verbs.shell import HELPS, InteractiveShell, complete, skip_without
 
 
 @pytest.mark.parametrize(
@@ -41,24 +40,20 @@ def test_bash_proposes(words: str, some: set[str], tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_a_person_types_and_presses_tab(shell: str, tmp_path: Path) -> None:
-    _skip_without(shell)
+    skip_without(shell)
     (tmp_path / "my plan.plan").touch()
     (tmp_path / "mission").mkdir()
     expected = {
-        "groundstation esto": "<estop>",
-        "groundstation miss": "<mission>",  # not the folder of this name
-        "groundstation mission pu": "<mission><put>",
-        "groundstation mode HOL": "<mode><HOLD>",
-        "groundstation mission put my": "<mission><put><my plan.plan>",
-        "groundstation param save --chan": "<param><save><--changed>",
-        "groundstation export --mcap my": "<export><--mcap><my plan.plan>",
+        "esto": ["estop"],
+        "miss": ["mission"],  # not the folder of this name
+        "mission pu": ["mission", "put"],
+        "mode HOL": ["mode", "HOLD"],
+        "mission put my": ["mission", "put", "my plan.plan"],
+        "param save --chan": ["param", "save", "--changed"],
+        "export --mcap my": ["export", "--mcap", "my plan.plan"],
     }
-    assert type_and_tab(shell, list(expected), tmp_path) == list(expected.values())
-
-
-def _skip_without(shell: str) -> None:
-    if shutil.which(shell) is None:
-        pytest.skip(f"{shell} is not installed")
+    with InteractiveShell(shell, tmp_path) as typed:
+        assert [typed.tab(f"groundstation {line}") for line in expected] == list(expected.values())
 
 
 def test_every_proposed_option_exists(capsys: pytest.CaptureFixture[str]) -> None:
@@ -77,6 +72,6 @@ def test_the_script_is_understood_by_its_shell(shell: str, capsys: pytest.Captur
     assert main(["completion", shell]) == 0
     script = capsys.readouterr().out
     assert all(verb in script for verb in HELPS)
-    _skip_without(shell)
+    skip_without(shell)
     ended = subprocess.run([shell, "-n"], input=script, capture_output=True, text=True, timeout=30)
     assert (ended.returncode, ended.stderr) == (0, "")
