@@ -147,15 +147,16 @@ def test_refusals_and_mistakes_are_one_line() -> None:
 def test_a_hostile_name_of_a_vehicle_completes_no_line() -> None:
     async def use(lines: Lines) -> None:
         await lines.run("param get FS_ACTION")
-        assert (await lines.run("param get -- '-o;a'")).state == DONE
+        view = await lines.run("param get '$(LS)'")
+        assert view.state == DONE, view
         view = await lines.until(lambda view: bool(view.words), LineRequest(0, "param get "))
         assert "FS_ACTION" in view.words
-        assert "-o;a" not in view.words
+        assert "$(LS)" not in view.words
         assert all(word.isidentifier() or word.startswith("--") for word in view.words)
 
     with ForeignVehicle() as vehicle:
         vehicle.params["FS_ACTION"] = ForeignParam(2.0)
-        vehicle.params["-o;a"] = ForeignParam(2.0)
+        vehicle.params["$(LS)"] = ForeignParam(2.0)
         with_station(vehicle, use)
 
 
