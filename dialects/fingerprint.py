@@ -6,12 +6,15 @@ Imports no other module of the project: dialects/build.py runs this file by its 
 from __future__ import annotations
 
 import hashlib
+import shlex
+import sys
 from importlib.metadata import version
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 INPUTS = ("rover.xml", "additions.xml", "build.py")
-REMEDY = "run pip install -e . to generate it"
+REMEDY = f"run {shlex.quote(sys.executable)} -m pip install -e {shlex.quote(str(HERE.parent))} to generate it"
+"""Names the running Python: the `pip` of the search path may be another one's."""
 
 
 def line(folder: Path = HERE) -> str:

@@ -10,6 +10,7 @@ import msgspec
 from groundstation.export.exporter import Exporter, ExportError, LogInfo
 from groundstation.export.map_files import GPX_FORMAT, KML_FORMAT, MapExport
 from groundstation.export.text_files import CsvExport, JsonExport, TlogExport
+from link.runtime.install_hint import install_command
 
 
 class Format(msgspec.Struct, frozen=True):
@@ -27,7 +28,7 @@ def _create_mcap(path: str, log: LogInfo) -> Exporter:
     try:
         from groundstation.export.mcap_file import McapExport
     except ModuleNotFoundError as error:
-        text = f"MCAP needs the package {error.name}, which is not installed: pip install 'mavhelm[bags]'"
+        text = f"MCAP needs the package {error.name}, which is not installed: {install_command('bags')}"
         raise ExportError(text) from None
     return McapExport(path, log)
 

@@ -15,12 +15,12 @@ import msgspec
 from groundstation.input.pad import IDLE_PERIOD, PadFrame
 from groundstation.input.pad_mapping import PadMapping
 from link.runtime.child_process import end_process, start_module
+from link.runtime.install_hint import install_command
 
 READER = "groundstation.gamepad.reader"
 """Module of the process."""
 
 PACKAGES = ("sdl2", "sdl2dll")
-MISSING = "--gamepad needs the packages PySDL2 and pysdl2-dll, which are not installed: pip install 'mavhelm[gamepad]'"
 
 NEXT = b"n"
 """To the reader: choose the next gamepad."""
@@ -35,7 +35,9 @@ TakeFrame = Callable[[PadFrame], None]
 
 def missing_package() -> str | None:
     """Return the line for the user where the extra is not installed."""
-    return None if all(importlib.util.find_spec(name) for name in PACKAGES) else MISSING
+    if all(importlib.util.find_spec(name) for name in PACKAGES):
+        return None
+    return f"--gamepad needs the packages PySDL2 and pysdl2-dll, which are not installed: {install_command('gamepad')}"
 
 
 class GamepadChild:

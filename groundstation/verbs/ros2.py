@@ -25,6 +25,7 @@ from groundstation.verbs.ros_scale import ARGUMENTS as SCALE_ARGUMENTS
 from groundstation.verbs.ros_scale import learn_scale
 from groundstation.verbs.session import VerbSession
 from link.core import Received
+from link.runtime.install_hint import install_command
 
 if TYPE_CHECKING:
     from groundstation.ros.types import RosTypes
@@ -64,7 +65,7 @@ def check(options: argparse.Namespace) -> None:
         from groundstation.ros2.node import Ros2Node  # noqa: F401
         from groundstation.ros2.router import load_router
     except ImportError as error:
-        text = f"ROS 2 needs the package {error.name}, which is not installed: pip install 'mavhelm[ros]'"
+        text = f"ROS 2 needs the package {error.name}, which is not installed: {install_command('ros')}"
         raise VerbError(ExitCode.USAGE, text) from None
     fault = options.node and name_fault(options.node)
     fault = fault or namespace_fault(options.namespace)

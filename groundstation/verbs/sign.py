@@ -14,11 +14,11 @@ from typing import TypeVar
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from link.signing import key_actions
-from link.signing.install_hint import MissingPackageError
 from link.signing.key_actions import WARNING, KeyActionError, ShownAs
 from link.signing.key_file import KeyFileError, load_keys, station_key_file
 from link.signing.key_input import STDIN, SecretForm, SecretInputError, read_secret
 from link.signing.keys import SigningKey
+from link.signing.missing_package import MissingPackageError
 from link.signing.role import Role
 
 ROLE = Role.SET_UP

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 
 from groundstation.web.guard import HOSTS, TOKEN
 from link.runtime.child_process import child_environment, end_process
+from link.runtime.install_hint import install_command
 
 DEFAULT_PORT = 8000
 
 PACKAGES = ("textual_serve", "aiohttp")
-MISSING = "--web needs the package textual-serve, which is not installed: pip install 'mavhelm[web]'"
 
 END_WITHIN = 1.0
 """s for the server to end before it is killed."""
@@ -23,7 +23,9 @@ END_WITHIN = 1.0
 
 def missing_package() -> str | None:
     """Return the line for the user where the extra is not installed."""
-    return None if all(importlib.util.find_spec(name) for name in PACKAGES) else MISSING
+    if all(importlib.util.find_spec(name) for name in PACKAGES):
+        return None
+    return f"--web needs the package textual-serve, which is not installed: {install_command('web')}"
 
 
 class WebLaunch:

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 
 from link.discovery.service import TYPES, MavlinkService, announces_here_only, can_announce, read_service
 from link.endpoint import ANY_ADDRESSES, Endpoint
+from link.runtime.install_hint import install_command
 from link.transport.local_addresses import LocalAddresses
 
 if TYPE_CHECKING:
     import zeroconf
 
 log = logging.getLogger(__name__)
-
-MISSING = "discovery on the network needs the extra [discovery]: pip install 'mavhelm[discovery]'"
 
 LOOPBACK = "127.0.0.1"
 
@@ -27,6 +26,10 @@ MAX_SERVICES = 256
 
 ANSWER_TIMEOUT = 1500
 """ms for the address of a service that was named."""
+
+
+def _missing() -> str:
+    return f"discovery on the network needs the package zeroconf: {install_command('discovery')}"
 
 
 class DiscoveryError(Exception):
@@ -63,7 +66,7 @@ class _Responder:
         try:
             import zeroconf
         except ImportError:
-            raise DiscoveryError(MISSING) from None
+            raise DiscoveryError(_missing()) from None
         transport = endpoint.scheme.removesuffix("in")
         addresses = _addresses(endpoint)
         interfaces = zeroconf.InterfaceChoice.All if endpoint.host in ANY_ADDRESSES else addresses
@@ -118,7 +121,7 @@ class Browser:
             zeroconf.ServiceBrowser(self._zeroconf, list(TYPES.values()), self)  # type: ignore[arg-type]
             self.problem = ""
         except ImportError:
-            self.problem = MISSING
+            self.problem = _missing()
         except OSError as error:
             self.problem = f"discovery on the network: {error.strerror}"
 

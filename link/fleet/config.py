@@ -13,13 +13,13 @@ import msgspec
 
 from link.endpoint import FLEET_NAME, Endpoint, Side
 from link.fleet.traffic import CLASSES
+from link.runtime.install_hint import install_command
 from link.signing.role import ROLES, Role
 from link.transport.transport import LinkError
 
 if TYPE_CHECKING:
     import zenoh
 
-MISSING = "fleets need the package eclipse-zenoh: pip install 'mavhelm[fleet]'"
 LEASE = 2000
 """ms of silence after which a session ends. TCP repeats what got lost 0.2, 0.6, 1.4 and 3 s after it was sent: a new
 session after 2 s is faster than the last of them. Zenoh's own 10 s would hide a dead router."""
@@ -105,7 +105,7 @@ def load_zenoh() -> Any:
     try:
         import zenoh
     except ImportError:
-        raise LinkError(MISSING) from None
+        raise LinkError(f"fleets need the package eclipse-zenoh: {install_command('fleet')}") from None
     return zenoh
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from link.signing.install_hint import MissingPackageError
+from link.signing.missing_package import MissingPackageError
 
 BORDER = 4
 """Modules of quiet zone on each side: ISO/IEC 18004."""

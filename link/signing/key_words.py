@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from link.signing.install_hint import MissingPackageError
+from link.signing.missing_package import MissingPackageError
 
 if TYPE_CHECKING:
     from mnemonic import Mnemonic

@@ -13,8 +13,8 @@ from dialects import fingerprint
 from dialects.fingerprint import HERE, INPUTS, fault, line
 
 ROOT = Path(__file__).parents[2]
-OLDER = "dialects/rover.py is older than its definitions: run pip install -e . to generate it"
-MISSING = "dialects/rover.py is missing: run pip install -e . to generate it"
+OLDER = f"dialects/rover.py is older than its definitions: run {sys.executable} -m pip install -e {ROOT} to generate it"
+MISSING = f"dialects/rover.py is missing: run {sys.executable} -m pip install -e {ROOT} to generate it"
 
 
 @pytest.fixture
@@ -72,4 +72,4 @@ def test_pytest_stops_with_that_line_and_runs_nothing(folder: Path) -> None:
     code, words = run()
     assert (code, "1 passed" in words) == (0, True), words
     (folder / "rover.py").write_text("CODE = 0\n")
-    assert run() == (1, f"{OLDER}\n")
+    assert run() == (1, f"{OLDER.replace(f'-e {ROOT}', f'-e {folder.parent}')}\n")

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from link.runtime.install_hint import install_command
 from tests.mutation.child import OPTIONS, Examples
 from tests.mutation.mutants import Mutant, build_mutants
 from tests.mutation.results import Outcome, Result, Results
@@ -36,7 +37,7 @@ DESELECTED = ("tests/vehicle/safety/test_estop_button.py",)
 LIMIT = 2.0
 """s of tests to run against a mutant: behaviour that takes longer to test needs a test of its own."""
 
-MISSING = "the package coverage is missing: pip install -e '.[test,mutation]'"
+MISSING = f"the package coverage is missing: {install_command('test,mutation')}"
 
 
 def main() -> int:

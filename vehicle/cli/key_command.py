@@ -12,11 +12,11 @@ from functools import wraps
 from pathlib import Path
 
 from link.signing import key_actions
-from link.signing.install_hint import MissingPackageError
 from link.signing.key_actions import WARNING, KeyActionError, ShownAs
 from link.signing.key_file import FILE, KeyFileError, load_keys
 from link.signing.key_input import STDIN, SecretForm, SecretInputError, read_secret
 from link.signing.keys import SigningKey
+from link.signing.missing_package import MissingPackageError
 from link.signing.role import ROLES
 from vehicle.cli.subcommand import DONE, SubcommandError
 from vehicle.config.config import DEFAULT_FILE, ConfigError, load

@@ -7,7 +7,7 @@ import errno
 import fcntl
 from typing import Protocol
 
-from vehicle.hardware.install_hints import INSTALL_HINT
+from link.runtime.install_hint import install_command
 
 I2C_TIMEOUT = 0x0702
 """Number of the ioctl that sets the timeout, in units of 10 ms (linux/i2c-dev.h)."""
@@ -42,7 +42,7 @@ def open_bus(number: int) -> Bus:
     try:
         from smbus2 import SMBus
     except ImportError as error:
-        raise ImportError(f"{error}; {INSTALL_HINT}") from error
+        raise ImportError(f"{error}; install it: {install_command('pi')}") from error
     try:
         bus = SMBus(number)
     except FileNotFoundError as error:

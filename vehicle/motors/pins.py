@@ -8,8 +8,8 @@ import tempfile
 from collections.abc import Iterator
 from importlib import import_module
 
+from link.runtime.install_hint import install_command
 from vehicle.hardware.error_text import format_error
-from vehicle.hardware.install_hints import INSTALL_HINT
 from vehicle.motors import MotorError
 
 
@@ -41,7 +41,7 @@ try:
     from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor, RotaryEncoder
     from gpiozero.exc import GPIOZeroError
 except ImportError as error:
-    raise MotorError(f"{error}; {INSTALL_HINT}") from error
+    raise MotorError(f"{error}; install it: {install_command('pi')}") from error
 
 FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, ImportError, *_lgpio_errors)
 
@@ -50,7 +50,7 @@ __all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMot
 
 HINTS = {
     "unable to locate Pi revision": "is this a Raspberry Pi? Elsewhere use simulated pins (docs/pi.md, Without a Pi)",
-    "No module named 'lgpio'": INSTALL_HINT,
+    "No module named 'lgpio'": f"install it: {install_command('pi')}",
     "can not open gpiochip": "add yourself to its group: sudo usermod -aG gpio $USER, log in again",
 }
 """Start of an error text of gpiozero or lgpio -> what to do."""

@@ -17,6 +17,7 @@ import pytest
 
 from groundstation.cli.console import report_armed
 from groundstation.cli.main import main
+from link.runtime.install_hint import install_command
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -165,7 +166,7 @@ def test_a_gamepad_without_its_packages_is_one_line(
 ) -> None:
     monkeypatch.setattr("groundstation.gamepad.child.PACKAGES", ("no_such_package",))
     monkeypatch.setattr("groundstation.cli.console.check_terminal", lambda: None)
-    assert "pip install 'mavhelm[gamepad]'" in error_line(capsys, "--gamepad", "any", "udpin:127.0.0.1:14999")
+    assert install_command("gamepad") in error_line(capsys, "--gamepad", "any", "udpin:127.0.0.1:14999")
 
 
 @pytest.mark.parametrize("before", [("-q",), ("--json", "--quiet")])

@@ -13,6 +13,7 @@ import pytest
 
 from groundstation.cli.main import main
 from groundstation.station_socket.folder import make_folder, socket_path
+from link.runtime.install_hint import install_command
 from tests.ports import free_port
 
 
@@ -84,4 +85,4 @@ def test_serve_in_a_browser_names_a_port_in_use_and_a_missing_package(
     assert "'0' is not a number from 1 to 65535" in capsys.readouterr().err
     monkeypatch.setattr("groundstation.web.launch.PACKAGES", ("no_such_package",))
     assert main(["serve", "--web", "udpin:127.0.0.1:1"]) == 2
-    assert "pip install 'mavhelm[web]'" in capsys.readouterr().err
+    assert install_command("web") in capsys.readouterr().err

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
+from link.runtime.install_hint import install_command
 from tests.groundstation.export.logs import ARDUROVER, drive
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
@@ -117,5 +118,5 @@ def test_without_the_extra_one_line_says_which(folder: Path) -> None:
     code = "import sys; sys.path.insert(0, '.'); from groundstation.cli.main import main; sys.exit(main(sys.argv[1:]))"
     command = [sys.executable, "-c", code, "export", "f.tlog", "--mcap", "f.mcap"]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=50)
-    expected = "MCAP needs the package mcap, which is not installed: pip install 'mavhelm[bags]'"
+    expected = f"MCAP needs the package mcap, which is not installed: {install_command('bags')}"
     assert (ended.returncode, ended.stderr) == (2, f"groundstation: {expected}\n")

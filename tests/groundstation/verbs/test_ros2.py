@@ -9,6 +9,7 @@ import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.ros2 import DOMAIN_VARIABLE
+from link.runtime.install_hint import install_command
 from tests.groundstation.verbs.verb_runs import run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -48,5 +49,5 @@ def test_a_missing_extra_is_named_in_one_line(package: str) -> None:
     )
     ended = subprocess.run([sys.executable, "-c", code, package], capture_output=True, text=True, timeout=60)
     assert ended.returncode == ExitCode.USAGE
-    assert ended.stderr.endswith("which is not installed: pip install 'mavhelm[ros]'\n")
+    assert ended.stderr.endswith(f"which is not installed: {install_command('ros')}\n")
     assert ended.stderr.count("\n") == 1

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import sys
+from link.runtime.install_hint import install_command
 
 
 class MissingPackageError(Exception):
     """A package is not installed. One line with the command that installs it."""
 
     def __init__(self, what: str, package: str) -> None:
-        install = f"{sys.executable} -m pip install 'mavhelm[keys]'"
-        super().__init__(f"{what} the package {package}: {install}; --hex does without")
+        super().__init__(f"{what} the package {package}: {install_command('keys')}; --hex does without")
