@@ -27,7 +27,6 @@ from tests.benchmarks import (
     key_to_motor,
     link_loss,
     loop_lateness,
-    machine,
     message_rates,
     mission,
     receive_path,
@@ -45,6 +44,7 @@ from tests.benchmarks import (
 from tests.benchmarks.figures import BenchmarkError, Options
 from tests.benchmarks.pictures import write_pictures
 from tests.benchmarks.run import Benchmark, Run, say
+from tests.recorded import WHOLE_ARDUROVER
 
 BENCHMARKS: dict[str, tuple[Benchmark, str]] = {
     "cost": (cost.run, "start-up time, memory and CPU of both programs"),
@@ -78,9 +78,6 @@ BENCHMARKS: dict[str, tuple[Benchmark, str]] = {
 
 BESIDE = "mission"
 """Runs beside those after it: it waits for most of its ten minutes, and their goals are ratios or seconds."""
-
-TLOG = machine.ROOT.parent / "shared" / "data" / "ardurover.tlog"
-"""Recorded traffic, if it is beside the checkout."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -138,8 +135,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--tlog",
         metavar="FILE",
-        default=str(TLOG) if TLOG.exists() else None,
-        help="telemetry log for the framer (default: ardurover.tlog where it lies beside the checkout)",
+        default=str(WHOLE_ARDUROVER),
+        help="telemetry log for the framer (default: tests/recordings/ardurover-whole.tlog.xz)",
     )
     return parser
 

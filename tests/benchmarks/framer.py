@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from lzma import LZMAError
 from pathlib import Path
 from typing import Any
 
@@ -54,8 +55,8 @@ def _sources(options: Options) -> dict[str, list[bytes]]:
     if options.tlog is not None:
         try:
             sources["ardurover.tlog"] = telemetry_log(Path(options.tlog), count)
-        except OSError as error:
-            raise BenchmarkError(f"telemetry log {options.tlog}: {error.strerror}") from error
+        except (OSError, LZMAError) as error:
+            raise BenchmarkError(f"telemetry log {options.tlog}: {error}") from error
     return sources
 
 

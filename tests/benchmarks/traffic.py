@@ -17,14 +17,15 @@ from dialects.messages import (
     ServoOutputRaw,
     VfrHud,
 )
+from tests.recorded import read_recording
 
 TLOG_STAMP = 8
 """Bytes before each frame of a telemetry log: Unix time in us."""
 
 
 def telemetry_log(path: Path, most: int) -> list[bytes]:
-    """Return the first `most` frames of a log, one per item. Raises OSError."""
-    return list(_frames(path.read_bytes(), most))
+    """Return the first `most` frames of a log, one per item. Raises OSError, lzma.LZMAError."""
+    return list(_frames(read_recording(path), most))
 
 
 def _frames(data: bytes, most: int) -> Iterator[bytes]:

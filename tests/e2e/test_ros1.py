@@ -15,12 +15,13 @@ from tests.e2e.programs import PATIENCE
 from tests.e2e.ros1.rig import SYSTEM_PYTHON, Rig
 from tests.groundstation.verbs.verb_runs import wait_until
 
+INSTALLED = Path(__file__).parent / "ros1" / "installed.py"
 PACKAGES = "python3-roslaunch python3-rospy python3-geometry-msgs python3-sensor-msgs python3-nav-msgs"
 
 
-def has_rospy() -> bool:
-    """Return whether ROS 1 is installed."""
-    words = [SYSTEM_PYTHON, "-c", "import roslaunch, rospy, nav_msgs, sensor_msgs"]
+def has_ros() -> bool:
+    """Return whether all of ROS 1 that these tests use is installed."""
+    words = [SYSTEM_PYTHON, str(INSTALLED)]
     try:
         return subprocess.run(words, capture_output=True, timeout=PATIENCE).returncode == 0
     except OSError:
@@ -30,7 +31,8 @@ def has_rospy() -> bool:
 pytestmark = [
     pytest.mark.e2e,
     pytest.mark.skipif(
-        "MAVHELM_CI" not in os.environ and not has_rospy(), reason=f"ROS 1 is not installed (Debian: {PACKAGES})"
+        "MAVHELM_CI" not in os.environ and not has_ros(),
+        reason=f"ROS 1 or a part of it is not installed (Debian: {PACKAGES})",
     ),
 ]
 

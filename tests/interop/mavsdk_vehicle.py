@@ -1,7 +1,8 @@
-"""A vehicle made of MAVSDK's server plugins: `python -m tests.interop.mavsdk_vehicle ENDPOINT FOLDER`.
+"""A vehicle made of MAVSDK's server plugins: `python -m tests.interop.mavsdk_vehicle ENDPOINT FOLDER COUNT`.
 
-It has parameters, plans, files and modes, and arms. It prints JSON, one line for each thing that a ground station did
-to it, and runs until its input ends. A process of its own, because MAVSDK is a C++ library with threads.
+It has COUNT whole parameters and one other, plans, files and modes, and arms. It prints JSON, one line for each thing
+that a ground station did to it, and runs until its input ends. A process of its own, because MAVSDK is a C++ library
+with threads.
 """
 
 from __future__ import annotations
@@ -16,16 +17,13 @@ from mavsdk.plugins.action_server.action_server import AllowableFlightModes
 
 from tests.interop.mavsdk_tools import plugin
 
-PARAMS = 300
-"""Whole numbers; as many as make several datagrams of a list."""
 
-
-def main(endpoint: str, folder: str) -> None:
+def main(endpoint: str, folder: str, count: int) -> None:
     """Serve until the input ends."""
     mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.AUTOPILOT))
     server = mavsdk.server_component()
     (Path(folder) / "hello.txt").write_text("from a vehicle of MAVSDK\n")
-    kept = [_params(server), _plans(server), _actions(server), _files(server, folder)]
+    kept = [_params(server, count), _plans(server), _actions(server), _files(server, folder)]
     mavsdk.add_any_connection(endpoint)
     _say("ready", len(kept))
     sys.stdin.read()
@@ -36,10 +34,10 @@ def _say(what: str, value: object) -> None:
     sys.stdout.flush()
 
 
-def _params(server: Any) -> Any:
+def _params(server: Any, count: int) -> Any:
     params = plugin("param_server", server)
     params.provide_param_float("SPEED_MAX", 1.5)
-    for number in range(PARAMS):
+    for number in range(count):
         params.provide_param_int(f"TEST_{number:03}", number)
     params.subscribe_changed_param_float(lambda param, *_: _say("float", [param.name, param.value]))
     params.subscribe_changed_param_int(lambda param, *_: _say("int", [param.name, param.value]))
@@ -73,4 +71,4 @@ def _files(server: Any, folder: str) -> Any:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(sys.argv[1], sys.argv[2], int(sys.argv[3]))

@@ -20,7 +20,6 @@ from tests.groundstation.test_foreign_missions import open_station
 from tests.groundstation.ui.map.plans import item
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.interop.mavsdk_process import ROOT, needed
-from tests.interop.mavsdk_vehicle import PARAMS
 from tests.ports import free_port
 
 pytestmark = [pytest.mark.e2e, needed]
@@ -30,6 +29,9 @@ WAYPOINTS = """QGC WPL 110
 1\t0\t3\t16\t0\t0\t0\t0\t47.3980\t8.5460\t10\t1
 2\t0\t3\t16\t0\t0\t0\t0\t47.3985\t8.5465\t10\t1
 """
+VEHICLE = "tests.interop.mavsdk_vehicle"
+PARAMS = 300
+"""Whole numbers; as many as make several datagrams of a list."""
 PATIENCE = 60.0
 
 
@@ -42,7 +44,7 @@ class Vehicle:
         self.reports: list[dict[str, Any]] = []
         with (folder / "mavsdk.log").open("w") as log:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "tests.interop.mavsdk_vehicle", f"udpout://{self.endpoint}", str(folder)],
+                [sys.executable, "-m", VEHICLE, f"udpout://{self.endpoint}", str(folder), str(PARAMS)],
                 env={**os.environ, "PYTHONPATH": str(ROOT)},
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import rospy
@@ -20,7 +21,8 @@ def main() -> None:
     def show(message: Any, topic: str) -> None:
         if topic not in seen:
             seen.add(topic)
-            print(topic, message.header.frame_id, flush=True)
+            sys.stdout.write(f"{topic} {message.header.frame_id}\n")  # in one piece: each topic has a thread
+            sys.stdout.flush()
 
     for topic, kind in TELEMETRY.items():
         rospy.Subscriber(topic, kind, show, callback_args=topic)

@@ -134,7 +134,7 @@ ITEM = ("mission", "items", 1)
     ("text", "error"),
     [
         ("", "f.plan:1: this is no JSON: Expecting value"),
-        ('{\n"a": 1,\n}', "f.plan:3: this is no JSON: Expecting property name enclosed in double quotes"),
+        ('{\n"a": 1,\n"b" 2}', "f.plan:3: this is no JSON: Expecting ':' delimiter"),
         ("[]", "f.plan: this is no plan: it is no JSON object"),
         ("[" * 100_000, "f.plan: this is no plan: nested too deeply, or a number too long"),
         ('{"a": ' + "9" * 5000 + "}", "f.plan: this is no plan: nested too deeply, or a number too long"),

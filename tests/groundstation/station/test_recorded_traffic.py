@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,11 +15,11 @@ from groundstation.station.message_traffic import MessageTraffic
 from groundstation.views.messages import MessageRequest, MessagesRequest, MessageView
 from link.protocol.channel import Channel
 from link.tlog.tlog import read_records
+from tests.recorded import WHOLE_ARDUROVER, read_recording
 
 pytestmark = pytest.mark.xdist_group("recorded traffic")
 """Each worker would play the recording."""
 
-RECORDING = Path(__file__).resolve().parents[4] / "shared" / "data" / "ardurover.tlog"
 KNOWN = {kind.msgname for kind in MESSAGES.values()} & {kind.msgname for kind in ardupilotmega.mavlink_map.values()}
 """Messages of both dialects."""
 
@@ -28,14 +27,12 @@ KNOWN = {kind.msgname for kind in MESSAGES.values()} & {kind.msgname for kind in
 @cache
 def replay() -> tuple[MessageTraffic, Counter[tuple[int, int, str]], dict[tuple[int, int, str], Any], float]:
     """Return the traffic, the counts and newest messages by pymavlink, and the time of the end."""
-    if not RECORDING.exists():
-        pytest.skip(f"the recording is not there: {RECORDING}")
     traffic = MessageTraffic(254, 190)
     channel = Channel("recording", 0, system=254, component=190)
     bare = ardupilotmega.MAVLink(None)
     counts: Counter[tuple[int, int, str]] = Counter()
     newest: dict[tuple[int, int, str], Any] = {}
-    records = list(read_records(RECORDING.read_bytes()))
+    records = list(read_records(read_recording(WHOLE_ARDUROVER)))
     now = 0.0
     for record in records:
         now = (record.microseconds - records[0].microseconds) / 1e6

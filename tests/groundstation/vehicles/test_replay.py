@@ -9,7 +9,6 @@ import itertools
 import math
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
@@ -25,11 +24,11 @@ from groundstation.views.log import LogRequest
 from link.core import LinkReport
 from link.protocol.channel import Channel
 from link.tlog.tlog import Record, read_records
+from tests.recorded import WHOLE_ARDUROVER, read_recording
 
 pytestmark = pytest.mark.xdist_group("replay")
 """Each worker would play the recording."""
 
-RECORDING = Path(__file__).resolve().parents[4] / "shared" / "data" / "ardurover.tlog"
 OURS = 254
 """The recorded station is 255."""
 STEP = 0.1
@@ -76,8 +75,6 @@ def log_lines(station: Station) -> list[LogLine]:
 @cache
 def replay() -> Replay:
     """Played once for all tests."""
-    if not RECORDING.exists():
-        pytest.skip(f"the recording is not there: {RECORDING}")
     station = Station(["udpin:127.0.0.1:14550"], system=OURS)
     channel = Channel("recording", 0, system=OURS, component=COMPONENT)
     bare = ardupilotmega.MAVLink(None)
@@ -87,7 +84,7 @@ def replay() -> Replay:
     newest: dict[str, Any] = {}
     everything: dict[str, list[Any]] = {}
     due = 0.0
-    for now, raw in seconds(list(read_records(RECORDING.read_bytes()))):
+    for now, raw in seconds(list(read_records(read_recording(WHOLE_ARDUROVER)))):
         while now >= due:
             station.handle_intent(RenewLease(), due)
             if len(sizes) % 10 == 0:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 import pytest
 from pymavlink import mavftp
@@ -16,20 +15,18 @@ from link.services.param.client import ParamClient
 from link.services.param.float32 import same_float32
 from link.services.param.unpack import unpack
 from link.tlog.tlog import read_records
+from tests.recorded import WHOLE_ARDUROVER, read_recording
 
 pytestmark = pytest.mark.xdist_group("recorded parameters")
 """Each worker would play the recording."""
 
-RECORDING = Path(__file__).resolve().parents[5] / "shared" / "data" / "ardurover.tlog"
 COUNT = 1297
 
 
 @cache
 def recorded() -> list[Received]:
-    if not RECORDING.exists():
-        pytest.skip(f"the recording is not there: {RECORDING}")
     channel = Channel("recording", 0, system=254, component=190)
-    records = read_records(RECORDING.read_bytes())
+    records = read_records(read_recording(WHOLE_ARDUROVER))
     return [each for record in records for each in channel.receive(record.raw, "x", record.microseconds / 1e6)]
 
 
