@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from dialects.enums import Severity
+from dialects.messages import target_system
 from dialects.modes import Mode
+from dialects.traits import is_stop
 from link.core import LinkReport, Outgoing, Received
+from link.protocol.rate import SenderLimit
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.autonomy.navigator import Navigator
 from vehicle.commands.access import CommandAccess
@@ -45,6 +48,10 @@ from vehicle.telemetry.view import TelemetryView
 
 _LIMIT, _DEMAND, _MOTION, _OFF = FailsafeAction.LIMIT, Effect.DEMAND, Effect.MOTION, SafetyState.OFF
 """Shortcuts for what runs with each demand: a lookup in an enum costs as much as three comparisons."""
+STOP_ANSWER_PERIOD = 1.0
+"""s between two HEARTBEATs to the sender of stops who gets no telemetry, as between those to all others."""
+STOP_ANSWERS_MAX = 32
+"""Senders that are answered so in that time."""
 
 
 class Rover:
@@ -93,6 +100,7 @@ class Rover:
         self._outbox = Outbox(
             self._telemetry, texts, self._dispatcher, self._safety, self._rack, self._build_view, self._activity
         )
+        self._stop_answers = SenderLimit(STOP_ANSWER_PERIOD, STOP_ANSWERS_MAX)
         self._routes = {row.message: row for row in self._dispatcher.messages}
         self._observers = (  # called with every message, before its handler and whoever sent it
             self._control.hear,
@@ -155,6 +163,8 @@ class Rover:
             self._outbox.add(replies)
         if effect is _MOTION or (effect is _DEMAND and before is not None and self._has_changed(before, now)):
             self._act(effect, now)
+        if effect is _MOTION and not received.may_ask:
+            self._show_stop(received, now)
 
     def tick(self, now: float) -> None:
         """Run one control cycle. `messages_to_send` then builds the messages that are due."""
@@ -270,6 +280,14 @@ class Rover:
             self._outbox.note_short_cycle(now)
             return False
         return True
+
+    def _show_stop(self, received: Received, now: float) -> None:
+        """Let the sender of a stop who gets no telemetry see its effect: a HEARTBEAT, no larger than the request."""
+        message, peer = received.message, received.peer
+        if target_system(message) not in (0, self._control.system) or not is_stop(message):
+            return
+        if self._stop_answers.allow((peer.link, peer.address), now):
+            self._outbox.add([Outgoing(build_status.heartbeat(self._build_view(now)), peer)])
 
     def _act(self, effect: Effect, now: float) -> None:
         """Bring outputs and telemetry up to date with what a message has changed."""

@@ -23,7 +23,7 @@ from link.protocol.peer import PeerState, count_sources, find_signing
 from link.protocol.peer_table import MAX_PEERS, PeerTable
 from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
-from link.protocol.signing_guard import Passed, SigningGuard, SigningWay
+from link.protocol.signing_guard import Passed, SigningGuard, SigningWay, best_key
 from link.protocol.stops import find_stops
 from link.signing.role import Role
 
@@ -162,9 +162,12 @@ class Channel:
             self._greet(frame, address, now)
         accepted = self._accept_stops(judged.refused, address, now) if guard.policy.open_stops else []
         passed = [each.frame for each in judged.passed]
-        state = state or (self._peers.admit(address, passed, now) if passed else None)
+        state = state or (self._peers.admit(address, passed, now, best_key(judged.passed)) if passed else None)
         if state is None:
-            return accepted + self._accept_stops(passed, address, now)
+            stops = self._accept_stops(passed, address, now)
+            if stops:
+                guard.note_sender(self._peers.admit_transient(address, now), judged.passed, now)
+            return accepted + stops
         guard.note_sender(state, judged.passed, now)
         return accepted + self._accept(state, passed, now, judged.passed)
 

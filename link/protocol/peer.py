@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 
 import msgspec
 
@@ -54,8 +54,15 @@ class PeerState(msgspec.Struct):
     buckets: dict[str, TokenBucket] = msgspec.field(default_factory=_buckets)
     key: SigningKey | None = None
     """The key of its newest signed frame, with which ours to it are signed."""
+    source: Hashable = None
+    """Whose address it is: the name of an operator of a fleet, or a host."""
     lead: int = 0
     """How far its signing clock is ahead of ours, in timestamps of 10 us."""
+
+    @property
+    def owner(self) -> Hashable:
+        """Who has this place: the holder of a key, or whose address it is."""
+        return self.source if self.key is None else self.key
 
     @property
     def is_expected(self) -> bool:

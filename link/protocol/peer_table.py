@@ -1,9 +1,18 @@
-"""The peers of a channel: who has a place, who gives it up, and which conversation each is in."""
+"""The peers of a channel: who has a place, who gives it up, and which conversation each is in.
+
+When all places are taken, a newcomer gets that of a peer that is silent or has sent no HEARTBEAT; then that of a peer
+of a lower rank (Rank); then one of an owner with more than its share. An owner is a key, an operator of a fleet, or, of
+what is not signed, the host of the address: that can be forged, and so a host keeps OWNER_PLACES. Who has lost a place
+in this way cannot take it back in the same way, so that places do not change hands for ever. The ground station in
+control loses none: its ids keep as many places as are reserved for them.
+"""
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator
+from enum import IntEnum
 from itertools import count
 
 from dialects.messages import target_system
@@ -13,6 +22,8 @@ from link.endpoint import FLEET_NAME
 from link.protocol.frame import Frame, FramerCounts
 from link.protocol.framer import Framer
 from link.protocol.peer import PeerState
+from link.signing.keys import SigningKey
+from link.signing.role import Role
 
 MAX_PEERS = 24
 """Sixteen ground stations on one port, and room for half of them to restart: a restarted program has a new port, and
@@ -23,6 +34,29 @@ RESERVED_PLACES = 4
 taken."""
 PEER_SILENCE = 10.0
 """s without a frame after which a peer gives up its place; twice the longest usual heartbeat timeout."""
+OWNER_PLACES = 4
+"""Places of one operator of a fleet: a station, and verbs beside it. Also those that a host of unsigned peers keeps
+when others need them."""
+RUN_SILENCE = 1.5
+"""s without a frame after which a run of an operator leaves its place to the operator's next one: a HEARTBEAT is
+missing. Below that five programs that run at once would take turns."""
+
+
+class Rank(IntEnum):
+    """Whose place is kept when there are not enough."""
+
+    UNSIGNED = 0
+    WATCH = 1
+    """Signed with a key that may watch."""
+    DRIVE = 2
+    """Signed with a key that may drive, or set up."""
+
+
+def rank_of(key: SigningKey | None) -> Rank:
+    """Return the rank of a peer whose newest verified frame was signed with `key`; None: it has sent none."""
+    if key is None:
+        return Rank.UNSIGNED
+    return Rank.WATCH if key.role is Role.WATCH else Rank.DRIVE
 
 
 class PeerTable:
@@ -62,22 +96,22 @@ class PeerTable:
         """Give the address that the user named a place for good."""
         self._states[address] = self._new(address, 0.0, fixed=True)
 
-    def admit(self, address: Hashable, frames: Iterable[Frame], now: float) -> PeerState | None:
-        """Make room for a new address: a free place, or that of a silent peer or one without HEARTBEAT."""
+    def admit(
+        self, address: Hashable, frames: Iterable[Frame], now: float, key: SigningKey | None = None
+    ) -> PeerState | None:
+        """Make room for a new address, as the module says; None: there is none. `key`: of its verified frames."""
         reserved = self._is_reserved(frames)
         if len(self._states) >= self._places + (RESERVED_PLACES if reserved else 0):
-            leaving = min(
-                (each for each in self._states.values() if not each.fixed and self._is_evictable(each, now)),
-                key=lambda each: each.last_seen,
-                default=None,
-            )
-            if leaving is None:
-                self.refused += 1
-                return None
-            self.forget(leaving)
-        state = self._states[address] = self._new(address, now)
-        state.connected = state.silent = self._stream
-        return state
+            leaving = self._find_leaving(rank_of(key), self._owner(address, key), now)
+        elif self._named and self._count_runs(address) >= OWNER_PLACES:
+            leaving = self._find_run(address, now)
+        else:
+            return self._add(address, now)
+        if leaving is None:
+            self.refused += 1
+            return None
+        self.forget(leaving)
+        return self._add(address, now)
 
     def admit_transient(self, address: Hashable, now: float) -> PeerState:
         """Remember the sender of a stop for whom there is no place."""
@@ -138,12 +172,65 @@ class PeerTable:
         """Return whether a frame has the ids for which places are kept."""
         return any((each[1], each[2]) == self.reserved_ids for each in frames)
 
-    def _is_evictable(self, state: PeerState, now: float) -> bool:
-        return not state.systems or now - state.last_seen > PEER_SILENCE
+    def _add(self, address: Hashable, now: float) -> PeerState:
+        state = self._states[address] = self._new(address, now)
+        state.connected = state.silent = self._stream
+        return state
+
+    def _count_runs(self, address: Hashable) -> int:
+        """Return how many places the operator of this address has."""
+        source = self._source(address)
+        return sum(each.source == source for each in self._states.values())
+
+    def _find_run(self, address: Hashable, now: float) -> PeerState | None:
+        """Return the run of an operator that leaves its place to another one of the same operator."""
+        source = self._source(address)
+        runs = [each for each in self._states.values() if each.source == source and not each.fixed]
+        leaving = [each for each in runs if not each.systems or now - each.last_seen > RUN_SILENCE]
+        return min(leaving, key=lambda each: each.last_seen, default=None)
+
+    def _find_leaving(self, rank: Rank, owner: Hashable, now: float) -> PeerState | None:
+        """Return the peer that leaves its place to a newcomer."""
+        peers = [each for each in self._states.values() if not each.fixed]
+        absent = [each for each in peers if self._is_evictable(each, rank, now)]
+        if absent:
+            return min(absent, key=lambda each: each.last_seen)
+        held = [each for each in peers if self.reserved_ids in each.sources]
+        if len(held) <= RESERVED_PLACES:
+            peers = [each for each in peers if self.reserved_ids not in each.sources]
+        places = Counter([each.owner for each in peers])
+        leaving = [each for each in peers if rank_of(each.key) < rank] if rank else []
+        return min(
+            leaving or self._find_rich(peers, rank, places, places[owner] + 2),
+            key=lambda each: (rank_of(each.key), -places[each.owner], each.last_seen),
+            default=None,
+        )
+
+    def _find_rich(self, peers: list[PeerState], rank: Rank, places: Counter[Hashable], least: int) -> list[PeerState]:
+        """Return the peers of a rank whose owners have at least `least` places, and more than they may keep."""
+        if rank is Rank.UNSIGNED and not self._named:
+            least = max(least, OWNER_PLACES + 1)
+        rich = {owner for owner, count in places.items() if count >= least}
+        return [each for each in peers if each.owner in rich and rank_of(each.key) == rank] if rich else []
+
+    def _owner(self, address: Hashable, key: SigningKey | None) -> Hashable:
+        return self._source(address) if key is None else key
+
+    def _source(self, address: Hashable) -> Hashable:
+        """Return whose address this is: the operator of a run, as of "alice/3f2a", or the host."""
+        if self._named:
+            return str(address).partition("/")[0]
+        return address[0] if isinstance(address, tuple) else address
+
+    def _is_evictable(self, state: PeerState, rank: Rank, now: float) -> bool:
+        """Return whether a peer leaves its place to any newcomer of this rank."""
+        return now - state.last_seen > PEER_SILENCE or (not state.systems and rank_of(state.key) <= rank)
 
     def _new(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
         peer, framer = self._new_conversation(address), Framer(stream=self._stream)
-        return PeerState(peer, framer, now, fixed, silent=fixed, sequence=self._first_sequence)
+        return PeerState(
+            peer, framer, now, fixed, silent=fixed, sequence=self._first_sequence, source=self._source(address)
+        )
 
     def _new_conversation(self, address: Hashable) -> Peer:
         return Peer(self._index, address, next(self._conversations), _name(address) if self._named else "")

@@ -1,8 +1,9 @@
-"""Token bucket and rate meter."""
+"""Token bucket, limit of each sender, and rate meter."""
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Hashable
 
 
 class TokenBucket:
@@ -30,6 +31,25 @@ class TokenBucket:
         enough = tokens >= cost
         self._tokens = tokens - cost if enough else tokens
         return enough
+
+
+class SenderLimit:
+    """Allows one event of each sender in `period` s. While `size` senders wait, there is none for others."""
+
+    def __init__(self, period: float, size: int) -> None:
+        self._period = period
+        self._size = size
+        self._at: dict[Hashable, float] = {}
+        """Sender -> when it had its last one, oldest first."""
+
+    def allow(self, sender: Hashable, now: float) -> bool:
+        """Return whether a sender may have one now, and count it."""
+        while self._at and now - next(iter(self._at.values())) >= self._period:
+            del self._at[next(iter(self._at))]
+        if sender in self._at or len(self._at) >= self._size:
+            return False
+        self._at[sender] = now
+        return True
 
 
 class RateMeter:

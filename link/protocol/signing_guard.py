@@ -73,6 +73,12 @@ class Passed(NamedTuple):
     """None: it is not signed."""
 
 
+def best_key(passed: Iterable[Passed]) -> SigningKey | None:
+    """Return the key with the most rights of frames that arrived together; None if none of them is signed."""
+    keys = (each.verified.key for each in passed if each.verified is not None)
+    return max(keys, key=lambda key: key.role, default=None)
+
+
 class Judged(msgspec.Struct):
     """Frames that arrived together, by what is done with them."""
 

@@ -16,6 +16,7 @@ from dialects.messages import SystemTime
 from dialects.targets import TARGETS, target_of
 from dialects.traits import LOCAL
 from link.protocol.frame import Frame, payload_of
+from link.protocol.stops import find_stops
 from link.routing.routes import RecentFrames, RoutedPeer, RoutedSource, RouteTable, SourceId
 
 REDUNDANCY_WINDOW = 1.0
@@ -104,15 +105,15 @@ class Router:
     def _receive_from_new_peer(self, link: int, data: bytes, address: Hashable, now: float) -> None:
         """Add a peer: on UDP only for a verified frame, on a stream for any connection."""
         peer = self.table.new_peer(link, address, now)
-        if peer is None:
-            return
         peer.bytes_in += len(data)
         frames = peer.framer.feed(data, now)
-        peer.connected = self.table.is_stream(link) and not data
-        if self.table.is_stream(link) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
-            self.table.add_peer(peer, now)
+        is_stream = self.table.is_stream(link)
+        peer.connected = is_stream and not data
+        stops = any(find_stops(frames, _EVERYBODY, None))
+        known = is_stream or any(message_id in CRC_EXTRA for message_id, *_ in frames)
+        if known and self.table.admit(peer, now, stops=stops):
             self._forward(peer, frames, now)
-        else:
+        elif not known:
             self.table.reject_peer(peer)
 
     def _forward(self, peer: RoutedPeer, frames: list[Frame], now: float) -> None:  # noqa: C901 - calls cost more here

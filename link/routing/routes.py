@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
 
 from link.protocol.framer import Framer
@@ -15,10 +16,18 @@ RecentFrames = list["tuple[float, RoutedPeer, bytes] | None"]
 
 PEER_SILENCE = 30.0
 """s without a frame after which a UDP peer gets nothing more."""
+PASSING = 2.0
+"""s without a frame after which a UDP peer with fewer than FEW frames gives up its place: every program that stays
+sends a HEARTBEAT each second."""
+FEW = 3
 ROUTE_SILENCE = 300.0
 """s after which a system is forgotten. Long on purpose: a vehicle that cannot be received may still receive a stop."""
 MAX_PEERS = 128
 """Addresses on one link: a hundred ground stations take half a core at 500 messages/s (docs/performance.md)."""
+STOP_PLACES = 8
+"""Further places for senders of a stop, of which the newest have them: stopping a vehicle needs no place."""
+OWNER_PLACES = 4
+"""Places that a host keeps when others need them. An operator of a fleet has no more."""
 MAX_SOURCES = 64
 """Systems and components tracked behind one peer; frames of further ones are forwarded but teach no route."""
 LATE = 32
@@ -71,7 +80,7 @@ class RoutedPeer:
     """One address on one link. The router treats each as a link of its own."""
 
     __slots__ = (
-        "address", "bytes_in", "bytes_out", "connected", "fixed", "framer", "frames_out", "last_seen", "link",
+        "address", "bytes_in", "bytes_out", "connected", "fixed", "framer", "frames_out", "guest", "last_seen", "link",
         "sources", "waiting",
     )  # fmt: skip
 
@@ -82,6 +91,8 @@ class RoutedPeer:
         """The user named it: it is sent to before its first frame, and is never forgotten."""
         self.connected = False
         """It has opened a connection: it is sent to before its first frame, too, or two bridges would wait for ever."""
+        self.guest = False
+        """It has one of STOP_PLACES."""
         self.framer = Framer(stream=stream, unknown=True)
         self.last_seen = now
         self.sources: dict[SourceId, RoutedSource] = {}
@@ -103,6 +114,12 @@ class RoutedPeer:
             noise_bytes=counts.resync_bytes,
             unknown=counts.unknown,
         )
+
+    @property
+    def owner(self) -> Hashable:
+        """Whose address it is: the operator of a run in a fleet, as of "alice/3f2a", or a host."""
+        host: Hashable = self.address[0] if isinstance(self.address, tuple) else str(self.address).partition("/")[0]
+        return host
 
     def has_system(self, system: int) -> bool:
         """Return whether any component of the system was seen here."""
@@ -148,22 +165,30 @@ class RouteTable:
         for peers in self._peers.values():
             yield from peers.values()
 
-    def new_peer(self, link: int, address: Hashable, now: float) -> RoutedPeer | None:
-        """Return a peer that add_peer() may add, or None when the link is full."""
-        peers = self._peers[link]
-        if len(peers) < MAX_PEERS or self._most_silent(link, now):
-            return RoutedPeer(link, address, now, stream=self._streams[link])
-        self.refused_peers += 1
-        return None
+    def new_peer(self, link: int, address: Hashable, now: float) -> RoutedPeer:
+        """Return a peer for admit()."""
+        return RoutedPeer(link, address, now, stream=self._streams[link])
 
-    def add_peer(self, peer: RoutedPeer, now: float) -> None:
-        """Add a peer, if need be in place of the one that has been silent longest."""
+    def admit(self, peer: RoutedPeer, now: float, *, stops: bool) -> bool:
+        """Add a peer, if need be in place of another one; return False if there is no place.
+
+        `stops`: it has sent a stop, which needs none.
+        """
         peers = self._peers[peer.link]
-        leaving = self._most_silent(peer.link, now) if len(peers) >= MAX_PEERS else None
-        if leaving:
-            self.remove_peer(leaving)
+        guests = [each for each in peers.values() if each.guest]
+        if len(peers) - len(guests) >= MAX_PEERS:
+            leaving = self._find_leaving(peer, now)
+            if leaving is None and not stops:
+                self.refused_peers += 1
+                return False
+            peer.guest = leaving is None
+            if peer.guest and len(guests) >= STOP_PLACES:
+                leaving = min(guests, key=lambda each: each.last_seen)
+            if leaving is not None:
+                self.remove_peer(leaving)
         peers[peer.address] = peer
         self.epoch += 1
+        return True
 
     def reject_peer(self, peer: RoutedPeer) -> None:
         """Count the traffic of a peer that was not added."""
@@ -246,11 +271,24 @@ class RouteTable:
         ]
         return sorted(found, key=lambda route: (route.system, route.component, route.link))
 
-    def _most_silent(self, link: int, now: float) -> RoutedPeer | None:
-        """Return the peer to replace; none on a stream, whose connections end by themselves."""
-        if self._streams[link]:
+    def _find_leaving(self, peer: RoutedPeer, now: float) -> RoutedPeer | None:
+        """Return the peer that leaves its place to a new one.
+
+        One that has been silent, but no connection, which ends by itself. Else one of the owner with the most places,
+        if that has more than it may keep and at least two more than the owner of the new one.
+        """
+        peers = [each for each in self._peers[peer.link].values() if not each.fixed and not each.guest]
+        absent = [] if self._streams[peer.link] else [each for each in peers if _is_absent(each, now)]
+        if absent:
+            return min(absent, key=lambda each: each.last_seen)
+        places = Counter([each.owner for each in peers])
+        owner, most = max(places.items(), key=lambda each: each[1])
+        if most < max(OWNER_PLACES + 1, places[peer.owner] + 2):
             return None
-        silent = [
-            peer for peer in self._peers[link].values() if not peer.fixed and now - peer.last_seen > PEER_SILENCE / 3
-        ]
-        return min(silent, key=lambda peer: peer.last_seen, default=None)
+        return min((each for each in peers if each.owner == owner), key=lambda each: each.last_seen)
+
+
+def _is_absent(peer: RoutedPeer, now: float) -> bool:
+    """Return whether a UDP peer has been silent for so long that another one may have its place."""
+    silence = now - peer.last_seen
+    return silence > PEER_SILENCE / 3 or (silence > PASSING and peer.framer.counts.frames < FEW)

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import os
 import socket
+from collections import Counter
 from collections.abc import Hashable
 
 from link.endpoint import Endpoint
@@ -17,7 +18,10 @@ from link.transport.connection import Connection
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 MAX_CONNECTIONS = 16
-"""Connections to one `tcpin`. A further one replaces the connection that has been silent longest, or is closed."""
+"""Connections to one `tcpin`. A further one replaces the connection that has been silent longest, or one of the host
+with the most of them, or is closed."""
+HOST_CONNECTIONS = 4
+"""Connections that a host keeps when others need them: several ground stations behind one address translation."""
 EVICT_AFTER = 10.0
 """s of silence after which a connection may be replaced: a ground station sends a HEARTBEAT each second."""
 CONNECT_TIMEOUT = 5.0
@@ -80,17 +84,22 @@ class TcpServerTransport:
             self.problem = f"{self.endpoint.text}: {error.strerror}"
             return
         self.problem = None
-        if len(self._connections) >= MAX_CONNECTIONS and not self._evict():
+        if len(self._connections) >= MAX_CONNECTIONS and not self._evict(address[0]):
             sock.close()
             return
         self._connections[address] = Connection(sock, address, self._on_receive, self._ended)
         self._on_receive([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they send theirs
 
-    def _evict(self) -> bool:
-        """Close the connection that has been silent longest; False if each was heard within EVICT_AFTER."""
-        silent = min(self._connections.values(), key=lambda each: each.last_received)
+    def _evict(self, host: str) -> bool:
+        """Close the connection that leaves its place to a new one of `host`; False if there is none."""
+        connections = list(self._connections.values())
+        silent = min(connections, key=lambda each: each.last_received)
         if self._loop is None or self._loop.time() - silent.last_received < EVICT_AFTER:
-            return False
+            hosts = Counter(_host(each) for each in connections)
+            richest, most = max(hosts.items(), key=lambda each: each[1])
+            if most < max(HOST_CONNECTIONS + 1, hosts[host] + 2):
+                return False
+            silent = min((each for each in connections if _host(each) == richest), key=lambda each: each.last_received)
         silent.close()
         self._ended(silent, "silent")
         return True
@@ -99,6 +108,12 @@ class TcpServerTransport:
         del self._connections[connection.address]
         self._dropped += connection.queue.dropped
         self._on_disconnect(connection.address)
+
+
+def _host(connection: Connection) -> str:
+    """Return the host at the other end; a connection cannot forge it."""
+    address = connection.address
+    return str(address[0]) if isinstance(address, tuple) else str(address)
 
 
 class TcpClientTransport:

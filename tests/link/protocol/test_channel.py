@@ -440,10 +440,10 @@ TERMINATE = CommandLong(1, 1, 185, 0, 1, 0, 0, 0, 0, 0, 0)
 
 
 def full(**options: object) -> Channel:
-    """A channel whose places are all taken by ground stations with a HEARTBEAT."""
+    """A channel whose places are all taken by ground stations with a HEARTBEAT, each of another host."""
     channel = vehicle(**options)
-    for port in range(MAX_PEERS):
-        channel.receive(heartbeat(0), ("10.0.0.1", port), 0.0)
+    for host in range(MAX_PEERS):
+        channel.receive(heartbeat(0), (f"10.1.0.{host}", 14550), 0.0)
     return channel
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from link.protocol.rate import RateMeter, TokenBucket
+from link.protocol.rate import RateMeter, SenderLimit, TokenBucket
 
 
 def test_a_bucket_lets_a_burst_and_then_its_rate_through() -> None:
@@ -39,3 +39,11 @@ def test_a_change_of_the_rate_gives_no_tokens_and_takes_those_beyond_the_burst()
     full = TokenBucket(rate=10, burst=5)
     full.set_rate(1, 2)
     assert [full.consume(0.0) for _ in range(3)] == [True, True, False]
+
+
+def test_each_sender_has_one_in_its_period_and_a_crowd_is_bounded() -> None:
+    limit = SenderLimit(1.0, 3)
+    assert [limit.allow("a", now) for now in (0.0, 0.5, 0.99, 1.0, 1.5)] == [True, False, False, True, False]
+    assert [limit.allow(each, 1.6) for each in "bcd"] == [True, True, False]
+    assert [limit.allow(each, 2.0) for each in "de"] == [True, False]
+    assert limit.allow("e", 2.6)

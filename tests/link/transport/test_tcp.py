@@ -45,8 +45,9 @@ def client(port: int) -> TcpClientTransport:
     return open_tcpout(parse_endpoint(f"tcpout:127.0.0.1:{port}"))
 
 
-def connected(port: int) -> socket.socket:
-    sock = socket.create_connection(("127.0.0.1", port), timeout=10)
+def connected(port: int, host: str = "127.0.0.1") -> socket.socket:
+    """A client with this address of its own."""
+    sock = socket.create_connection(("127.0.0.1", port), timeout=10, source_address=(host, 0))
     sock.setblocking(False)
     return sock
 
@@ -136,6 +137,26 @@ async def test_silent_connections_make_room_the_most_silent_first(
     for sock in (*crowd, refused, newcomer):
         sock.close()
     server.close()
+
+
+async def test_a_host_with_all_connections_gives_one_up(port: int) -> None:
+    transport = open_tcpin(parse_endpoint(f"tcpin:127.0.0.1:{port}"))
+    heard = Heard(transport)
+    crowd = [connected(port) for _ in range(16)]
+    for sock in crowd:
+        sock.sendall(heartbeat(0))
+    await until(lambda: len(said(heard)) == 16)
+    others = [connected(port, f"127.0.0.{host}") for host in range(2, 14)]
+    for sock in others:
+        sock.sendall(heartbeat(7))
+    await until(lambda: all((heartbeat(7), sock.getsockname()) in heard.data for sock in others))
+    await until(lambda: sum(map(is_closed, crowd)) == 12)  # it keeps four
+    refused = connected(port, "127.0.0.15")
+    await until(lambda: is_closed(refused))
+    assert len(heard.gone) == 12
+    for sock in (*crowd, *others, refused):
+        sock.close()
+    transport.close()
 
 
 def is_closed(sock: socket.socket) -> bool:

@@ -1,0 +1,204 @@
+"""Whose place is kept when a channel has not enough: verified before unsigned, drive before watch, fair shares."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Hashable
+
+from dialects.messages import CommandAck
+from link.core import Outgoing
+from link.protocol.channel import Channel
+from link.protocol.signing_guard import SigningPolicy
+from link.signing.keys import SigningKey
+from link.signing.role import Role
+from link.signing.signature import link_and_stamp
+from tests.link.frames import frame, heartbeat
+from tests.link.signing.signed import DISARM, DRIVER, HEARTBEAT, HERE, NOW, THERE, WATCHER, keep, signed, vehicle
+
+OPEN = SigningPolicy(unsigned=Role.WATCH, open_stops=True)
+OTHER = SigningKey("other", Role.DRIVE, hashlib.sha256(b"another driver's").digest())
+SECOND_WATCHER = SigningKey("phone", Role.WATCH, hashlib.sha256(b"the phone's").digest())
+PLACES = 24
+
+
+def hosts(channel: Channel) -> list[Hashable]:
+    return [peer.address for peer in channel.report().audience]
+
+
+def crowd(*, one_host: bool = False, ids: int = 100) -> Channel:
+    """A channel of a vehicle with keys whose places are all taken by unsigned programs."""
+    channel = vehicle(keep(DRIVER, WATCHER, OTHER, SECOND_WATCHER), OPEN)
+    for number in range(PLACES):
+        address = ("10.0.0.1", number) if one_host else (f"10.0.0.{number}", 14550)
+        channel.receive(heartbeat(0, system=ids), address, 0.001 * number)
+    assert len(hosts(channel)) == PLACES
+    return channel
+
+
+def watched_crowd() -> Channel:
+    """The same, with the runs of a watch key."""
+    channel = vehicle(keep(DRIVER, WATCHER, OTHER, SECOND_WATCHER), OPEN)
+    for number in range(PLACES):
+        data = signed(key=WATCHER, stamp=NOW + number, ids=(100, 190), sequence=number)
+        channel.receive(data, (f"10.0.0.{number}", 14550), 0.001 * number)
+    assert len(hosts(channel)) == PLACES
+    return channel
+
+
+# ---- ranks ----
+
+
+def test_an_unsigned_newcomer_of_another_host_gets_no_place_in_a_crowd() -> None:
+    channel = crowd()
+    assert channel.receive(heartbeat(0), HERE, 1.0) == []
+    assert channel.report().refused_peers == 1
+
+
+def test_a_verified_newcomer_takes_the_place_that_was_heard_longest_ago() -> None:
+    channel = crowd()
+    channel.receive(heartbeat(1, system=100), ("10.0.0.0", 14550), 0.5)
+    assert channel.receive(signed(key=WATCHER), HERE, 1.0) != []
+    assert HERE in hosts(channel)
+    assert ("10.0.0.1", 14550) not in hosts(channel)
+    assert ("10.0.0.0", 14550) in hosts(channel)
+
+
+def test_nobody_takes_the_place_back_from_a_verified_peer() -> None:
+    channel = crowd()
+    channel.receive(signed(), HERE, 1.0)
+    for number in range(200):
+        channel.receive(heartbeat(0, system=100), (f"10.2.0.{number}", 14550), 1.0 + number / 100)
+    assert HERE in hosts(channel)
+
+
+def test_a_drive_key_takes_the_place_of_a_watch_key() -> None:
+    channel = watched_crowd()
+    assert channel.receive(signed(key=OTHER), HERE, 1.0) != []
+    assert channel.receive(signed(stamp=NOW + 1), THERE, 1.0) != []
+    assert {HERE, THERE} <= set(hosts(channel))
+
+
+def test_an_unsigned_peer_leaves_before_a_watch_key() -> None:
+    channel = crowd()
+    channel.receive(signed(key=WATCHER), HERE, 0.0)  # heard before all others
+    for number in range(PLACES - 1):
+        channel.receive(signed(stamp=NOW + number, sequence=number), (f"10.3.0.{number}", 14550), 1.0)
+    assert HERE in hosts(channel)
+    assert len(hosts(channel)) == PLACES
+
+
+def test_the_unsigned_ids_in_control_keep_4_places() -> None:
+    """An unsigned driver, where the vehicle allows one, goes on; strangers with its ids do not fill the table."""
+    channel = crowd()
+    for number in range(4):
+        channel.receive(heartbeat(1), (f"10.0.0.{number}", 14550), 0.0)
+    channel.reserve((255, 190))
+    for number in range(PLACES + 10):
+        data = signed(stamp=NOW + number, ids=(254, 190), sequence=number)
+        channel.receive(data, (f"10.3.0.{number}", 1), 1.0)
+    kept = [f"10.0.0.{number}" for number in range(4)]
+    assert [each[0] for each in hosts(channel) if isinstance(each, tuple)][:4] == kept
+
+
+def test_more_than_4_strangers_with_the_ids_in_control_leave() -> None:
+    channel = crowd(ids=255)
+    channel.reserve((255, 190))
+    assert channel.receive(signed(ids=(254, 190)), HERE, 1.0) != []
+    assert HERE in hosts(channel)
+
+
+def test_a_verified_sender_without_heartbeat_keeps_its_place_from_strangers() -> None:
+    channel = vehicle(keep(DRIVER), OPEN)
+    channel.receive(signed(DISARM), HERE, 0.0)
+    for number in range(200):
+        channel.receive(heartbeat(0, system=100), (f"10.2.0.{number}", 14550), 1.0 + number / 100)
+    (place,) = [peer for peer in channel._peers if peer.peer.address == HERE]
+    assert [address for _, address, _ in channel.send(Outgoing(CommandAck(400, 0), place.peer))] == [HERE]
+
+
+# ---- shares ----
+
+
+def test_a_host_with_more_than_4_places_gives_one_up() -> None:
+    channel = crowd(one_host=True)
+    for number in range(PLACES - 4):
+        assert channel.receive(heartbeat(0), (f"10.2.0.{number}", 14550), 1.0) != []
+    assert channel.receive(heartbeat(0), HERE, 1.0) == []
+    assert Counter(address[0] for address in hosts(channel) if isinstance(address, tuple))["10.0.0.1"] == 4
+
+
+def test_the_key_with_most_places_gives_one_up_to_another_key() -> None:
+    channel = watched_crowd()
+    for number in range(12):
+        data = signed(key=SECOND_WATCHER, stamp=NOW + number, ids=(101, 190), sequence=number)
+        assert channel.receive(data, (f"10.4.0.{number}", 14550), 1.0) != []
+    data = signed(key=SECOND_WATCHER, stamp=NOW + 50, ids=(101, 190), sequence=50)
+    assert channel.receive(data, ("10.4.0.50", 14550), 1.0) == [], "each key has half of the places"
+
+
+def test_programs_of_one_key_do_not_take_each_others_places() -> None:
+    channel = watched_crowd()
+    data = signed(key=WATCHER, stamp=NOW + 50, ids=(101, 190), sequence=50)
+    assert channel.receive(data, HERE, 1.0) == []
+
+
+# ---- a fleet ----
+
+
+def fleet(runs: int, operator: str = "eve", now: float = 0.0) -> Channel:
+    channel = Channel("zenoh:x", 0, system=1, component=1, stream=True, named=True)
+    for number in range(runs):
+        channel.receive(b"", f"{operator}/{number}", now)
+        channel.receive(heartbeat(0, system=200), f"{operator}/{number}", now)
+    return channel
+
+
+def test_an_operator_of_a_fleet_has_4_places() -> None:
+    channel = fleet(40)
+    assert hosts(channel) == [f"eve/{number}" for number in range(4)]
+    for address in ("alice/1", "carol/1"):
+        channel.receive(b"", address, 0.1)
+        assert channel.receive(heartbeat(0), address, 0.1) != []
+
+
+def test_a_run_that_has_missed_a_heartbeat_leaves_its_place_to_the_next() -> None:
+    channel = fleet(4)
+    channel.receive(heartbeat(1, system=200), "eve/0", 1.0)
+    assert channel.receive(heartbeat(0), "eve/9", 1.4) == []
+    assert channel.receive(heartbeat(0), "eve/9", 1.6) != []
+    assert hosts(channel) == ["eve/0", "eve/2", "eve/3", "eve/9"]
+
+
+def test_six_operators_do_not_keep_a_seventh_out() -> None:
+    channel = fleet(4)
+    for operator in "bcdfg":
+        for number in range(4):
+            channel.receive(heartbeat(0, system=200), f"{operator}/{number}", 0.0)
+    assert len(hosts(channel)) == PLACES
+    assert channel.receive(heartbeat(0), "carol/1", 0.1) != []
+    assert "carol/1" in hosts(channel)
+
+
+# ---- stops ----
+
+
+def test_a_verified_stop_without_a_place_is_answered_with_its_key_and_time() -> None:
+    channel = vehicle(keep(DRIVER, WATCHER), OPEN)
+    for number in range(PLACES):
+        data = signed(stamp=NOW + number, ids=(100, 190), sequence=number)
+        channel.receive(data, (f"10.0.0.{number}", 14550), 0.0)
+    ahead = NOW + 3600 * 100_000
+    (found,) = channel.receive(signed(DISARM, WATCHER, ahead, ids=(254, 190)), HERE, 0.0)
+    assert HERE not in hosts(channel)
+    ((answer, address, _),) = channel.send(Outgoing(HEARTBEAT, found.peer), now=0.0)
+    assert address == HERE
+    assert link_and_stamp(answer)[1] >= ahead
+    assert keep(WATCHER).verifier.check(answer, 1, 1, 0.0)
+
+
+def test_a_stop_of_a_stranger_costs_no_place() -> None:
+    channel = crowd()
+    before = hosts(channel)
+    assert channel.receive(frame(DISARM), HERE, 1.0) != []
+    assert hosts(channel) == before
