@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
-from groundstation.vehicles.vehicle_heartbeat import is_vehicle
+from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
 from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.views.connect import HeardRow
 from link.core import Received
@@ -41,6 +41,8 @@ class HeardVehicles:
                 if not is_vehicle(received.message) or len(self._found) >= MAX_HEARD:
                     continue
                 found = self._found[key] = _Sighting(VehicleState(received.system, received.component))
+            if replaces(received.component, found.state.component) and is_vehicle(received.message):
+                found.state.change_component(received.component)
             found.state.receive(received, now)
             found.at = now
             found.frames.add(now)

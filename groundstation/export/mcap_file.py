@@ -9,7 +9,6 @@ from __future__ import annotations
 from mcap.writer import Writer
 from rosbags.typesys import get_types_from_msg
 
-from dialects.enums import Autopilot
 from dialects.messages import Heartbeat, ManualControl, Message, RoverOperatorPresence
 from groundstation.disk.new_file import NewFile
 from groundstation.export.exporter import LogInfo
@@ -18,6 +17,7 @@ from groundstation.export.ros_types import RosType
 from groundstation.export.sample import Sample
 from groundstation.ros.types import RosTypes
 from groundstation.ros.vehicle import ODOMETRY, ROWS, RosVehicle, Values, transforms
+from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
 
 _TYPES = RosTypes()
 """Standard types, and those made so far."""
@@ -84,12 +84,12 @@ class McapExport:
     def _vehicle(self, sample: Sample) -> RosVehicle | None:
         """Return the vehicle of a message of its autopilot, which is known by its HEARTBEAT."""
         found = self._vehicles.get(sample.system)
-        if found is None and sample.kind is Heartbeat:
-            message = sample.message
-            assert isinstance(message, Heartbeat)
-            if message.autopilot != Autopilot.INVALID:
+        if sample.kind is Heartbeat and is_vehicle(sample.message):
+            if found is None:
                 prefix = f"sys{sample.system}/" if self._vehicles else ""
                 found = self._vehicles[sample.system] = RosVehicle(sample.component, prefix)
+            elif replaces(sample.component, found.component):
+                found = self._vehicles[sample.system] = RosVehicle(sample.component, found.prefix)
         return found if found is not None and found.component == sample.component else None
 
     def _write(self, sample: Sample, vehicle: RosVehicle, topic: str, kind: str, values: Values) -> None:

@@ -13,10 +13,11 @@ import msgspec
 
 from dialects import messages as m
 from dialects.enum_names import enum_names
-from dialects.enums import Autopilot, Command, Failsafe, ModeFlag, Severity, SystemState, VehicleType
+from dialects.enums import Command, Failsafe, ModeFlag, Severity, SystemState, VehicleType
 from dialects.messages import MESSAGES, Message, decode_text, printable
 from dialects.modes import mode_name
 from groundstation.vehicles.values import flag_words
+from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
 
 MAX_EVENTS = 20_000
 """Kept; beyond that only those of severity WARNING and worse are, up to twice as many."""
@@ -125,6 +126,8 @@ class _Vehicle(msgspec.Struct):
     armed: bool = False
     status: int = SystemState.UNINIT
     failsafes: int = 0
+    component: int = 0
+    """Of its HEARTBEATs."""
 
 
 class EventFinder(msgspec.Struct):
@@ -164,13 +167,13 @@ def _heartbeat(finder: EventFinder, found: Found) -> Parts:
     finder.beating.pop((found.system, found.component), None)
     if beat.type == VehicleType.GCS:
         finder.stations.add((found.system, found.component))
-    if beat.type == VehicleType.GCS or beat.autopilot == Autopilot.INVALID:
+    known = finder.vehicles.get(found.system)
+    if not is_vehicle(beat) or (known is not None and not _speaks_for(found.component, known)):
         return
     mode, armed = mode_name(beat.custom_mode, beat.autopilot), bool(beat.base_mode & ModeFlag.ARMED)
-    known = finder.vehicles.get(found.system)
-    if known is None:
+    if known is None or known.component != found.component:
         finder.vehicles[found.system] = _Vehicle(
-            found.time, found.time, beat.autopilot, mode, armed, beat.system_status
+            found.time, found.time, beat.autopilot, mode, armed, beat.system_status, component=found.component
         )
         finder.beating[found.system, found.component] = finder.vehicles[found.system]
         yield "MODE", Severity.INFO, mode
@@ -182,6 +185,11 @@ def _heartbeat(finder: EventFinder, found: Found) -> Parts:
     if beat.system_status != known.status and beat.system_status in _BAD_STATES:
         yield "FAIL", Severity.CRITICAL, f"system status {SystemState(beat.system_status).name}"
     known.heard, known.mode, known.armed, known.status = found.time, mode, armed, beat.system_status
+
+
+def _speaks_for(component: int, known: _Vehicle) -> bool:
+    """Return whether a component that sends HEARTBEATs of a vehicle is this one, or the autopilot in its place."""
+    return component == known.component or replaces(component, known.component)
 
 
 _BAD_STATES = (SystemState.CRITICAL, SystemState.EMERGENCY)

@@ -251,14 +251,16 @@ class DoctorDesk:
 
     def _report(self, contact: Contact) -> VehicleReport:
         state = contact.state
-        if state.system not in self._reports:
+        report = self._reports.get(state.system)
+        if report is None or report.component != state.component:
             target = (state.system, state.component)
-            self._reports[state.system] = VehicleReport(
+            report = self._reports[state.system] = VehicleReport(
                 ArmingChecks(state.component),
                 DoctorParams(state.autopilot, self._ids, target),
                 CalibrationState(self._ids, target),
+                state.component,
             )
-        return self._reports[state.system]
+        return report
 
 
 def _reversal(motor: TestedMotor, report: VehicleReport) -> ParamFix | None:

@@ -37,6 +37,8 @@ class VehicleReport(msgspec.Struct):
     checks: ArmingChecks
     params: DoctorParams
     calibration: CalibrationState
+    component: int
+    """Of the vehicle that they ask."""
 
 
 def collect(

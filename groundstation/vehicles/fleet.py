@@ -23,7 +23,7 @@ from groundstation.vehicles.signing_watch import SIGNING, SigningWatch
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_details import VehicleDetails
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
 from groundstation.vehicles.vehicle_params import VehicleParams
 from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
@@ -198,6 +198,8 @@ class Fleet:
         contact = self._contacts.get(received.system)
         if contact is not None:
             contact.link = received.peer.link
+            if replaces(received.component, contact.state.component) and is_vehicle(received.message):
+                self._change_component(contact, received, now)
         if contact is not None or not is_vehicle(received.message):
             return contact
         if len(self._contacts) >= MAX_VEHICLES:
@@ -216,13 +218,35 @@ class Fleet:
             DriveReadings(state, VehicleParams(*self._own_id, target=target)),
         )
         self._contacts[received.system] = contact
-        if state.autopilot in SETTINGS:
-            contact.settings_check = SettingsCheck(SETTINGS[state.autopilot], *self._own_id, target=target)
+        self._check_settings(contact)
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         if self._selected is None:
             self._selected = contact
             self.on_first()
         return contact
+
+    def _check_settings(self, contact: Contact) -> None:
+        """Read the settings that matter for a stop, of an autopilot for which they are known."""
+        state = contact.state
+        if state.autopilot in SETTINGS:
+            rules, target = SETTINGS[state.autopilot], (state.system, state.component)
+            contact.settings_check = SettingsCheck(rules, *self._own_id, target=target)
+
+    def _change_component(self, contact: Contact, received: Received, now: float) -> None:
+        """Take another component of the system for the vehicle: its autopilot, which was not heard first."""
+        state, system, component = contact.state, contact.state.system, received.component
+        text = f"vehicle {system}: component {component} is its autopilot, not {state.component}"
+        self._log.add(now, "station", text, Severity.WARNING, origin=LogOrigin(system))
+        state.change_component(component)
+        state.receive(received, now)
+        target = (system, component)
+        contact.stream_requests = StreamRequests(target, now)
+        contact.changes, contact.details = StateChanges(self._own_id[0]), VehicleDetails(component)
+        contact.drive = DriveReadings(state, VehicleParams(*self._own_id, target=target))
+        contact.settings_check, contact.axes, contact.dialect_probe = None, None, DialectProbe()
+        self._check_settings(contact)
+        if contact.services is not None:
+            contact.services.change_component(component, now)
 
     def _leave_out(self, system: int, now: float) -> None:
         """Count a vehicle for which there is no place; only the first is logged, so that a flood fills no log."""

@@ -6,7 +6,7 @@ their modules imported, when they are used first: importing all of them takes a 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, MutableMapping, Sequence
+from collections.abc import Collection, Mapping, MutableMapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
@@ -88,15 +88,33 @@ class VehicleServices:
         self, system: int, component: int, target: tuple[int, int], texts: MutableMapping[int, bytes] | None = None
     ) -> None:
         self._ids = (system, component)
-        self._target = target
         self._texts = {} if texts is None else texts
         self.autopilot: int = Autopilot.GENERIC
         """MAV_AUTOPILOT of its HEARTBEAT."""
         self.kind: int = VehicleType.GROUND_ROVER
         """MAV_TYPE of its HEARTBEAT."""
         self.book = RequestBook()
+        self._used = False
+        self.alive = True
+        """The vehicle is heard."""
+        self.held = False
+        """The transfers wait: the line is slow, and the operator drives."""
+        self._talk_to(target)
+
+    def change_component(self, component: int, now: float, keep: Collection[int] = ()) -> None:
+        """Talk to another component of the same system. Requests to the former one are refused, but those in `keep`."""
+        for report in self.book.running:
+            if report.number not in keep:
+                why = f"component {component} is the autopilot, not {self._target[1]}: request it again"
+                self.book.refuse(report.number, why, now, by_vehicle=False)
+        for name in [name for name, each in vars(type(self)).items() if isinstance(each, cached_property)]:
+            self.__dict__.pop(name, None)
+        self._talk_to((self._target[0], component))
+
+    def _talk_to(self, target: tuple[int, int]) -> None:
+        self._target = target
         self.identity = VehicleIdentity(target[1])
-        self.commands = CommandRequests(CommandClient(system, component), self.book, target)
+        self.commands = CommandRequests(CommandClient(*self._ids), self.book, target)
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.progress = PlanProgress(target[1])
         self._services: list[_Service] = [self.commands]
@@ -104,11 +122,6 @@ class VehicleServices:
         self._followers: list[_Follower] = []
         self._disk_users: list[_DiskUser] = []
         self._timed: list[MetadataRequests | TransferRequests] = []
-        self._used = False
-        self.alive = True
-        """The vehicle is heard."""
-        self.held = False
-        """The transfers wait: the line is slow, and the operator drives."""
 
     # ---- made when they are used first ----
 

@@ -51,10 +51,14 @@ class VehicleState:
 
     def __init__(self, system: int, component: int) -> None:
         self.system = system
-        self.component = component
         self.fleet_name = ""
         """Its name in the fleet behind the link of its newest message; "" without one."""
         self.monitor = HeartbeatMonitor(LOST_AFTER)
+        self.change_component(component)
+
+    def change_component(self, component: int) -> None:
+        """Begin anew as another component of the same system; what the former one has reported is not of it."""
+        self.component = component
         self.key_timings = KeyTimings()
         self.latency = LatencyMeter(self.key_timings)
         self.foreign = ForeignDrive()

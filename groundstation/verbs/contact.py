@@ -33,8 +33,10 @@ class Job(Protocol):
 class VehicleContact:
     """The vehicle with the ids `target`. `ids` are ours, `session` is the random number of this run."""
 
-    def __init__(self, ids: tuple[int, int], session: int, target: tuple[int, int]) -> None:
+    def __init__(self, ids: tuple[int, int], session: int, target: tuple[int, int], now: float) -> None:
         self.ids = ids
+        self.found_at = now
+        """When it was heard first."""
         self.session = session
         self.state = VehicleState(*target)
         self.details = VehicleDetails(target[1])
@@ -76,6 +78,12 @@ class VehicleContact:
         """Begin a job."""
         self._jobs.append(job)
         job.tick(self.client, self.services.book, now)
+
+    def change_component(self, component: int, now: float) -> None:
+        """Talk to another component of the system: the autopilot was heard after it. Jobs go on."""
+        self.state.change_component(component)
+        self.details = VehicleDetails(component)
+        self.services.change_component(component, now, keep={job.number for job in self._jobs})
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""

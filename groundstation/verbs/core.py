@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from dialects import messages as m
+from dialects.vehicle_types import AUTOPILOT_COMPONENT
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.heartbeat_sender import HeartbeatSender
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
+from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
 from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.contact import VehicleContact
 from link.core import LinkReport, Outgoing, Received
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 WATCHER = 25
 """MAV_COMP_ID_USER1: of verbs that only look. With the ids of a silent driver, as of the verb before, any command would
 count as its successor, and our vehicle would leave an autonomous mode (docs/safety.md, "Who the driver is")."""
+
+ALONE_AFTER = 1.3
+"""s for which the links are heard before a vehicle counts as the only one, and a script that claims to be an autopilot
+as the autopilot: a heartbeat interval and a delay."""
 
 Tap = Callable[[Received, float], None]
 """Takes each message that arrives, and the time."""
@@ -59,13 +64,15 @@ class VerbCore:
             received = received._replace(message=m.hide_key(received.message))
         if is_vehicle(received.message):
             self._heartbeat.greet(received.peer, now)
-            self._add(received)
+            self._add(received, now)
         contact = self.contacts.get(received.system)
         if contact is not None:
             contact.receive(received, now)
         self.heard[received.system, type(received.message)] = now
         for tap in self.taps:
             tap(received, now)
+        if self.chosen is None and not self.has_heard_all:
+            self._choose(now)
         self._look()
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:
@@ -79,6 +86,8 @@ class VerbCore:
         """Send heartbeats, repeat what is overdue."""
         demanding = self.chosen is not None and self.chosen.operator.demanding
         self.outbox += [each.message for each in self._heartbeat.tick(now, driving=demanding)]
+        if self.chosen is None:
+            self._choose(now)
         for contact in self.contacts.values():
             contact.tick(now)
         self._look()
@@ -103,12 +112,23 @@ class VerbCore:
         self._looks.append((condition, found))
         return found
 
-    def _add(self, received: Received) -> None:
-        if received.system not in self.contacts and len(self.contacts) < MAX_VEHICLES:
+    def _add(self, received: Received, now: float) -> None:
+        contact = self.contacts.get(received.system)
+        if contact is None and len(self.contacts) < MAX_VEHICLES:
             target = (received.system, received.component)
-            self.contacts[received.system] = VehicleContact(self._ids, self._session, target)
-        if self.chosen is None and is_chosen(self._wanted, received.system, received.peer.name):
-            self.chosen = self.contacts.get(received.system)
+            contact = self.contacts[received.system] = VehicleContact(self._ids, self._session, target, now)
+        elif contact is not None and replaces(received.component, contact.state.component):
+            contact.change_component(received.component, now)
+
+    def _choose(self, now: float) -> None:
+        """Choose the vehicle. One that is not heard as an autopilot yet may be a script on board of it."""
+        for system, contact in self.contacts.items():
+            state, waited = contact.state, now - contact.found_at
+            if (state.component == AUTOPILOT_COMPONENT or waited >= ALONE_AFTER or self.has_heard_all) and is_chosen(
+                self._wanted, system, state.fleet_name
+            ):
+                self.chosen = contact
+                return
 
     def _look(self) -> None:
         for condition, found in self._looks:

@@ -16,10 +16,11 @@ import msgspec
 from groundstation.config.groups import VehicleGroup
 from groundstation.formats.errors import FileFormatError
 from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
+from groundstation.verbs.core import ALONE_AFTER
 from groundstation.verbs.exit_codes import ExitCode, VerbError, worst_code
 from groundstation.verbs.many_output import VehicleOutput
 from groundstation.verbs.output import Output
-from groundstation.verbs.session import ALONE_AFTER, VerbSession
+from groundstation.verbs.session import VerbSession
 from groundstation.verbs.tables import format_table
 
 if TYPE_CHECKING:

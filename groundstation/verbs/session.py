@@ -15,7 +15,7 @@ from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.verbs.contact import VehicleContact
-from groundstation.verbs.core import VerbCore
+from groundstation.verbs.core import ALONE_AFTER, VerbCore
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.station_link import StationLink, StationRunner
 from link.protocol.log_tap import LogTap
@@ -39,8 +39,6 @@ DRIVER_WITHIN = 2.5
 """s until our vehicle tells who is in control: it does once a second, and one may get lost."""
 SUCCESSION_WITHIN = 2.0
 """s for the session of the verb before this one to count as silent, which takes 0.7 s (docs/safety.md)."""
-ALONE_AFTER = 1.3
-"""s for which the links are heard before a vehicle counts as the only one: a heartbeat interval and a delay."""
 
 RequestStart = Callable[[int, float], None]
 """Starts a request, with its number and the time."""

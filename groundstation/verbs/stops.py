@@ -15,10 +15,11 @@ from groundstation.station.emergency import DANGEROUS, EmergencyLock
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.contact import Job, VehicleContact
+from groundstation.verbs.core import ALONE_AFTER
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
-from groundstation.verbs.session import ALONE_AFTER, VerbSession
+from groundstation.verbs.session import VerbSession
 from groundstation.verbs.stop_jobs import EmergencyJob, disarm_job, hold_job
 
 REPEAT_FOR = 30.0

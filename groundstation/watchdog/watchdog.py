@@ -35,6 +35,10 @@ must be free when the operator starts the ground station again."""
 STANDING_SPEED, STANDING_FOR = 0.2, 0.5
 """m/s below which, and s for which, a foreign vehicle counts as standing: GPS speed has noise."""
 
+TWIN_BEAT = 2.5
+"""s after a HEARTBEAT that reports armed for which none that reports disarmed confirms anything: two heartbeats of
+another vehicle with the same id, one of which may get lost."""
+
 WANTED = frozenset((Heartbeat.id, RoverDriveStatus.id, VfrHud.id))
 """Ids of the messages that show whether a vehicle stands."""
 
@@ -61,6 +65,8 @@ class _Target(msgspec.Struct):
     error: str = ""
     """Why the newest frame was not accepted."""
     disarmed: bool = False
+    armed_at: float = -math.inf
+    """When a HEARTBEAT reported armed last: another vehicle may have the same id, and one report confirms nothing."""
     stands: bool = False
     slow_since: float = math.inf
 
@@ -68,7 +74,9 @@ class _Target(msgspec.Struct):
         """Note what a message of the vehicle shows, after the first neutral was sent."""
         match message:
             case Heartbeat():
-                self.disarmed = not message.base_mode & ModeFlag.ARMED
+                armed = bool(message.base_mode & ModeFlag.ARMED)
+                self.armed_at = now if armed else self.armed_at
+                self.disarmed = not armed and now - self.armed_at > TWIN_BEAT
             case RoverDriveStatus():
                 self.stands = not any(message.output)
             case VfrHud() if self.vehicle.session is None:
@@ -145,7 +153,8 @@ class Watchdog:
         that says disarmed.
         """
         number, system, component, _, raw = frame
-        driven = next((each for each in self._report.vehicles if each.system == system), None)
+        ids = (system, component)
+        driven = next((each for each in self._report.vehicles if (each.system, each.component) == ids), None)
         if driven is not None and (not driven.verified or self._verifies(raw, system, component, now)):
             self.handle_message(system, codec.decode_frame(number, raw), now)
 

@@ -47,7 +47,7 @@ def test_status_requests_what_the_vehicle_does_not_send_by_itself(capsys: Captur
 
 
 def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) -> None:
-    contact = VehicleContact((254, 190), 1, (1, 1))
+    contact = VehicleContact((254, 190), 1, (1, 1), 0.0)
     printers = [
         ChangePrinter(
             contact,

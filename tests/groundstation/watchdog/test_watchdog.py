@@ -227,6 +227,27 @@ def test_it_ends_when_the_vehicle_is_disarmed_but_not_before_a_second_of_neutral
     assert watchdog.finished(101.1)
 
 
+def test_a_script_on_board_does_not_say_that_the_vehicle_is_disarmed() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    raw = codec.frame(0, codec.encode_payload(heartbeat(armed=False)), 1, 2, 191)
+    for frame in Framer(stream=False).feed(raw, 100.1):
+        watchdog.handle_frame(frame, 100.1)
+    assert not watchdog.finished(101.5)
+
+
+def test_another_vehicle_with_its_id_does_not_end_the_neutral() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    for at in (100.2, 101.2, 102.2, 103.2):
+        watchdog.handle_message(2, heartbeat(armed=True), at)
+        watchdog.handle_message(2, heartbeat(armed=False), at + 0.3)
+    assert not watchdog.finished(104.0)
+    assert watchdog.finished(100.0 + SEND_FOR + 0.1)
+
+
 def test_a_vehicle_that_moves_again_does_not_count_as_standing() -> None:
     watchdog = watching(ROVER)
     watchdog.handle_end(100.0)

@@ -1,0 +1,103 @@
+"""Which component of a system is the vehicle, whoever is heard first."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Autopilot
+from dialects.vehicle_types import NO_VEHICLES
+from groundstation.connect.heard import HeardVehicles
+from groundstation.vehicles.fleet import Fleet
+from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
+from groundstation.verbs.core import ALONE_AFTER, VerbCore
+from link.core import Peer, Received
+
+PEER = Peer(0, "vehicle")
+GIMBAL, CAMERA, ADSB, COMPANION, ROVER, ANTENNA_TRACKER = 26, 30, 27, 18, 10, 5
+ARMED_IN_AUTO = m.Heartbeat(ROVER, Autopilot.ARDUPILOT, 81 | 128, 10, 4, 3)
+
+
+def beat(kind: int, autopilot: int = 0, component: int = 191) -> Received:
+    message = m.Heartbeat(kind, autopilot, 0, 0, 4, 3)
+    return Received(message, 1, component, 0, PEER, introduced=True)
+
+
+def autopilot(component: int = 1) -> Received:
+    return Received(ARMED_IN_AUTO, 1, component, 0, PEER, introduced=True)
+
+
+@pytest.mark.parametrize("kind", [GIMBAL, CAMERA, ADSB, COMPANION, 31, 34, 36, 37, 42, 49])
+def test_a_part_of_a_vehicle_is_none_even_if_it_names_an_autopilot(kind: int) -> None:
+    assert kind in NO_VEHICLES
+    for name in (Autopilot.GENERIC, Autopilot.ARDUPILOT, Autopilot.PX4):
+        assert not is_vehicle(beat(kind, name).message)
+
+
+@pytest.mark.parametrize("kind", [0, 1, 2, ANTENNA_TRACKER, ROVER, 11, 12])
+def test_what_has_motors_is_a_vehicle(kind: int) -> None:
+    assert is_vehicle(beat(kind).message)
+
+
+def test_only_the_autopilot_replaces_another_component() -> None:
+    assert [replaces(*each) for each in ((1, 191), (1, 1), (191, 1), (2, 191))] == [True, False, False, False]
+
+
+def test_the_autopilot_replaces_a_script_that_claims_to_be_a_rover() -> None:
+    log = MessageLog()
+    fleet = Fleet(log, 255, 190)
+    contact = fleet.get_or_add(beat(ROVER), 1.0)
+    assert contact is not None
+    assert (contact.state.component, contact.state.armed) == (191, False)
+    assert fleet.get_or_add(autopilot(), 1.5) is contact
+    contact.state.receive(autopilot(), 1.5)
+    for now in (2.0, 3.0):
+        fleet.get_or_add(beat(ROVER), now)
+        contact.state.receive(beat(ROVER), now)
+    state = contact.state
+    assert (state.component, state.mode, state.armed, fleet.selected) == (1, "AUTO", True, contact)
+    assert contact.settings_check is not None
+    assert "vehicle 1: component 1 is its autopilot, not 191" in [line.text for line in log.build_lines(0.0, 0.0)]
+
+
+def test_a_request_to_the_former_component_is_refused() -> None:
+    core = VerbCore((254, 25), None, 1)
+    core.receive(beat(ROVER), 1.0)
+    core.tick(1.01 + ALONE_AFTER)
+    contact = core.chosen
+    assert contact is not None
+    contact.services.commands.send(1, 520, (1.0,), "ask", 2.5)
+    core.receive(autopilot(), 2.6)
+    [report] = [each for each in contact.services.book.pop_changes() if each.state.ended]
+    assert report.detail == "component 1 is the autopilot, not 191: request it again"
+    contact.services.commands.send(2, 520, (1.0,), "ask", 2.7)
+    assert [each.message.target_component for each in core.messages_to_send() if type(each.message) is m.CommandLong][
+        -1
+    ] == 1
+
+
+def test_a_verb_waits_for_the_autopilot_behind_a_script() -> None:
+    core = VerbCore((254, 25), None, 1)
+    core.receive(beat(ROVER), 1.0)
+    core.tick(1.0 + ALONE_AFTER - 0.1)
+    assert core.chosen is None
+    core.receive(autopilot(), 1.0 + ALONE_AFTER - 0.05)
+    assert core.chosen is not None
+    assert core.chosen.state.armed
+
+
+def test_a_verb_takes_the_second_autopilot_if_there_is_no_first() -> None:
+    core = VerbCore((254, 25), None, 1)
+    core.receive(autopilot(2), 1.0)
+    assert core.chosen is None
+    core.tick(1.01 + ALONE_AFTER)
+    assert core.chosen is not None
+    assert core.chosen.state.component == 2
+
+
+def test_the_list_of_what_is_heard_shows_the_autopilot() -> None:
+    heard = HeardVehicles()
+    heard.receive("udpin:x", [beat(CAMERA, 0), beat(ROVER), autopilot(), beat(ROVER)], 40, 1.0)
+    [row] = heard.rows(1.0)
+    assert (row.mode, row.armed) == ("AUTO", True)
