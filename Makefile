@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all coverage bench soak vm aarch64 mutate release
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak vm aarch64 mutate release
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -25,11 +25,17 @@ format:  ## Format the code and sort the imports.
 test-fast:  ## Test the cores and the safety code, in less than 20 s.
 	$(PYTEST) -q $(PARALLEL) -m 'not slow' $(FAST)
 
-test:  ## Run the tests that README.md runs: everything but the slow ones.
-	$(PYTEST) $(PARALLEL) -m 'not slow'
+test:  ## Run the short suite, as README.md does: 200 s of CPU.
+	$(PYTEST) $(PARALLEL)
 
 test-all:  ## Run every test, as CI does.
-	$(PYTEST) $(PARALLEL)
+	$(PYTEST) $(PARALLEL) --suite all
+
+stranger:  ## Type the lines of README.md in a fresh clone, with an empty environment.
+	python3 -m tests.stranger $(ARGS)
+
+bare:  ## The same in a bare Debian, from its package list on; SUITE=bookworm; needs root and debootstrap.
+	python3 -m tests.stranger --bare $(or $(SUITE),trixie) $(ARGS)
 
 coverage:  ## Fail if a branch of the safety code is not covered by the tests of its folder.
 	.ci/coverage

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
 import tempfile
 from collections.abc import Generator
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from dialects.fingerprint import fault
-from tests import order
+from tests import order, suite
 
 LONG_TIMEOUT = 300
 """s for a test that starts programs or simulates many minutes; a busy machine takes ten times as long."""
@@ -24,10 +26,23 @@ settings.register_profile(
     max_examples=int(os.environ.get("MAVHELM_EXAMPLES", "100")),  # .ci/run and .ci/coverage need fewer
     derandomize="MAVHELM_CI" in os.environ,  # CI tries the same examples each time; new ones are found on laptops
 )
+settings.register_profile(
+    suite.SHORT,
+    settings.get_profile("mavhelm"),
+    max_examples=20,
+    derandomize=True,  # the same result for everybody
+)
 settings.load_profile("mavhelm")
 
 if reason := fault():
     raise SystemExit(reason)  # here and not in a hook, because other conftest.py files import the dialect
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add --suite."""
+    parser.addoption(
+        "--suite", choices=suite.SUITES, help="which tests run (default: short; all where files or tests are named)"
+    )
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -37,7 +52,13 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Give each worker folders of its own: a vehicle locks its one, your files and stations are not for tests."""
+    """Choose the suite, and give each worker folders of its own: your files and stations are not for tests."""
+    config.option.suite = suite.chosen(config)  # xdist passes it on to its workers
+    if config.option.suite == suite.SHORT:
+        settings.load_profile(suite.SHORT)
+    # Each of the programs that the tests start would compile its 300 to 500 modules again, and each worker the tests.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
     for variable in ("XDG_STATE_HOME", "XDG_CONFIG_HOME", "XDG_RUNTIME_DIR"):
         folder = tempfile.TemporaryDirectory(prefix="mavhelm-tests-")
         os.environ[variable] = folder.name
@@ -62,9 +83,20 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Spread the tests that wait. Give LONG_TIMEOUT to those with a marker of LONG_MARKERS and no timeout yet."""
-    items[:] = order.mix(items)
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not import files that have no test of the short suite."""
+    return True if config.option.suite == suite.SHORT and suite.is_long_file(collection_path) else None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Choose the suite, and spread the tests that wait.
+
+    Those with a marker of LONG_MARKERS and no timeout yet get LONG_TIMEOUT.
+    """
+    ours, others = suite.split(items, config.option.suite)
+    if others:
+        config.hook.pytest_deselected(items=others)
+    items[:] = order.mix(ours)
     for item in items:
         if item.get_closest_marker("timeout") is None and any(map(item.get_closest_marker, LONG_MARKERS)):
             item.add_marker(pytest.mark.timeout(LONG_TIMEOUT))

@@ -43,7 +43,7 @@ def spread(few: Sequence[Each], many: Sequence[Each]) -> Iterator[Each]:
 def waits(item: pytest.Item) -> bool:
     """Return whether a test starts programs, waits in real time, or is long."""
     folder = item.path.parent.as_posix()
-    return any(map(item.get_closest_marker, WAITING_MARKERS)) or folder.endswith(WAITING_FOLDERS)
+    return any(mark.name in WAITING_MARKERS for mark in item.iter_markers()) or folder.endswith(WAITING_FOLDERS)
 
 
 def _is_short(item: pytest.Item) -> bool:

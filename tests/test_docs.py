@@ -114,20 +114,23 @@ def test_commands_are_found_in_the_documents() -> None:
     assert {words[0] for doc, _, words in SHOWN if doc == "pi.md"} >= {"init", "check", "motor-test", "systemd-unit"}
 
 
-README_COMMAND = ".venv/bin/pytest -n auto --dist loadgroup -m 'not slow'"
+README_COMMAND = "&& pytest -n auto --dist loadgroup\n"
 
 
-def test_ci_runs_the_test_command_of_the_readme_and_the_slow_tests() -> None:
+def test_ci_types_the_lines_of_the_readme_and_runs_the_rest() -> None:
     assert README_COMMAND in (ROOT / "README.md").read_text()
-    [command] = [line for line in (ROOT / ".ci/run").read_text().splitlines() if ".venv/bin/pytest" in line]
+    lines = (ROOT / ".ci/run").read_text().splitlines()
+    assert "python3 -m tests.stranger --no-skips" in lines
+    [command] = [line for line in lines if ".venv/bin/pytest" in line]
     suite, again, failed = command.split(" || ")
-    assert suite.endswith(".venv/bin/pytest -n 8 --dist loadgroup")
+    assert suite.endswith(".venv/bin/pytest -n 8 --dist loadgroup --suite rest")
     assert (again, failed) == (".venv/bin/python .ci/again", "code=1")
 
 
 def test_make_runs_the_test_command_of_the_readme() -> None:
     makefile = (ROOT / "Makefile").read_text()
-    assert "$(PYTEST) $(PARALLEL) -m 'not slow'\n" in makefile
+    assert "\t$(PYTEST) $(PARALLEL)\n" in makefile
+    assert "\t$(PYTEST) $(PARALLEL) --suite all\n" in makefile
     assert "PARALLEL = -n auto --dist loadgroup\n" in makefile
 
 

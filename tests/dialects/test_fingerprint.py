@@ -59,7 +59,7 @@ def test_a_module_that_was_never_made_is_told(folder: Path) -> None:
 def test_pytest_stops_with_that_line_and_runs_nothing(folder: Path) -> None:
     tests = folder.parent / "tests"
     tests.mkdir()
-    for name in ("conftest.py", "order.py"):
+    for name in ("conftest.py", "order.py", "suite.py"):
         shutil.copy(ROOT / "tests" / name, tests)
     (tests / "test_one.py").write_text("def test_one() -> None: pass\n")
     (folder.parent / "pytest.ini").write_text("[pytest]\npythonpath = .\naddopts = --import-mode=importlib\n")

@@ -1,0 +1,96 @@
+"""Which tests run: `pytest` alone runs the short suite, `--suite all` every test, `--suite rest` those that are left.
+
+The short suite is for everybody who has a clone: the cores and the safety code in virtual time, all that needs no other
+program, and the main job with the real ones. It takes 200 s of CPU and skips nothing with the packages of the extra
+`test`. A new test belongs to it, unless one of MARKERS or a row of LONG says otherwise. Tests that are named on the
+command line always run.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+SHORT, REST, ALL = SUITES = ("short", "rest", "all")
+TESTS = Path(__file__).parent
+
+MARKERS = ("slow", "e2e", "interop", "tmux")
+"""Tests with one of them are not in the short suite, but for those of MAIN_JOB."""
+MARKED = ("e2e", "interop")
+"""Folders in which every test has one."""
+
+LONG = (
+    "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "recipes", "soak", "test_examples.py",
+    "dialects/extra", "dialects/test_build.py", "link/services/param/test_recorded_params.py",
+    "link/signing/test_c_library.py", "vehicle/cli/test_systemd_unit.py", "vehicle/machine",
+    "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
+    "vehicle/storage/test_tlog_files.py::test_a_real_card", "groundstation/cli/test_keys_verb.py",
+    "groundstation/connect", "groundstation/export", "groundstation/gamepad", "groundstation/replay",
+    "groundstation/station/test_file_transfers.py", "groundstation/station/test_freeze.py",
+    "groundstation/station/test_recorded_traffic.py", "groundstation/test_foreign_missions.py",
+    "groundstation/vehicles/test_replay.py", "groundstation/verbs",
+)  # fmt: skip
+"""Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, or need
+programs and packages that a clone alone does not have."""
+
+MAIN_JOB = (
+    "groundstation/sitl/test_sitl.py::test_sitl_starts",
+    "e2e/test_stop_matrix.py::test_key_released", "e2e/test_stop_matrix.py::test_terminal_closed",
+    "e2e/test_stop_matrix.py::test_ground_station", "e2e/test_stop_matrix.py::test_quit_by_key",
+    "e2e/test_stop_matrix.py::test_vehicle_told_to_end", "e2e/test_station_process_lost.py::test_our_rover_stops",
+    "e2e/test_handover.py::test_given_control_stops", "e2e/test_serial_and_tcp.py::test_ground_station_killed",
+    "e2e/test_serial_and_bridge.py", "vehicle/runtime/test_daemon.py::test_a_signal_while_driving",
+    "vehicle/safety/test_estop_button.py", "groundstation/verbs/line", "groundstation/verbs/test_arm.py",
+    "groundstation/verbs/test_stops.py", "groundstation/ui/screens/test_drive.py",
+)  # fmt: skip
+"""Tests that are in it all the same: starting, driving, every way to die, serial lines, the bridge, and the verbs that
+arm and stop."""
+
+APPS = "groundstation/ui"
+"""A coroutine below this folder drives the whole program with its screens: 0.1 to 1 s of CPU each."""
+
+
+def chosen(config: pytest.Config) -> str:
+    """Return the suite that was asked for, or that goes with the paths on the command line."""
+    named = config.args_source != pytest.Config.ArgsSource.TESTPATHS
+    suite: str | None = config.option.suite
+    return suite or (ALL if named else SHORT)
+
+
+def is_long_file(path: Path) -> bool:
+    """Return whether a file, or every file of a folder, is not in the short suite, so that it need not be imported."""
+    name = _below(path)
+    if any(_covers(row, name) or row.startswith((f"{name}/", f"{name}::")) for row in MAIN_JOB):
+        return False
+    return any(_covers(row, name) for row in (*LONG, *MARKED))
+
+
+def is_short(item: pytest.Item) -> bool:
+    """Return whether a test is in the short suite."""
+    name = f"{_below(item.path)}::{item.nodeid.partition('::')[2]}"
+    if any(_covers(row, name) for row in MAIN_JOB):
+        return True
+    if any(_covers(row, name) for row in LONG) or any(mark.name in MARKERS for mark in item.iter_markers()):
+        return False
+    return not (name.startswith(APPS) and inspect.iscoroutinefunction(getattr(item, "obj", None)))
+
+
+def split(items: Sequence[pytest.Item], suite: str) -> tuple[list[pytest.Item], list[pytest.Item]]:
+    """Return the tests of a suite, and the others."""
+    if suite == ALL:
+        return list(items), []
+    ours = [is_short(item) == (suite == SHORT) for item in items]
+    pairs = list(zip(items, ours, strict=True))
+    return [item for item, our in pairs if our], [item for item, our in pairs if not our]
+
+
+def _below(path: Path) -> str:
+    return path.relative_to(TESTS).as_posix() if path.is_relative_to(TESTS) else path.as_posix()
+
+
+def _covers(row: str, name: str) -> bool:
+    """Return whether a row names a folder or file, one above it, or the start of a test's name."""
+    return name == row or name.startswith((f"{row}/", f"{row}::")) or ("::" in row and name.startswith(row))

@@ -1,0 +1,60 @@
+"""The short suite: its tables name what exists, and it and the rest are all tests, each once."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests import suite
+
+
+@pytest.mark.parametrize("row", [*suite.LONG, *suite.MAIN_JOB, *suite.MARKED])
+def test_a_row_names_a_folder_a_file_or_a_test(row: str) -> None:
+    path, _, test = row.partition("::")
+    place = suite.TESTS / path
+    assert place.exists()
+    assert not test or f"def {test}" in place.read_text()
+
+
+def test_short_and_rest_are_all_tests_each_once(request: pytest.FixtureRequest) -> None:
+    items = request.session.items
+    short, others = suite.split(items, suite.SHORT)
+    assert suite.split(items, suite.REST) == (others, short)
+    assert sorted(map(id, [*short, *others])) == sorted(map(id, items))
+    assert suite.split(items, suite.ALL) == (items, [])
+
+
+@pytest.mark.parametrize(
+    ("path", "is_long"),
+    [
+        ("e2e", False), ("e2e/test_stop_matrix.py", False), ("e2e/test_browser.py", True), ("interop", True),
+        ("recipes", True), ("recipes/test_key.py", True), ("vehicle/drive/test_gate.py", False),
+        ("groundstation/verbs", False), ("groundstation/verbs/line", False),
+        ("groundstation/verbs/line/test_parser.py", False), ("groundstation/verbs/test_param.py", True),
+        ("vehicle/sensors/test_gps.py", False),
+    ],
+)  # fmt: skip
+def test_files_without_a_short_test_are_not_imported(path: str, is_long: bool) -> None:
+    assert suite.is_long_file(suite.TESTS / path) == is_long
+
+
+CONFTEST = """
+from tests import suite
+def pytest_addoption(parser): parser.addoption("--suite")
+def pytest_report_header(config): return f"suite: {suite.chosen(config)}"
+"""
+
+
+@pytest.mark.parametrize(("words", "expected"), [((), "short"), (("--suite=rest",), "rest"), (("test_one.py",), "all")])
+def test_pytest_alone_runs_the_short_suite_and_named_files_whole(
+    tmp_path: Path, words: tuple[str, ...], expected: str
+) -> None:
+    (tmp_path / "conftest.py").write_text(CONFTEST)
+    (tmp_path / "pytest.ini").write_text(f"[pytest]\ntestpaths = .\npythonpath = {suite.TESTS.parent}\n")
+    (tmp_path / "test_one.py").write_text("def test_one(): pass\n")
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=True)
+    assert f"suite: {expected}\n" in done.stdout
