@@ -13,7 +13,7 @@ from tests.docs_blocks.terminal import Terminal
 
 ADDRESS = "https://YOUR-COPY-OF-THIS-REPOSITORY"
 """What README writes for the address of a repository; git is told that it is this checkout."""
-PATIENCE = 1500.0
+PATIENCE = 3600.0
 """s for a line: packages are fetched and installed, and the tests run."""
 USER = "stranger"
 SEARCH_PATH = "/usr/local/bin:/usr/bin:/bin"
