@@ -89,7 +89,7 @@ class SigningCounts(msgspec.Struct, frozen=True):
     unsigned: int = 0
     """Without a signature where one is required."""
     too_old: int = 0
-    """The first of their stream, and more than a minute behind our clock."""
+    """The first of their stream and more than a minute behind our clock, or more than a day ahead of the right time."""
 
 
 class GuardReport(msgspec.Struct, frozen=True):
@@ -196,6 +196,14 @@ class PlaceKeeper(Protocol):
     @property
     def reserved_ids(self) -> tuple[int, int] | None:
         """System and component id of the ground station in control, or None."""
+
+
+@runtime_checkable
+class TimeTeller(Protocol):
+    """A core that answers senders who sign with a wrong time, so that they learn the right one."""
+
+    def tell_time(self, peer: Peer, now: float) -> None:
+        """Send one HEARTBEAT to a sender whose frames are genuine and not accepted."""
 
 
 @runtime_checkable

@@ -25,7 +25,9 @@ from link.core import (
     RestingCore,
     SendGuard,
     SendListener,
+    TimeTeller,
 )
+from link.protocol.channel import Channel
 from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
 from link.routing.router import Delivery, Router
@@ -80,6 +82,7 @@ class Runner:
         self._may_send = core.may_send if isinstance(core, SendGuard) else None
         self._on_sent = sent
         self._keeper = core if isinstance(core, PlaceKeeper) else None
+        self._teller = core if isinstance(core, TimeTeller) else None
         self._resting = core if isinstance(core, RestingCore) else None
         self._rest: float | None = None
         """s between ticks while the core rests."""
@@ -237,7 +240,9 @@ class Runner:
             return
         for data, address in received:
             now = loop.time()  # of each: a change behind a repeat moves the ramps in this call, not a cycle later
-            self._hand_over(self._links[index].channel.receive(data, address, now), now)
+            channel = self._links[index].channel
+            self._hand_over(channel.receive(data, address, now), now)
+            self._tell_time(channel, now)
         self._flush()
         self._shorten_rest()
         if self._router:  # after our own replies, which go first
@@ -251,6 +256,12 @@ class Runner:
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
             self._core.receive(received, now)
+
+    def _tell_time(self, channel: Channel, now: float) -> None:
+        untimely = channel.pop_untimely()
+        if self._teller is not None:
+            for peer in untimely:
+                self._teller.tell_time(peer, now)
 
     def _tick(self) -> None:
         self._guard(self._run_tick)

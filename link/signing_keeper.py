@@ -14,6 +14,7 @@ from link.signing.keys import KeyRing
 from link.signing.memory_file import load_memory, save_memory
 from link.signing.role import Role
 from link.signing.signing import Signing, SigningMemory
+from link.signing.system_clock import is_synchronized
 
 log = logging.getLogger(__name__)
 
@@ -37,11 +38,16 @@ class SigningKeeper:
         *,
         policy: SigningPolicy = SIGNED_ONLY,
         wall: Callable[[], float] = time.time,
+        synchronized: Callable[[], bool] = is_synchronized,
     ) -> None:
-        """Read the memory at `path`; None: nothing is kept. `policy`: of all links. Raises MemoryFileError."""
+        """Read the memory at `path`; None: nothing is kept. `policy`: of all links. Raises MemoryFileError.
+
+        `synchronized` returns whether the operating system knows the right time.
+        """
         self._policy = policy
         self._path = path
         self._wall = wall
+        self._synchronized = synchronized
         self._worker = Worker("signing", 2)
         self._store_due = now
         """At once: from now on a crash leaves more than the last run did."""
@@ -49,7 +55,7 @@ class SigningKeeper:
         self._stored_at = -NEW_STREAM_PERIOD
         self._failed = False
         memory = load_memory(path) if path is not None else None
-        self.signing = Signing(ring, wall=wall(), now=now, memory=memory)
+        self.signing = Signing(ring, wall=wall(), now=now, memory=memory, synchronized=synchronized())
 
     def guard(self, index: int) -> SigningGuard | None:
         """Return the guard of the link `index`; None while there is no key and nothing unsigned is refused."""
@@ -59,7 +65,7 @@ class SigningKeeper:
 
     def update(self, now: float) -> None:
         """Follow the computer's clock, and store what is due. Call it once a second."""
-        self.signing.update(self._wall(), now)
+        self.signing.update(self._wall(), now, synchronized=self._synchronized())
         if not self.signing.ring.keys:
             return
         streams = len(self.signing.verifier.streams.newest)

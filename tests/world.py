@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.core import Core, EarlyActor, Outgoing, RestingCore, SendListener
+from link.core import Core, EarlyActor, Outgoing, RestingCore, SendListener, TimeTeller
 from link.protocol.channel import Channel
 from link.runner import REPORT_PERIOD
 from link.transport.memory import LossyPipe
@@ -51,7 +51,7 @@ class Host:
         if now >= self.report_due:
             self.report_due = now + REPORT_PERIOD
             self.channel.expire_peers(now)
-            self.core.observe([self.channel.report()], now)
+            self.core.observe([self.channel.report(now=now)], now)
         self.core.tick(now)
         self.rest = self.resting.rest_period if self.resting is not None else None
         self.tick_due = max(self.tick_due + (self.period if self.rest is None else self.rest), now)
@@ -62,6 +62,9 @@ class Host:
             return
         for received in self.channel.receive(data, address, now):
             self.core.receive(received, now)
+        for peer in self.channel.pop_untimely():
+            if isinstance(self.core, TimeTeller):
+                self.core.tell_time(peer, now)
         self.shorten_rest(now)
 
     def shorten_rest(self, now: float) -> None:

@@ -16,7 +16,7 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from link.core import Core, LinkReport, Outgoing, Received
+from link.core import Core, LinkReport, Outgoing, Peer, PlaceKeeper, Received, TimeTeller
 from vehicle.drive.gate import Outputs
 from vehicle.motors import MotorError, Motors, StopPressedError
 from vehicle.readings import Readings
@@ -29,7 +29,7 @@ MOTOR_RETRY_TIME = 1.0
 bus, and must not be tried so often that the bus stays busy."""
 
 
-class Controller(Core, Protocol):
+class Controller(Core, TimeTeller, PlaceKeeper, Protocol):
     """Decides the motor outputs; vehicle.rover.Rover is one."""
 
     @property
@@ -175,6 +175,15 @@ class ControlLoop:
         if self._drivetrain.powered or self._retry_due is not None:
             return None
         return self._controller.rest_period(self._cycled)
+
+    @property
+    def reserved_ids(self) -> tuple[int, int] | None:
+        """Ids of the ground station in control, for which each link keeps places."""
+        return self._controller.reserved_ids
+
+    def tell_time(self, peer: Peer, now: float) -> None:
+        """Answer a sender who signs with a wrong time with a HEARTBEAT."""
+        self._guard(lambda: self._controller.tell_time(peer, now), now)
 
     def receive(self, received: Received, now: float) -> None:
         """Act on one message, down to the motors. A cycle that a rest has left out comes before it."""

@@ -8,7 +8,7 @@ from dialects.enums import Severity
 from dialects.messages import target_system
 from dialects.modes import Mode
 from dialects.traits import is_stop
-from link.core import LinkReport, Outgoing, Received
+from link.core import LinkReport, Outgoing, Peer, Received
 from link.protocol.rate import SenderLimit
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.autonomy.navigator import Navigator
@@ -165,6 +165,11 @@ class Rover:
             self._act(effect, now)
         if effect is _MOTION and not received.may_ask:
             self._show_stop(received, now)
+
+    def tell_time(self, peer: Peer, now: float) -> None:
+        """Answer a sender who signs with a wrong time with a HEARTBEAT, as `link.core.TimeTeller` says."""
+        if self._safety.state is not _OFF:
+            self._outbox.add([Outgoing(build_status.heartbeat(self._build_view(now)), peer)])
 
     def tick(self, now: float) -> None:
         """Run one control cycle. `messages_to_send` then builds the messages that are due."""

@@ -83,7 +83,8 @@ class StationSigning:
 
 
 def _policy(required: bool) -> SigningPolicy:
-    return SigningPolicy(None if required else Role.SET_UP, pinned_for=math.inf, greets_late=True)
+    unsigned = None if required else Role.SET_UP
+    return SigningPolicy(unsigned, pinned_for=math.inf, greets_late=True, announces=True)
 
 
 def _choose(ring: KeyRing, key: str | None, required: bool) -> KeyRing:

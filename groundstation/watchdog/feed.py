@@ -86,7 +86,7 @@ class WatchdogFeed:
                 outlet = link.transport.outlet(address) if system == vehicle.system else None
                 if outlet is not None and outlet.descriptor >= 0 and len(routes) < MAX_OUTLETS:
                     sequence = self._sequences.get((index, address), 0)
-                    way = link.channel.signing_way(address)
+                    way = link.channel.signing_way(address, now)
                     routes.append(DemandRoute(number, outlet.destination, sequence, way))
                     opened.append((outlet.descriptor, outlet.opened))
         keeps = opened == self._handed_over

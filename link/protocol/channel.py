@@ -14,7 +14,7 @@ from collections.abc import Hashable, Iterator, Sequence
 from dialects import codec
 from dialects.messages import FileTransferProtocol, Heartbeat, Message, RadioStatus
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
-from link.core import LinkReport, Outgoing, Received
+from link.core import LinkReport, Outgoing, Peer, Received
 from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, find_mismatches, noise_hint, sum_counts
 from link.protocol.framer import Framer
@@ -84,6 +84,7 @@ class Channel:
         self._bytes_received = 0
         self._duplicates = self._late = self._rate_limited = 0
         self._own_id = False
+        self._untimely: list[Peer] = []
         self._proven: set[int] = set()
         """Ids of messages that have arrived damaged and whole, so that the damage is no mismatch of dialects."""
         self._looked_at: frozenset[int] | None = None
@@ -107,6 +108,15 @@ class Channel:
         if state is None:
             return self._accept_stops(frames, address, now)
         return self._accept(state, state.framer.feed(data, now) if self._stream else frames, now)
+
+    def pop_untimely(self) -> list[Peer]:
+        """Return the senders of genuine frames whose time was refused, to be answered with a HEARTBEAT at once.
+
+        It is signed with their key and with the time that is accepted here: a ground station learns it so. One each
+        second and sender.
+        """
+        untimely, self._untimely = self._untimely, []
+        return untimely
 
     def tick(self, now: float) -> list[Received]:
         """Give up overdue partial frames and return the messages found behind them."""
@@ -160,6 +170,10 @@ class Channel:
             self._flow.handle_frame(frame[4], now)
         for frame in judged.late:
             self._greet(frame, address, now)
+        if judged.untimely and (key := guard.find_untimely(state, judged.untimely, address, now)) is not None:
+            sender = self._peers.admit_untimely(address, now)
+            guard.set_time(sender, key, now)
+            self._untimely.append(sender.peer)
         accepted = self._accept_stops(judged.refused, address, now) if guard.policy.open_stops else []
         passed = [each.frame for each in judged.passed]
         state = state or (self._peers.admit(address, passed, now, best_key(judged.passed)) if passed else None)
@@ -279,10 +293,10 @@ class Channel:
             self._sent.add(data)
             yield data, state.peer.address, sequence
 
-    def signing_way(self, address: Hashable) -> SigningWay | None:
+    def signing_way(self, address: Hashable, now: float) -> SigningWay | None:
         """Return how frames to an address are signed; None if they are not."""
         state = self._peers.get(address)
-        return None if self.guard is None or state is None else self.guard.way_to(state)
+        return None if self.guard is None or state is None else self.guard.way_to(state, now)
 
     # ---- reporting ----
 
@@ -316,7 +330,7 @@ class Channel:
             signing=find_signing(self._peers),
             verified=self.guard.find_verified(self._peers) if self.guard else frozenset(),
             refused=self.guard.counts() if self.guard else None,
-            guard=self.guard.report(self._peers) if self.guard else None,
+            guard=self.guard.report(self._peers, now) if self.guard else None,
             own_id=self._own_id,
             down=down or hint,
             capacity=self._capacity,

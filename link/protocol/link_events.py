@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 from dialects.enums import Severity
 from dialects.messages import MESSAGES, read_by_programs
-from link.core import LinkReport, SigningCounts
+from link.core import GuardReport, LinkReport, SigningCounts
 
 PROVEN_AFTER = 3
 """Refused frames that are no accident."""
+DAY = 86_400.0
+"""s by which a clock may be ahead without a word."""
 CONNECTING = "connecting"
 """State of a link before its first connection; not reported, because every connection starts so."""
 
@@ -23,7 +25,9 @@ def link_problem(report: LinkReport) -> str | None:
         return "another program sends with our system and component id: change --system of one of them"
     if report.dialect_mismatch:
         return _mismatch(report.dialect_mismatch)
-    return None if report.refused is None or report.verified else _refusals(report.refused)
+    if report.refused is None:
+        return None
+    return _far_ahead(report.guard) if report.verified else _refusals(report.refused)
 
 
 def _refusals(counts: SigningCounts) -> str | None:
@@ -31,10 +35,21 @@ def _refusals(counts: SigningCounts) -> str | None:
     if counts.bad >= PROVEN_AFTER:
         return "frames arrive signed with a key that is not here: compare the fingerprints of both ends"
     if counts.too_old >= PROVEN_AFTER:
-        return "signed frames arrive with an old time: set the clock of the computer that sends them"
+        return "signed frames arrive with a wrong time: set the clock of the computer that sends them"
     if counts.unsigned >= PROVEN_AFTER:
         return "frames without a signature are dropped: give the other end a key, or do not require it here"
     return None
+
+
+def _far_ahead(guard: GuardReport | None) -> str | None:
+    """Return whose clock is followed although it is more than a day ahead; SigningGuard follows it from now on."""
+    far = {} if guard is None else {system: s for system, s in guard.ahead.items() if s > DAY}
+    if not far:
+        return None
+    system, ahead = max(far.items(), key=lambda each: each[1])
+    return (
+        f"system {system} signs {ahead / DAY:.0f} days ahead of our clock, and we sign with its time: set both clocks"
+    )
 
 
 def _mismatch(names: Sequence[str]) -> str:

@@ -56,8 +56,9 @@ class PeerState(msgspec.Struct):
     """The key of its newest signed frame, with which ours to it are signed."""
     source: Hashable = None
     """Whose address it is: the name of an operator of a fleet, or a host."""
-    lead: int = 0
-    """How far its signing clock is ahead of ours, in timestamps of 10 us."""
+    clocks: dict[SigningKey, float] = msgspec.field(default_factory=dict)
+    """Key -> the largest difference of the timestamps that it has signed here to the monotonic clock, in timestamps of
+    10 us. Kept by key: behind a bridge, and behind a forged address, the clock of one key is not that of another."""
 
     @property
     def owner(self) -> Hashable:

@@ -10,7 +10,7 @@ control loses none: its ids keep as many places as are reserved for them.
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Hashable, Iterable, Iterator
 from enum import IntEnum
 from itertools import count
@@ -40,6 +40,10 @@ when others need them."""
 RUN_SILENCE = 1.5
 """s without a frame after which a run of an operator leaves its place to the operator's next one: a HEARTBEAT is
 missing. Below that five programs that run at once would take turns."""
+
+
+ANSWERED_MAX = 32
+"""Senders whose time was refused, and who are answered."""
 
 
 class Rank(IntEnum):
@@ -77,6 +81,8 @@ class PeerTable:
         """System and component id for which places are kept."""
         self.transient: PeerState | None = None
         """The newest sender of a stop for whom there was no place, so that the stop can be acknowledged."""
+        self.untimely: deque[PeerState] = deque(maxlen=ANSWERED_MAX)
+        """The newest senders without a place whose time was refused, so that they can be answered."""
         self._index = index
         self._stream = stream
         self._places = places
@@ -119,6 +125,14 @@ class PeerTable:
             self.transient = self._new(address, now)
         return self.transient
 
+    def admit_untimely(self, address: Hashable, now: float) -> PeerState:
+        """Remember the sender of a frame whose time was refused."""
+        known = next((each for each in self.untimely if each.peer.address == address), None)
+        if known is None:
+            known = self._new(address, now)
+            self.untimely.append(known)
+        return known
+
     def end_connection(self, address: Hashable) -> None:
         """Forget the peer whose connection has ended; a fixed one begins a new conversation."""
         state = self._states.get(address)
@@ -152,7 +166,7 @@ class PeerTable:
         found: list[PeerState] = []
         for peer in peers:
             if peer.link == self._index:
-                places = (self._states.get(peer.address), self.transient)
+                places = (self._states.get(peer.address), self.transient, *self.untimely)
                 found += [state for state in places if state is not None and state.peer == peer]
         return found
 

@@ -6,7 +6,8 @@ number of its sender. https://mavlink.io/en/guide/message_signing.html
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Hashable, Iterable, Sequence
 from typing import NamedTuple
 
 import msgspec
@@ -17,20 +18,25 @@ from dialects.traits import NEWEST_ONLY, URGENT
 from link.core import GuardReport, SigningCounts
 from link.protocol.frame import Frame
 from link.protocol.peer import PeerState, find_signing
-from link.signing.clock import TICKS
-from link.signing.keys import SigningKey
+from link.protocol.rate import SenderLimit
+from link.signing.clock import FOLLOWED_MAX, TICKS
+from link.signing.keys import MAX_KEYS, SigningKey
 from link.signing.role import Role
-from link.signing.signature import is_signed
+from link.signing.signature import is_signed, link_and_stamp
 from link.signing.signing import FrameSigner, Signing
-from link.signing.verifier import PINNED_FOR, Refusal, Verified
+from link.signing.verifier import AHEAD_MAX, PINNED_FOR, Refusal, Verified
 
 LANES = 4
 """Link ids of one link: a frame that overtakes others on the way (link/transport/priority_queue.py) must not make them
 look replayed. Each class that keeps its order has its own."""
 WATCHDOG_LANE = 128
 """First link id of the watchdog's process: it signs with the station's key and ids. Those below are the station's."""
-LEAD_MAX = 50 * 365 * 86400 * TICKS
-"""How far a receiver's clock may be ahead for us to follow it; beyond that its timestamps are nearly used up."""
+ANSWER_PERIOD = 1.0
+"""s between two HEARTBEATs to a sender whose time is refused, as between those to all others."""
+COPY_DELAY = 5 * TICKS
+"""How old a copy that a second link brings may be. A clock that is less behind catches up before it is missed."""
+ANSWERS_MAX = 32
+"""Senders that are answered so in that time."""
 
 
 class SigningPolicy(msgspec.Struct, frozen=True):
@@ -45,7 +51,10 @@ class SigningPolicy(msgspec.Struct, frozen=True):
     """s after a signed frame in which unsigned ones with the same ids are refused, whatever `unsigned` says."""
     greets_late: bool = False
     """A system whose clock is behind gets our frames all the same, from which it learns the time. Not for vehicles: an
-    old HEARTBEAT would bring anybody telemetry."""
+    old HEARTBEAT would bring anybody telemetry; they answer it with one of their own."""
+    announces: bool = False
+    """The clock of a system may be any time ahead. If that is more than a day, it is followed once a report has said
+    so. False, for vehicles: beyond a day it is refused by who knows the right time, and followed by who does not."""
 
 
 class SigningWay(NamedTuple):
@@ -60,7 +69,7 @@ class SigningWay(NamedTuple):
 
 UNSIGNED = 2
 """Place of unsigned frames in SigningCounts."""
-_PLACES = {Refusal.BAD_SIGNATURE: 0, Refusal.REPLAYED: 1, Refusal.TOO_OLD: 3}
+_PLACES = {Refusal.BAD_SIGNATURE: 0, Refusal.REPLAYED: 1, Refusal.TOO_OLD: 3, Refusal.TOO_NEW: 3}
 """Why a signed frame is refused -> its place in SigningCounts."""
 
 
@@ -86,6 +95,8 @@ class Judged(msgspec.Struct):
     refused: list[Frame] = msgspec.field(default_factory=list)
     late: list[Frame] = msgspec.field(default_factory=list)
     """Genuine HEARTBEATs of systems whose clock is behind."""
+    untimely: list[tuple[Frame, Refusal]] = msgspec.field(default_factory=list)
+    """Genuine frames whose time is refused."""
     radio: list[Frame] = msgspec.field(default_factory=list)
     """Unsigned RADIO_STATUS, for flow control only."""
 
@@ -100,6 +111,9 @@ class SigningGuard:
         self._signer = FrameSigner(signing.clock)
         self._refused: dict[int, list[int]] = {}
         """System -> how many of its frames were refused, in the order of SigningCounts."""
+        self._announced: set[SigningKey] = set()
+        """Keys of clocks that are more than a day ahead, of which a report has said so."""
+        self._answers = SenderLimit(ANSWER_PERIOD, ANSWERS_MAX)
 
     # ---- receiving ----
 
@@ -115,12 +129,14 @@ class SigningGuard:
 
     def _judge_signed(self, frame: Frame, found: Judged, now: float) -> None:
         number, system, component, _, raw = frame
-        verdict = self._signing.verifier.check(raw, system, component, now)
+        verdict = self._signing.verifier.check(raw, system, component, now, any_future=self.policy.announces)
         if isinstance(verdict, Verified):
             found.passed.append(Passed(frame, verdict.key.role, verdict))
             return
         if verdict is Refusal.TOO_OLD and self.policy.greets_late and number == Heartbeat.id:
             found.late.append(frame)
+        elif verdict is not Refusal.BAD_SIGNATURE and not self.policy.greets_late:
+            found.untimely.append((frame, verdict))
         self._refuse(frame, _PLACES[verdict], found)
 
     def _judge_unsigned(self, frame: Frame, found: Judged, now: float) -> None:
@@ -140,29 +156,77 @@ class SigningGuard:
     def _is_pinned(self, system: int, component: int, now: float) -> bool:
         return self._signing.verifier.is_pinned(system, component, now, self.policy.pinned_for)
 
-    def way_to(self, state: PeerState) -> SigningWay:
+    def way_to(self, state: PeerState, now: float) -> SigningWay:
         """Return how frames to a peer are signed, for the watchdog, which goes on in our place."""
-        key = state.key if self._signing.hash_of(state.key) else self._own_key
-        return SigningWay("" if key is None else key.name, state.lead, WATCHDOG_LANE + self._first_id // LANES)
+        key = self._key_for(state)
+        lead = self._lead(state, key, now)
+        return SigningWay("" if key is None else key.name, lead, WATCHDOG_LANE + self._first_id // LANES)
 
     def note_sender(self, state: PeerState, passed: Sequence[Passed], now: float) -> None:
-        """Remember which key a peer uses, and how far its clock is ahead."""
+        """Remember which key a peer uses, and the clock of that key."""
         for each in passed:
             if each.verified is not None:
-                state.key = each.verified.key
-                lead = each.verified.stamp - self._signing.clock.stamp(now)
-                if state.lead < lead <= LEAD_MAX:
-                    state.lead = lead
+                state.key, stamp = each.verified
+                self._note_clock(state, state.key, stamp, now)
+
+    def find_untimely(
+        self, state: PeerState | None, untimely: Sequence[tuple[Frame, Refusal]], address: Hashable, now: float
+    ) -> SigningKey | None:
+        """Return the key of a sender that is to be answered with our time; None: with nothing.
+
+        A replay at a place that has this key is a copy of a second link, unless it is older than those can be.
+        """
+        for frame, refusal in untimely:
+            key = self._signing.verifier.find_key(frame[4])
+            if key is None:
+                continue
+            behind = self._signing.verifier.time_of(key, now) - link_and_stamp(frame[4])[1]
+            if refusal is Refusal.REPLAYED and state is not None and state.key == key and behind < COPY_DELAY:
+                continue
+            return key if self._answers.allow((address, key), now) else None
+        return None
+
+    def set_time(self, state: PeerState, key: SigningKey, now: float) -> None:
+        """Sign to a peer with a key, and with the time that the frames of this key must have to be accepted here."""
+        state.key, state.clocks = key, {}
+        self._note_clock(state, key, self._signing.verifier.time_of(key, now), now)
+
+    def _note_clock(self, state: PeerState, key: SigningKey, stamp: int, now: float) -> None:
+        offset, before = stamp - now * TICKS, state.clocks.get(key, -math.inf)
+        if self._signing.clock.synchronized and self._ahead(state, key, now) > AHEAD_MAX and not self.policy.announces:
+            before = -math.inf  # from before the right time was known
+        if stamp <= FOLLOWED_MAX and offset > before:
+            if len(state.clocks) >= MAX_KEYS and key not in state.clocks:
+                state.clocks.clear()  # of keys that are gone
+            state.clocks[key] = offset
 
     # ---- sending ----
 
     def build_frame(self, number: int, payload: bytes, ids: tuple[int, int], state: PeerState, now: float) -> bytes:
         """Return a frame for a peer, with the key that it uses itself; unsigned if there is no key."""
-        key = self._signing.hash_of(state.key) or self._signing.hash_of(self._own_key)
-        if key is None:
+        key = self._key_for(state)
+        by = self._signing.hash_of(key)
+        if by is None:
             return codec.frame(number, payload, state.sequence, *ids)
         frame = codec.frame_to_sign(number, payload, state.sequence, *ids)
-        return self._signer.sign(frame, key, self._first_id + lane_of(number), state.lead, now)
+        return self._signer.sign(frame, by, self._first_id + lane_of(number), self._lead(state, key, now), now)
+
+    def _key_for(self, state: PeerState) -> SigningKey | None:
+        return state.key if self._signing.hash_of(state.key) else self._own_key
+
+    def _lead(self, state: PeerState, key: SigningKey | None, now: float) -> int:
+        """Return how far we sign ahead of our clock for a peer that uses a key, in timestamps."""
+        lead = self._ahead(state, key, now)
+        if lead <= AHEAD_MAX:
+            return lead
+        if self.policy.announces:
+            return lead if key in self._announced else 0
+        return 0 if self._signing.clock.synchronized else lead
+
+    def _ahead(self, state: PeerState, key: SigningKey | None, now: float) -> int:
+        if key is None or key not in state.clocks:
+            return 0
+        return max(0, round(state.clocks[key] + now * TICKS) - self._signing.clock.stamp(now))
 
     @property
     def _own_key(self) -> SigningKey | None:
@@ -174,14 +238,19 @@ class SigningGuard:
         """Return what was refused so far."""
         return SigningCounts(*map(sum, zip(*self._refused.values(), strict=True)))
 
-    def report(self, states: Iterable[PeerState]) -> GuardReport:
-        """Return what is known of the systems behind these peers, and of those that were refused."""
-        key = self._own_key
+    def report(self, states: Iterable[PeerState], now: float) -> GuardReport:
+        """Return what is known of the systems behind these peers, and of those that were refused.
+
+        From now on a clock that is more than a day ahead is followed: this says so.
+        """
+        states, key = list(states), self._own_key
+        leads = [(state, self._ahead(state, state.key, now)) for state in states]
+        self._announced.update(state.key for state, lead in leads if lead > AHEAD_MAX and state.key is not None)
         return GuardReport(
             key="" if key is None else f"{key.name} ({key.fingerprint})",
             refused={system: SigningCounts(*counts) for system, counts in self._refused.items()},
             behind=dict(self._signing.verifier.behind),
-            ahead={system: state.lead / TICKS for state in states if state.lead for system in state.systems},
+            ahead={system: lead / TICKS for state, lead in leads if lead for system in state.systems},
         )
 
     def find_verified(self, states: Iterable[PeerState]) -> frozenset[int]:

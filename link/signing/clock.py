@@ -2,8 +2,7 @@
 
 Rules: https://mavlink.io/en/guide/message_signing.html#timestamp. It begins with the computer's clock. If that is
 behind the time stored by the last run, or not set at all, it begins BOOT_LEAD after the stored time, as in ArduPilot.
-Then it adopts the timestamps of correctly signed frames; while the computer's clock is right it adopts none, so that a
-peer with a wrong clock cannot make it refuse the others.
+It takes over no timestamp of a peer: the time of each key is followed for that key alone (verifier.py).
 """
 
 from __future__ import annotations
@@ -16,8 +15,9 @@ BOOT_LEAD = 60 * TICKS
 """Added to the stored time if the computer's clock is behind it: more than passes between two stores."""
 PLAUSIBLE = (1_767_225_600 - EPOCH) * TICKS
 """2026-01-01: before it, a computer's clock has not been set."""
-ADOPTED_MAX = (4_102_444_800 - EPOCH) * TICKS
-"""2100-01-01: later timestamps are not adopted, because none could follow the last one of 2104."""
+DAY = 86_400 * TICKS
+FOLLOWED_MAX = (4_102_444_800 - EPOCH) * TICKS
+"""2100-01-01: later timestamps are not followed, because none could follow the last one of 2104."""
 
 
 def to_stamp(wall: float) -> int:
@@ -28,38 +28,34 @@ def to_stamp(wall: float) -> int:
 class SigningClock:
     """Gives timestamps of 10 us. `now` is s of a monotonic clock, `wall` Unix time in s."""
 
-    __slots__ = ("_adopted", "_offset", "_wall_offset", "trusted")
+    __slots__ = ("_offset", "_wall_offset", "synchronized", "trusted")
 
-    def __init__(self, wall: float, now: float, stored: int = 0) -> None:
-        """Begin. `stored`: the `own` time of the last run; 0 if there was none."""
+    def __init__(self, wall: float, now: float, stored: int = 0, *, synchronized: bool = False) -> None:
+        """Begin. `stored`: the `stamp` of the last run; 0 if there was none. `synchronized`: see update()."""
         computer = to_stamp(wall)
         self.trusted = computer >= max(stored, PLAUSIBLE)
         """The computer's clock is set, and not behind what was known before."""
         start = computer if self.trusted else max(computer, stored + BOOT_LEAD if stored else 0)
         self._offset = start - now * TICKS
         self._wall_offset = computer - now * TICKS
-        self._adopted = 0.0
+        self.synchronized = synchronized and self.trusted
+        """This is the right time: the operating system says so, and it is not behind what was known before."""
 
-    def update(self, wall: float, now: float) -> None:
-        """Follow the computer's clock forward; it may have been set. Call it once a second."""
+    def update(self, wall: float, now: float, *, synchronized: bool = False) -> None:
+        """Follow the computer's clock forward; it may have been set. Call it once a second.
+
+        `synchronized`: the operating system keeps that clock right by a source of time. A computer without a battery
+        for its clock begins with the time of its last shutdown, which looks like a clock that is set.
+        """
         computer = to_stamp(wall)
         self._wall_offset = computer - now * TICKS
         if self._wall_offset >= self._offset:
-            self._adopted = max(0.0, self._offset + self._adopted - self._wall_offset)
             self._offset = self._wall_offset
             self.trusted = self.trusted or computer >= PLAUSIBLE
-
-    def adopt(self, stamp: int, now: float) -> None:
-        """Take over the timestamp of a correctly signed frame, unless the computer's clock is right."""
-        if not self.trusted and self.stamp(now) < stamp <= ADOPTED_MAX:
-            self._adopted = stamp - now * TICKS - self._offset
+        self.synchronized = synchronized and self.trusted and self._wall_offset >= self._offset
 
     def stamp(self, now: float) -> int:
         """Return the time, as a timestamp."""
-        return int(now * TICKS + self._offset + self._adopted)
-
-    def own(self, now: float) -> int:
-        """Return the time without what was adopted: the value to store, so that no peer's wrong clock is kept."""
         return int(now * TICKS + self._offset)
 
     def ahead(self, now: float) -> float:

@@ -9,7 +9,7 @@ import msgspec
 from link.runtime.whole_file import PRIVATE, replace_file
 from link.signing.signature import STAMP_MAX
 from link.signing.signing import SigningMemory
-from link.signing.streams import MAX_STREAMS, Stream
+from link.signing.streams import MAX_SPANS, MAX_STREAMS, Span, Stream
 
 FILE = "signing.json"
 """Name of the file, beside the key file."""
@@ -27,6 +27,8 @@ class _Content(msgspec.Struct, forbid_unknown_fields=True):
     """Fingerprint, system, component, link id, newest timestamp."""
     floors: dict[str, int]
     ended: bool = False
+    spans: list[tuple[str, int, int]] = []
+    """Fingerprint, and the timestamps after and until which nothing is accepted. Files of older programs have none."""
 
 
 def load_memory(path: Path) -> SigningMemory:
@@ -43,16 +45,20 @@ def load_memory(path: Path) -> SigningMemory:
     except (msgspec.DecodeError, UnicodeDecodeError):
         raise MemoryFileError(f"{path}: damaged; remove it, once the computer's clock is right") from None
     stamps = [content.stamp, *content.floors.values(), *(row[4] for row in content.streams)]
-    if not all(0 <= stamp <= STAMP_MAX for stamp in stamps) or len(content.streams) > MAX_STREAMS:
+    stamps += [stamp for row in content.spans for stamp in row[1:]]
+    if not all(0 <= stamp <= STAMP_MAX for stamp in stamps) or not _fits(content):
         raise MemoryFileError(f"{path}: damaged; remove it, once the computer's clock is right")
-    return SigningMemory(
-        content.stamp, {Stream(*row[:4]): row[4] for row in content.streams}, content.floors, content.ended
-    )
+    newest, spans = {Stream(*row[:4]): row[4] for row in content.streams}, tuple(Span(*row) for row in content.spans)
+    return SigningMemory(content.stamp, newest, content.floors, spans, content.ended)
 
 
 def save_memory(path: Path, memory: SigningMemory) -> None:
     """Write the file, whole and for its user only. Raises OSError."""
     rows = [(*stream, stamp) for stream, stamp in memory.newest.items()]
-    content = _Content(memory.stamp, rows, dict(memory.floors), memory.ended)
+    content = _Content(memory.stamp, rows, dict(memory.floors), memory.ended, list(memory.spans))
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     replace_file(path, msgspec.json.encode(content), mode=PRIVATE, durable=True, folders_owner=True)
+
+
+def _fits(content: _Content) -> bool:
+    return len(content.streams) <= MAX_STREAMS and len(content.spans) <= MAX_SPANS

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from link.signing.clock import TICKS, SigningClock
 from link.signing.keys import KeyRing, SigningKey
 from link.signing.signature import STAMP_MAX, SecretHash
-from link.signing.streams import Stream, StreamTable
-from link.signing.verifier import NEW_STREAM_WINDOW, Verifier
+from link.signing.streams import Span, Stream, StreamTable
+from link.signing.verifier import AHEAD_MAX, NEW_STREAM_WINDOW, Verifier
 
 CRASH_TIME = NEW_STREAM_WINDOW / TICKS
 """s after a start for which frames from before a crash could be young enough. With a clock that is not set nothing
@@ -26,6 +26,8 @@ class SigningMemory:
     newest: Mapping[Stream, int] = field(default_factory=dict)
     floors: Mapping[str, int] = field(default_factory=dict)
     """Of streams that lost their place (streams.py)."""
+    spans: tuple[Span, ...] = ()
+    """Of clocks that were years ahead (streams.py)."""
     ended: bool = False
     """The run has ended in order: nothing was accepted after this."""
 
@@ -33,14 +35,27 @@ class SigningMemory:
 class Signing:
     """Keys, clock and streams of one program. `wall`: Unix time in s; `now`: s of a monotonic clock."""
 
-    def __init__(self, ring: KeyRing, *, wall: float, now: float, memory: SigningMemory | None = None) -> None:
+    def __init__(
+        self,
+        ring: KeyRing,
+        *,
+        wall: float,
+        now: float,
+        memory: SigningMemory | None = None,
+        synchronized: bool = False,
+    ) -> None:
+        """Go on from `memory`. `synchronized`: see SigningClock.update()."""
         kept = memory or SigningMemory()
-        self.clock = SigningClock(wall, now, kept.stamp)
+        self.clock = SigningClock(wall, now, kept.stamp, synchronized=synchronized)
         self.ring = ring
         crashed = self.clock.trusted and kept.stamp > 0 and not kept.ended
-        streams, crash_until = StreamTable(kept.newest, kept.floors), now + CRASH_TIME if crashed else -math.inf
+        streams, crash_until = (
+            StreamTable(kept.newest, kept.floors, kept.spans),
+            now + CRASH_TIME if crashed else -math.inf,
+        )
         self.verifier = Verifier(ring.keys, self.clock, streams, crash_until=crash_until)
         self._hashes = _hash_all(ring)
+        self._heal(now)
 
     def set_ring(self, ring: KeyRing) -> None:
         """Use these keys from now on, for example after one was withdrawn."""
@@ -48,14 +63,18 @@ class Signing:
         self._hashes = _hash_all(ring)
         self.verifier.set_keys(ring.keys)
 
-    def update(self, wall: float, now: float) -> None:
-        """Follow the computer's clock. Call it once a second."""
-        self.clock.update(wall, now)
+    def update(self, wall: float, now: float, *, synchronized: bool = False) -> None:
+        """Follow the computer's clock. Call it once a second. `synchronized`: see SigningClock.update()."""
+        before = self.clock.synchronized
+        self.clock.update(wall, now, synchronized=synchronized)
+        if not before:
+            self._heal(now)
 
     def memory(self, now: float, *, ended: bool = False) -> SigningMemory:
         """Return what to keep for the next run. `ended`: this one accepts nothing more."""
         streams = self.verifier.streams
-        return SigningMemory(self.clock.own(now), dict(streams.newest), dict(streams.floors), ended)
+        newest, floors, spans = dict(streams.newest), dict(streams.floors), tuple(streams.spans)
+        return SigningMemory(self.clock.stamp(now), newest, floors, spans, ended)
 
     def hash_of(self, key: SigningKey | None) -> SecretHash | None:
         """Return what signs with a key of the ring; None without a key, or if the ring no longer has its secret.
@@ -63,6 +82,11 @@ class Signing:
         A key that has the name of one that was removed is another key.
         """
         return None if key is None else self._hashes.get(key.secret)
+
+    def _heal(self, now: float) -> None:
+        """End what a clock of years ahead has left behind, as soon as the right time is known."""
+        if self.clock.synchronized:
+            self.verifier.streams.heal(self.clock.stamp(now), AHEAD_MAX)
 
 
 def _hash_all(ring: KeyRing) -> dict[bytes, SecretHash]:

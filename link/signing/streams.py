@@ -6,6 +6,9 @@ out that of another with timestamps of the future. Only correctly signed frames 
 The table has MAX_STREAMS places. When it is full, the key with the most streams loses the one whose newest timestamp is
 the oldest, and from then on this key begins no stream at or before that timestamp: what was accepted once is never
 accepted again, and a key with few streams loses none to a key that opens many.
+
+A timestamp of years ahead would end a stream for good. Once the right time is known, such a stream goes back to it
+(`heal`), and the timestamps before its newest one are refused for ever.
 """
 
 from __future__ import annotations
@@ -15,6 +18,10 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 MAX_STREAMS = 64
+MAX_SPANS = 16
+"""Spans of timestamps that are refused for ever; of more the oldest are forgotten."""
+SPAN = 30 * 86_400 * 100_000
+"""Length of a span: 30 days. A clock that is years ahead is set right before long."""
 
 
 class Stream(NamedTuple):
@@ -27,16 +34,32 @@ class Stream(NamedTuple):
     link_id: int
 
 
+class Span(NamedTuple):
+    """Timestamps of one key that are refused for ever, because its clock was years ahead when it used them."""
+
+    key: str
+    """Fingerprint."""
+    after: int
+    until: int
+
+
 class StreamTable:
     """Newest timestamp of each stream."""
 
-    def __init__(self, newest: Mapping[Stream, int] | None = None, floors: Mapping[str, int] | None = None) -> None:
+    def __init__(
+        self,
+        newest: Mapping[Stream, int] | None = None,
+        floors: Mapping[str, int] | None = None,
+        spans: Iterable[Span] = (),
+    ) -> None:
         self.newest: dict[Stream, int] = {}
         self.stored: set[Stream] = set()
         """Those of the last run that have brought nothing in this one."""
         self._counts: Counter[str] = Counter()
         self.floors: dict[str, int] = dict(floors or {})
         """Fingerprint -> the newest timestamp of the streams that lost their place."""
+        self.spans: list[Span] = list(spans)
+        """Oldest first."""
         for stream, stamp in (newest or {}).items():
             self.record(stream, stamp)
         self.stored.update(self.newest)
@@ -44,7 +67,34 @@ class StreamTable:
     def is_replay(self, stream: Stream, stamp: int) -> bool:
         """Return whether a timestamp is not newer than all of its stream."""
         last = self.newest.get(stream)
-        return stamp <= (self.floors.get(stream.key, -1) if last is None else last)
+        if stamp <= (self.floors.get(stream.key, -1) if last is None else last):
+            return True
+        return bool(self.spans) and any(
+            each.after < stamp <= each.until for each in self.spans if each.key == stream.key
+        )
+
+    def newest_of(self, key: str) -> int:
+        """Return the newest timestamp of a key; -1 if there is none."""
+        stamps = (stamp for stream, stamp in self.newest.items() if stream.key == key)
+        return max(max(stamps, default=-1), self.floors.get(key, -1))
+
+    def heal(self, right: int, limit: int) -> None:
+        """Set the streams whose newest timestamp is more than `limit` ahead of the `right` time back to that time."""
+        for stream, stamp in self.newest.items():
+            if stamp > right + limit:
+                self._add_span(stream.key, right + limit, stamp)
+                self.newest[stream] = right
+        for key, stamp in self.floors.items():
+            if stamp > right + limit:
+                self._add_span(key, right + limit, stamp)
+                self.floors[key] = right
+
+    def _add_span(self, key: str, least: int, until: int) -> None:
+        after = max(least, until - SPAN)
+        kept = [each for each in self.spans if each.key != key or each.until < after or until < each.after]
+        joined = [each for each in self.spans if each not in kept]
+        after, until = min([after, *(each.after for each in joined)]), max([until, *(each.until for each in joined)])
+        self.spans = [*kept, Span(key, after, until)][-MAX_SPANS:]
 
     def record(self, stream: Stream, stamp: int) -> None:
         """Note the newest timestamp of a stream."""
@@ -64,6 +114,7 @@ class StreamTable:
         kept = set(fingerprints)
         self.newest = {stream: stamp for stream, stamp in self.newest.items() if stream.key in kept}
         self.floors = {key: stamp for key, stamp in self.floors.items() if key in kept}
+        self.spans = [each for each in self.spans if each.key in kept]
         self._counts = Counter(stream.key for stream in self.newest)
 
     def _evict(self) -> None:

@@ -30,10 +30,14 @@ class Script:
         self.calls: list[str] = []
         self.fault: BaseException | None = None
         self.idle = False
+        self.reserved_ids: tuple[int, int] | None = None
 
     def receive(self, received: Received, now: float) -> None:
         self._happen("receive")
         self.outputs = self.next or self.outputs
+
+    def tell_time(self, peer: Peer, now: float) -> None:
+        self._happen("tell_time")
 
     def sense(self, readings: Readings, now: float) -> None:
         self._happen("sense")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from link.core import Outgoing
+from link.core import Outgoing, Peer, PlaceKeeper, TimeTeller
 from tests.vehicle.script import AHEAD, HEARTBEAT, MESSAGE, OFF, TURN, Script, driving, machine
 from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.drive.gate import Outputs
@@ -75,6 +75,21 @@ def test_off_takes_the_power_once() -> None:
 def test_passes_on_what_the_rover_says() -> None:
     body, _, _ = machine()
     assert body.messages_to_send() == [Outgoing(HEARTBEAT)]
+
+
+def test_the_links_reserve_places_for_the_driver_of_the_rover() -> None:
+    """The runner asks the loop, not the rover: without this the ids in control had no places."""
+    body, mind, _ = machine()
+    assert isinstance(body, PlaceKeeper)
+    mind.reserved_ids = (255, 190)
+    assert body.reserved_ids == (255, 190)
+
+
+def test_a_sender_with_a_wrong_time_is_answered_by_the_rover() -> None:
+    body, mind, _ = machine()
+    assert isinstance(body, TimeTeller)
+    body.tell_time(Peer(0, "here"), 0.0)
+    assert mind.calls == ["tell_time"]
 
 
 def test_refuses_a_driver_with_another_number_of_motors() -> None:

@@ -145,7 +145,7 @@ def test_a_vehicle_that_has_signed_is_believed_only_while_it_signs(keys: Path, r
         (SigningCounts(), None),
         (SigningCounts(bad=2), None),
         (SigningCounts(bad=3), "signed with a key that is not here"),
-        (SigningCounts(too_old=3), "with an old time"),
+        (SigningCounts(too_old=3), "with a wrong time"),
         (SigningCounts(unsigned=3), "without a signature are dropped"),
     ],
 )

@@ -29,7 +29,7 @@ def test_a_vehicle_that_requires_signing_obeys_the_watchdog(ahead: int) -> None:
     ground, shared = station(keep(DRIVER)), keep(DRIVER)
     ground.receive(signed(stamp=NOW + ahead, ids=(1, 1)), HERE, 0.0)
     assert far.receive(send(ground, now=0.0)[0], THERE, 0.0)
-    way = ground.signing_way(HERE)
+    way = ground.signing_way(HERE, 0.0)
     report = StationReport(ids=(255, 190), vehicles=(ROVER,), routes=(DemandRoute(0, None, 3, way),))
     watchdog = Watchdog(shared)
     watchdog.handle_report(decode_report(encode_report(report)), 0.1)

@@ -255,7 +255,7 @@ def test_a_system_whose_key_was_replaced_under_its_name_is_not_verified_and_gets
     assert channel.report().verified == frozenset()
     (after, _, _), *_ = channel.send(Outgoing(HEARTBEAT), now=0.0)
     assert SecretHash(WATCHER.secret).matches(after), "ours, as to a peer that has not signed"
-    way = channel.signing_way(HERE)
+    way = channel.signing_way(HERE, 0.0)
     assert way is not None
     assert way.key == WATCHER.name
 

@@ -220,7 +220,7 @@ def test_systems_are_verified_while_they_sign_with_a_key_of_ours() -> None:
 def test_without_a_guard_nothing_is_signed() -> None:
     channel = vehicle()
     channel.receive(heartbeat(0), HERE, 0.0)
-    assert channel.signing_way(HERE) is None
+    assert channel.signing_way(HERE, 0.0) is None
 
 
 # ---- headers ----

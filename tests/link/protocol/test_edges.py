@@ -39,7 +39,7 @@ def test_the_watchdog_signs_as_the_peer_does_on_a_link_id_of_its_own() -> None:
     channel = vehicle(keep(DRIVER, WATCHER), index=2)
     channel.receive(signed(key=WATCHER, stamp=NOW + 1000), HERE, 0.0)
     channel.receive(signed(stamp=NOW, ids=(254, 190)), THERE, 0.0)
-    watcher, driver = channel.signing_way(HERE), channel.signing_way(THERE)
+    watcher, driver = channel.signing_way(HERE, 0.0), channel.signing_way(THERE, 0.0)
     assert watcher == (WATCHER.name, 1000, WATCHDOG_LANE + 2)
     assert driver == (DRIVER.name, 0, WATCHDOG_LANE + 2)
     assert WATCHDOG_LANE == 128 == 32 * LANES, "bytes 0 to 127 are the station's"

@@ -19,10 +19,11 @@ from link.protocol.peer import MAX_SOURCES, PeerState, _buckets
 from link.protocol.peer_table import MAX_PEERS, PEER_SILENCE, RESERVED_PLACES
 from link.protocol.rate import RateMeter
 from link.protocol.sent_frames import FRAMES_MAX
-from link.protocol.signing_guard import LANES, LEAD_MAX, WATCHDOG_LANE
+from link.protocol.signing_guard import LANES, WATCHDOG_LANE
 from link.signing.signature import link_and_stamp
+from link.signing.verifier import AHEAD_MAX
 from tests.link.frames import frame, heartbeat
-from tests.link.signing.signed import DRIVER, HEARTBEAT, HERE, NOW, THERE, keep, signed, station
+from tests.link.signing.signed import DRIVER, HEARTBEAT, HERE, NOW, THERE, keep, send, signed, station
 from tests.link.signing.signed import vehicle as guarded
 
 
@@ -43,7 +44,7 @@ def test_what_counts_as_proof_and_as_silence() -> None:
 
 def test_link_ids_of_a_byte_are_shared_by_32_links_and_their_watchdogs() -> None:
     assert (LANES, WATCHDOG_LANE) == (4, 128)
-    assert LEAD_MAX == 50 * 365 * 24 * 3600 * 100_000, "fifty years of 10 us"
+    assert AHEAD_MAX == 86_400 * 100_000, "a day of 10 us"
 
 
 # ---- rates ----
@@ -203,12 +204,12 @@ def test_each_refused_sender_has_its_own_counts() -> None:
     assert report.guard.refused == {100: SigningCounts(unsigned=1), 101: SigningCounts(unsigned=3)}
 
 
-def test_the_clock_of_a_peer_is_followed_for_fifty_years() -> None:
-    for lead, followed in ((LEAD_MAX - 1, True), (LEAD_MAX, True), (LEAD_MAX + 1, False)):
-        channel = station(keep(DRIVER))
-        channel.receive(signed(stamp=NOW + lead, ids=(1, 1)), HERE, 0.0)
-        (state,) = channel._peers
-        assert state.lead == (lead if followed else 0)
+def test_the_clock_of_a_peer_is_followed_until_2100() -> None:
+    until = (4_102_444_800 - 1_420_070_400) * 100_000
+    for stamp, followed in ((until - 1, True), (until, True), (until + 1, False)):
+        channel = guarded(keep(DRIVER))
+        channel.receive(signed(stamp=stamp), HERE, 0.0)
+        assert (link_and_stamp(send(channel)[0])[1] >= stamp) is followed
 
 
 def test_how_far_a_clock_is_ahead_is_reported_in_seconds_for_those_that_are() -> None:
@@ -234,4 +235,4 @@ def test_five_foreign_messages_are_named() -> None:
 def test_a_new_peer_has_sent_and_received_nothing() -> None:
     (state,) = vehicle(target=HERE)._peers
     assert isinstance(state, PeerState)
-    assert (state.sequence, state.lead, state.fixed, state.connected, state.silent) == (0, 0, True, False, True)
+    assert (state.sequence, state.clocks, state.fixed, state.connected, state.silent) == (0, {}, True, False, True)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from dialects.enums import Severity
-from link.core import LinkReport, SigningCounts
+from link.core import GuardReport, LinkReport, SigningCounts
 from link.protocol.channel import Channel
 from link.protocol.link_events import PROVEN_AFTER, LinkEvent, LinkEvents, UpDownEvents, link_problem
 
@@ -107,3 +107,12 @@ def test_a_link_that_comes_back_with_a_problem_is_back_first() -> None:
     told = [troubles.update(each) for each in (report(0, down="lost"), report(1, own_id=True), report(1, own_id=True))]
     assert [each and each.text for each in told[:2]] == ["lost", "connected"]
     assert "--system" in (told[2].text if told[2] else "")
+
+
+def test_a_clock_that_is_followed_for_more_than_a_day_is_named() -> None:
+    for ahead, named in ((86_400.0, False), (86_401.0, True)):
+        guard = GuardReport("laptop", ahead={1: ahead, 2: 5.0})
+        report = LinkReport("udpin:x", refused=SigningCounts(), verified=frozenset({1}), guard=guard)
+        text = link_problem(report)
+        assert (text == "system 1 signs 1 days ahead of our clock, and we sign with its time: set both clocks") is named
+    assert link_problem(LinkReport("udpin:x", refused=SigningCounts(), verified=frozenset({1}))) is None

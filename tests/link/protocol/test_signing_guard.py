@@ -232,10 +232,10 @@ def test_a_late_sender_gets_no_place_where_there_is_none() -> None:
 def test_the_watchdog_is_told_how_frames_to_a_peer_are_signed() -> None:
     channel = vehicle(keep(DRIVER))
     channel.receive(signed(), HERE, 0.0)
-    way = channel.signing_way(HERE)
+    way = channel.signing_way(HERE, 0.0)
     assert way is not None
     assert way.key == DRIVER.name
-    assert channel.signing_way(THERE) is None
+    assert channel.signing_way(THERE, 0.0) is None
 
 
 def test_a_signed_datagram_with_a_wrong_checksum_is_none() -> None:

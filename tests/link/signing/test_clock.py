@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.signing.clock import ADOPTED_MAX, BOOT_LEAD, TICKS, SigningClock, to_stamp
+from link.signing.clock import BOOT_LEAD, TICKS, SigningClock, to_stamp
 from tests.link.signing.signed import DAY, NOON, NOW
 
 
@@ -46,26 +46,23 @@ def test_a_clock_behind_the_stored_time_is_not_trusted() -> None:
         assert clock.stamp(0.0) == NOW + BOOT_LEAD
 
 
-def test_time_is_adopted_until_the_computers_clock_is_set() -> None:
+def test_the_right_time_is_known_when_the_system_says_so_and_it_is_not_behind() -> None:
+    assert not SigningClock(NOON, 0.0).synchronized
+    assert SigningClock(NOON, 0.0, synchronized=True).synchronized
+    assert not SigningClock(10.0, 0.0, synchronized=True).synchronized
+    assert not SigningClock(NOON, 0.0, stored=NOW + DAY, synchronized=True).synchronized
     clock = SigningClock(10.0, 0.0, stored=NOW - DAY)
-    clock.adopt(NOW, 0.0)
-    assert clock.stamp(1.0) == NOW + TICKS
-    clock.adopt(ADOPTED_MAX + 1, 1.0)
-    assert clock.stamp(1.0) == NOW + TICKS
-    clock.update(NOON + 10.0, 2.0)
-    assert clock.trusted
-    assert clock.stamp(2.0) == NOW + 10 * TICKS
-    clock.adopt(NOW + DAY, 2.0)
-    assert clock.stamp(2.0) == NOW + 10 * TICKS
+    for wall, synchronized, known in ((NOON + 1.0, False, False), (NOON + 2.0, True, True), (NOON - 3.0, True, False)):
+        clock.update(wall, abs(wall - NOON), synchronized=synchronized)
+        assert clock.synchronized is known
 
 
-@given(st.lists(st.tuples(st.floats(0.0, 100.0), st.floats(-1e9, 3e9), st.integers(0, ADOPTED_MAX)), max_size=20))
-def test_it_never_goes_back(steps: list[tuple[float, float, int]]) -> None:
+@given(st.lists(st.tuples(st.floats(0.0, 100.0), st.floats(-1e9, 3e9), st.booleans()), max_size=20))
+def test_it_never_goes_back(steps: list[tuple[float, float, bool]]) -> None:
     clock, now, last = SigningClock(NOON, 0.0), 0.0, 0
-    for pause, wall, stamp in steps:
+    for pause, wall, synchronized in steps:
         now += pause
         assert clock.stamp(now) >= last
-        clock.update(wall, now)
-        clock.adopt(stamp, now)
+        clock.update(wall, now, synchronized=synchronized)
         assert clock.stamp(now) >= last
         last = clock.stamp(now)
