@@ -25,13 +25,15 @@ MARKED = ("e2e", "interop")
 LONG = (
     "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "recipes", "soak", "test_examples.py",
     "dialects/extra", "dialects/test_build.py", "link/services/param/test_recorded_params.py",
-    "link/signing/test_c_library.py", "vehicle/cli/test_systemd_unit.py", "vehicle/machine",
-    "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
+    "link/signing/test_c_library.py", "vehicle/cli/test_motor_test.py", "vehicle/cli/test_systemd_unit.py",
+    "vehicle/machine", "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
     "vehicle/storage/test_tlog_files.py::test_a_real_card", "groundstation/cli/test_keys_verb.py",
     "groundstation/connect", "groundstation/export", "groundstation/gamepad", "groundstation/replay",
     "groundstation/station/test_file_transfers.py", "groundstation/station/test_freeze.py",
     "groundstation/station/test_recorded_traffic.py", "groundstation/test_foreign_missions.py",
-    "groundstation/vehicles/test_replay.py", "groundstation/verbs",
+    "groundstation/ui/test_escape_sequences.py", "groundstation/ui/test_exit.py", "groundstation/ui/test_hold.py",
+    "groundstation/ui/test_interpreter.py", "groundstation/ui/test_mouse.py", "groundstation/vehicles/test_replay.py",
+    "groundstation/verbs",
 )  # fmt: skip
 """Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, or need
 programs and packages that a clone alone does not have."""
@@ -44,7 +46,7 @@ MAIN_JOB = (
     "e2e/test_handover.py::test_given_control_stops", "e2e/test_serial_and_tcp.py::test_ground_station_killed",
     "e2e/test_serial_and_bridge.py", "vehicle/runtime/test_daemon.py::test_a_signal_while_driving",
     "vehicle/safety/test_estop_button.py", "groundstation/verbs/line", "groundstation/verbs/test_arm.py",
-    "groundstation/verbs/test_stops.py", "groundstation/ui/screens/test_drive.py",
+    "groundstation/verbs/test_stops.py",
 )  # fmt: skip
 """Tests that are in it all the same: starting, driving, every way to die, serial lines, the bridge, and the verbs that
 arm and stop."""
