@@ -24,16 +24,23 @@ MARKED = ("e2e", "interop")
 
 LONG = (
     "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "recipes", "soak", "test_examples.py",
-    "dialects/extra", "dialects/test_build.py", "link/services/param/test_recorded_params.py",
-    "link/signing/test_c_library.py", "vehicle/cli/test_motor_test.py", "vehicle/cli/test_systemd_unit.py",
+    "test_keys_to_motion.py::test_every_key_and_chord", "test_missions.py", "test_roaming.py",
+    "test_secure_by_default.py::test_no_data_becomes_code",
+    "dialects/extra", "dialects/test_build.py", "dialects/test_fingerprint.py::test_pytest_stops",
+    "link/bridge/test_bridge.py", "link/runtime/test_stdio.py", "link/services/param/test_recorded_params.py",
+    "link/signing/test_c_library.py", "link/signing/test_verifier.py::test_81",
+    "vehicle/accessories/test_accessory_missions.py", "vehicle/autonomy/mission", "vehicle/autonomy/modes",
+    "vehicle/autonomy/test_navigator.py", "vehicle/cli/test_motor_test.py", "vehicle/cli/test_systemd_unit.py",
+    "vehicle/commands/test_go_to.py", "vehicle/commands/test_params.py::test_what_could_not_be_saved_is_tried",
     "vehicle/machine", "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
-    "vehicle/storage/test_tlog_files.py::test_a_real_card", "groundstation/cli/test_keys_verb.py",
-    "groundstation/connect", "groundstation/export", "groundstation/gamepad", "groundstation/replay",
-    "groundstation/station/test_file_transfers.py", "groundstation/station/test_freeze.py",
+    "vehicle/storage/test_tlog_files.py::test_a_real_card",
+    "groundstation/cli/test_keys_verb.py", "groundstation/connect", "groundstation/export", "groundstation/gamepad",
+    "groundstation/replay", "groundstation/station/test_file_transfers.py", "groundstation/station/test_freeze.py",
     "groundstation/station/test_recorded_traffic.py", "groundstation/test_foreign_missions.py",
-    "groundstation/ui/test_escape_sequences.py", "groundstation/ui/test_exit.py", "groundstation/ui/test_hold.py",
-    "groundstation/ui/test_interpreter.py", "groundstation/ui/test_mouse.py", "groundstation/vehicles/test_replay.py",
-    "groundstation/verbs",
+    "groundstation/ui/screens", "groundstation/ui/test_escape_sequences.py", "groundstation/ui/test_exit.py",
+    "groundstation/ui/test_hold.py", "groundstation/ui/test_interpreter.py", "groundstation/ui/test_mouse.py",
+    "groundstation/vehicles/test_dialect_probe.py", "groundstation/vehicles/test_replay.py", "groundstation/verbs",
+    "groundstation/watchdog/test_watchdog.py::test_after_a_neutral_of_the_watchdog",
 )  # fmt: skip
 """Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, or need
 programs and packages that a clone alone does not have."""
