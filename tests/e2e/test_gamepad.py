@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from groundstation.gamepad.child import missing_package
-from groundstation.input.pad_stick import PAD_WINDOW
 from tests.e2e.programs import PATIENCE, GroundStation, Vehicle
 from tests.e2e.relay import Relay
 from tests.groundstation.gamepad.pads import FULL, Hand
@@ -103,10 +102,10 @@ def test_what_ends_a_drive_with_the_gamepad(rig: Rig) -> None:
     rig.sees("gamepad unplugged: neutral")
     rig.hand.do("plug Virtual")
 
-    at = rig.stops(PAD_WINDOW, lambda: rig.hand.send_signal(signal.SIGSTOP))
+    at = rig.stops(0.25, lambda: rig.hand.send_signal(signal.SIGSTOP))
     rig.hand.send_signal(signal.SIGCONT)  # the button and the stick are still held
     rig.station.look(1.0)
-    assert not rig.vehicle.moved_since(at + PAD_WINDOW + RAMP + SLACK + 0.5)
+    assert not rig.vehicle.moved_since(at + 0.25 + RAMP + SLACK + 0.5)
 
     rig.stops(0.0, lambda: rig.hand.send_signal(signal.SIGKILL))
     rig.sees("its reader has ended")

@@ -29,6 +29,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "vehicle/drive": _VEHICLE_TESTS,
     "vehicle/safety": _VEHICLE_TESTS,
     "link/protocol": ("tests/link/protocol",),
+    "link/signing": ("tests/link/signing", "tests/link/protocol/test_signing_guard.py"),
 }
 """Folders to mutate, those that decide whether the wheels turn and which frames count -> tests to run against them."""
 DESELECTED = ("tests/vehicle/safety/test_estop_button.py",)

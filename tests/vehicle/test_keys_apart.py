@@ -368,8 +368,8 @@ def test_any_mix_of_keys_clocks_and_restarts(first: tuple[float, bool], events: 
     assert not field.turning, "its silence stops it"
     field.replay()
     field.run(0.5)
-    assert not field.turning
     assert field.twice == []
+    assert not field.turning or field.excused, "demands without a session may come again after a crash"
 
 
 def play(field: Field, event: tuple[object, ...]) -> None:

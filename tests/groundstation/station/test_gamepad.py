@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from groundstation.input.pad_stick import PAD_WINDOW
 from groundstation.intents.driving import PAD, DriveKeyUp, DrivePad, EmergencyStop, ReleasePad, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
@@ -61,7 +60,7 @@ def test_a_button_whose_press_was_not_seen_does_not_drive() -> None:
 
 def test_a_reader_that_hangs_is_neutral_and_drives_again_only_after_a_press() -> None:
     cockpit = driven_cockpit()
-    cockpit.run(PAD_WINDOW)
+    cockpit.run(0.25)
     assert cockpit.operator.throttle == 0.0
     go_on(cockpit, 1.0)
     assert cockpit.operator.throttle == 0.0
@@ -73,9 +72,9 @@ def test_a_reader_that_hangs_is_neutral_and_drives_again_only_after_a_press() ->
 def test_frames_that_were_read_long_ago_do_not_drive() -> None:
     cockpit = driven_cockpit()
     for _ in range(20):
-        cockpit.do(DrivePad(1.0, 0.0, cockpit.now - PAD_WINDOW, repeat=True))
+        cockpit.do(DrivePad(1.0, 0.0, cockpit.now - 0.25, repeat=True))
         cockpit.run(PERIOD)
-    cockpit.do(DrivePad(1.0, 0.0, cockpit.now - PAD_WINDOW), DrivePad(1.0, 0.0, math.nan))
+    cockpit.do(DrivePad(1.0, 0.0, cockpit.now - 0.25), DrivePad(1.0, 0.0, math.nan))
     assert cockpit.operator.throttle == 0.0
 
 

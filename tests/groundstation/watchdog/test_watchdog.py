@@ -227,6 +227,18 @@ def test_it_ends_when_the_vehicle_is_disarmed_but_not_before_a_second_of_neutral
     assert watchdog.finished(101.1)
 
 
+def test_what_waited_before_the_first_neutral_does_not_end_it() -> None:
+    """An old report that the vehicle is disarmed, still in the socket when the station dies."""
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    watchdog.handle_message(2, heartbeat(armed=False), 100.0)
+    watchdog.handle_message(2, speed(0.0), 100.0)
+    sent(watchdog, 100.0, 0.1)
+    assert not watchdog.finished(101.1)
+    watchdog.handle_message(2, heartbeat(armed=False), 101.2)
+    assert watchdog.finished(101.2)
+
+
 def test_a_script_on_board_does_not_say_that_the_vehicle_is_disarmed() -> None:
     watchdog = watching(ARDUROVER)
     watchdog.handle_end(100.0)

@@ -83,6 +83,12 @@ def test_a_command_counts_only_under_its_role_and_class(wrong: str) -> None:
     assert TO_ROVER.read(wrong, ARM) is None
 
 
+@pytest.mark.parametrize("role", ["drive", "setup"])
+def test_a_lesser_frame_does_not_count_under_a_higher_role(role: str) -> None:
+    assert TO_ROVER.read(f"{BASE}/watch/cmd/COMMAND_LONG", DISARM) is not None
+    assert TO_ROVER.read(f"{BASE}/{role}/cmd/COMMAND_LONG", DISARM) is None
+
+
 def test_tokens() -> None:
     assert ALICE.read_token(ROVER.token("")) == "rover1"
     assert ROVER.read_token(ALICE.token("rover1")) == "alice/1"

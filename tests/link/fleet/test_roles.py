@@ -61,6 +61,13 @@ def test_what_each_frame_needs(sent: Frame, role: Role) -> None:
     assert needed_role(sent) is role
 
 
+@pytest.mark.parametrize("number", [42424, 42425, 42426])
+def test_a_compass_calibration_of_ardupilot_needs_setup(number: int) -> None:
+    """Its start, its acceptance and its end are of ArduPilot's dialect, which is not read here."""
+    for first in (0.0, 1.0, 7.0):
+        assert needed_role(command(number, first)) is Role.SET_UP
+
+
 def test_no_command_of_our_vehicle_needs_another_role_than_here() -> None:
     """The router would pass what the vehicle refuses, or refuse what the vehicle allows."""
     rows = Bench().rover.commands

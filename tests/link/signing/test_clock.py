@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.signing.clock import BOOT_LEAD, TICKS, SigningClock, to_stamp
+from link.signing.clock import PLAUSIBLE, TICKS, SigningClock, to_stamp
 from tests.link.signing.signed import DAY, NOON, NOW
 
 
@@ -13,6 +13,7 @@ def test_timestamps_are_10_us_since_2015() -> None:
     assert to_stamp(1_420_070_400.0) == 0
     assert to_stamp(1_420_070_401.5) == 150_000
     assert to_stamp(0.0) == 0
+    assert (100_000, to_stamp(1_767_225_600.0)) == (TICKS, PLAUSIBLE)
 
 
 def test_it_advances_with_time_and_not_with_frames() -> None:
@@ -43,7 +44,7 @@ def test_a_clock_behind_the_stored_time_is_not_trusted() -> None:
     for wall in (0.0, NOON - 86_400.0):
         clock = SigningClock(wall, 0.0, stored=NOW)
         assert not clock.trusted
-        assert clock.stamp(0.0) == NOW + BOOT_LEAD
+        assert clock.stamp(0.0) == NOW + 60 * TICKS
 
 
 def test_the_right_time_is_known_when_the_system_says_so_and_it_is_not_behind() -> None:

@@ -79,6 +79,16 @@ def test_ramp_down_passes_only_falling_values() -> None:
     assert judge(gate, (0.8, -0.8), Permit.RAMP_DOWN, FALL_TIME, 0.06) == ZERO
 
 
+@pytest.mark.parametrize("wheels", [(-0.51, 0.5), (0.5, -0.51), (-1.0, -1.0), (0.51, 0.5)])
+def test_a_ramp_to_neutral_grows_neither_forwards_nor_backwards(wheels: tuple[float, float]) -> None:
+    gate = Gate(2)
+    judge(gate, (0.5, 0.5), Permit.DRIVE, FALL_TIME, 0.0)
+    assert judge(gate, wheels, Permit.RAMP_DOWN, FALL_TIME, 0.02) == ZERO
+    gate = Gate(2)
+    judge(gate, (0.5, 0.5), Permit.DRIVE, FALL_TIME, 0.0)
+    assert judge(gate, (0.4, -0.1), Permit.RAMP_DOWN, FALL_TIME, 0.02).enabled
+
+
 def test_a_deceleration_that_takes_too_long_is_ended() -> None:
     gate = Gate(2)
     judge(gate, (1.0, 1.0), Permit.DRIVE, FALL_TIME, 0.0)
