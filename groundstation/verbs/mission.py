@@ -89,7 +89,8 @@ def check(kind: MissionType) -> Run:
             output.record(seq=number, here=here, vehicle=vehicle)
         name = session.vehicle.name
         if differing:
-            raise VerbError(ExitCode.DIFFERS, f"{name}: {count_text(len(differing))} differ from {options.file}")
+            differ = "differs" if len(differing) == 1 else "differ"
+            raise VerbError(ExitCode.DIFFERS, f"{name}: {count_text(len(differing))} {differ} from {options.file}")
         output.note(f"{name} has the {plan_name(kind)} of {options.file}, {count_text(len(plan.of(kind)))}")
         output.result(True, session.vehicle.system, items=len(plan.of(kind)))
         return ExitCode.DONE

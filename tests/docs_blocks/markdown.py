@@ -4,7 +4,7 @@ The comments are HTML, which a rendered page does not show, each directly above 
 
     <!-- on: rover -->            it is typed on that machine: a home folder of its own
     <!-- first: COMMANDS -->      what the text around it tells the reader to do before, or has assumed
-    <!-- ends: COMMAND -->        programs that stay and begin with this are ended before
+    <!-- ends: PROGRAM, ... -->   those that stay and whose command begins with this are ended before
     <!-- stays -->                its last command goes on, in this terminal, to the end of the page
     <!-- not run: KIND: WHY -->   it is explained and not run; KIND is a key of KINDS
     <!-- output of: COMMAND -->   the block is what that command, which a block before has run, printed

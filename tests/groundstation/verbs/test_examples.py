@@ -9,7 +9,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.command_doc import update
-from groundstation.verbs.examples import EXAMPLES
+from groundstation.verbs.examples import AUTOPILOT_EXAMPLES, EXAMPLES
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.table import ONLY, VERBS
 from tests.groundstation.foreign_vehicle import ForeignParam, ForeignVehicle
@@ -30,7 +30,7 @@ OF_HANDS = frozenset({"wp", "compass", "sticks"})
 """Words of examples that need more of a vehicle, and have tests of their own."""
 RUN = [
     words
-    for command, _ in EXAMPLES
+    for command, _ in (*EXAMPLES, *AUTOPILOT_EXAMPLES)
     if (words := shlex.split(command)[1:])[0] in {*VERBS} - ELSEWHERE and not OF_HANDS & {*words}
 ]
 CODES = {"watch": {0, 7}, "control give": {7}}
@@ -48,7 +48,7 @@ def test_the_document_is_generated() -> None:
 
 
 def test_every_verb_and_action_has_an_example() -> None:
-    shown = {name_of(words) for command, _ in EXAMPLES if (words := shlex.split(command)[1:])[0] in VERBS}
+    shown = {name_of(words) for command, _ in (*EXAMPLES, *AUTOPILOT_EXAMPLES) if (words := shlex.split(command)[1:])[0] in VERBS}
     assert {f"{verb} {action}".strip() for verb, actions in VERBS.items() for action in actions} - shown == set()
 
 

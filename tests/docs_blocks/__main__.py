@@ -1,0 +1,34 @@
+"""`python -m tests.docs_blocks docs/PAGE.md`: run the shell blocks of a page, in namespaces of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from tests.docs_blocks.machine import ROOT, Machines, why_not, within
+from tests.docs_blocks.page import Page
+
+INSIDE = "MAVHELM_DOCS_BLOCKS"
+
+
+def main(path: Path) -> int:
+    """Return 0 if all of them did what the page says."""
+    if INSIDE in os.environ:
+        page = Page(path, Machines(Path(os.environ[INSIDE])))
+        page.type_all()
+        print(*page.faults, sep="\n")
+        print(f"{path.name}: {page.ran} blocks run, {page.explained} explained, {len(page.faults)} faults")
+        return 1 if page.faults else 0
+    if reason := why_not():
+        print(reason)
+        return 2
+    with tempfile.TemporaryDirectory(prefix="mavhelm-docs-") as folder:
+        command = within(sys.executable, "-m", "tests.docs_blocks", str(path))
+        return subprocess.run(command, env={**os.environ, INSIDE: folder}, cwd=ROOT).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

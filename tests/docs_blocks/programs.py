@@ -1,0 +1,82 @@
+"""The table of programs that stay until they are ended, and of questions that programs ask.
+
+A command that is in no row must end by itself, with exit code 0.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+CTRL_C, CTRL_Q = "\x03", "\x11"
+
+
+class Stays(NamedTuple):
+    """A program that runs until it is ended."""
+
+    command: str
+    """Regular expression, from its begin."""
+    shows: str
+    """Regular expression of what it prints when it works."""
+    ends: str = CTRL_C
+    """Keys that end it."""
+    codes: tuple[int, ...] = (0,)
+    """Exit codes with which it may end then."""
+
+
+STAYS = (
+    Stays(r"groundstation (?:attach|replay)\b", "F1.*F10|Drive", CTRL_Q),
+    Stays(r"groundstation keys\b", "q", "q"),
+    Stays(r"groundstation serve --web\b", r"http://127\.0\.0\.1:\d+/\?token=\w+"),
+    Stays(r"groundstation serve --headless\b", "groundstation: "),
+    Stays(r"groundstation ros1\b", "publish to command or cmd_vel", codes=(130,)),
+    Stays(r"groundstation ros2\b", "node /mavhelm_1 at", codes=(130,)),
+    Stays(r"groundstation watch (?!.*--(?:until|for|count)\b)", r"\d", codes=(0, 130)),
+    Stays(r"groundstation(?! (?:[a-z]+[0-9]?)(?: |$))", "Drive", CTRL_Q),
+    Stays(r"groundstation control give\b", "waiting until", codes=(130,)),
+    Stays(r"(?:until )?\S*vehicle (?=--|udp)|GPIOZERO", "vehicle: ready"),
+    Stays(r"bridge router\b", "bridge router: ready"),
+    Stays(r"bridge (?=serial:|udp|tcp|zenoh:)", r'ready.*"system": 1,|\n *1 +1 +serial:'),
+    Stays(r"roscore\b", "started core service"),
+    Stays(r"rostopic echo\b", "---", codes=(0, 130)),
+    Stays(r"rostopic pub -r\b", "", codes=(130,)),
+    Stays(r"/usr/bin/python3 docs/examples/command_node.py", "", codes=(130,)),
+)
+
+
+NEEDS = (
+    (r"roscore\b|groundstation ros1\b|/usr/bin/python3 docs/examples/command_node", "roscore"),
+    (r"rostopic\b", "rostopic"),
+)
+"""Begin of a command -> a program that a laptop may lack: there it is left out."""
+
+
+class Asks(NamedTuple):
+    """A program that asks."""
+
+    command: str
+    prompt: str
+    answer: Callable[[str], str]
+    """Called with all that was printed on the page so far."""
+
+
+def words_of(printed: str) -> str:
+    """Return the 24 words of the key that was printed last."""
+    return " ".join(re.findall(r"(?:\b[a-z]{3,8}\b\s+){24}", printed)[-1].split()) + "\n"
+
+
+ASKS = (
+    Asks(r"groundstation sign install \S+ --words", "word 1 of 24", words_of),
+    Asks(r"\S*vehicle motor-test\b", r"\?", lambda _: "y\n"),
+)
+
+
+def find_staying(command: str) -> Stays | None:
+    """Return the row of a command."""
+    return next((row for row in STAYS if re.match(row.command, command)), None)
+
+
+def find_asking(command: str) -> Asks | None:
+    """Return the row of a command."""
+    return next((row for row in ASKS if re.match(row.command, command)), None)
