@@ -1,6 +1,7 @@
 """The computers of a page: namespaces of Linux with addresses, names, serial cables and home folders of their own.
 
-`within` is the command that starts a program in them; that program makes Machines. All processes of a page end with that program. It needs root, or a kernel that lets users have namespaces.
+`within` is the command that starts a program in them; that program makes Machines. All processes of a page end with it.
+It needs root, or a kernel that lets users have namespaces.
 """
 
 from __future__ import annotations

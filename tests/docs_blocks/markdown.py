@@ -8,6 +8,7 @@ The comments are HTML, which a rendered page does not show, each directly above 
     <!-- stays -->                its last command goes on, in this terminal, to the end of the page
     <!-- not run: KIND: WHY -->   it is explained and not run; KIND is a key of KINDS
     <!-- output of: COMMAND -->   the block is what that command, which a block before has run, printed
+    <!-- except: TEXT -->         but for lines with this text, which depend on the computer
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ SHELLS = frozenset({"sh", "bash", "shell", "console"})
 
 _FENCE = re.compile(r"^(?P<indent> *)```(?P<language>[\w-]*)\n(?P<text>.*?)^(?P=indent)```$", re.DOTALL | re.MULTILINE)
 _COMMENTS = re.compile(r"(?:<!--(?:(?!-->).)*-->\s*)+\Z", re.DOTALL)
-_COMMENT = re.compile(r"<!--\s*(on|first|ends|stays|not run|output of)\b:?\s*(.*?)\s*-->", re.DOTALL)
+_COMMENT = re.compile(r"<!--\s*(on|first|ends|stays|not run|output of|except)\b:?\s*(.*?)\s*-->", re.DOTALL)
 
 
 class Block(NamedTuple):
