@@ -17,6 +17,7 @@ from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.verb_runs import run_verb
 
 DOCUMENT = Path(__file__).parents[3] / "docs/commands.md"
+ALL = (*EXAMPLES, *AUTOPILOT_EXAMPLES)
 SHORTER = {
     "status": ("--timeout", "5"), "vehicles": ("--for", "0.2"), "links": ("--for", "0.2"), "messages": ("--for", "0.2"),
     "watch": ("--timeout", "0.3"), "ping": ("--count", "2", "--interval", "0.1"), "control give": ("--wait", "2"),
@@ -30,7 +31,7 @@ OF_HANDS = frozenset({"wp", "compass", "sticks"})
 """Words of examples that need more of a vehicle, and have tests of their own."""
 RUN = [
     words
-    for command, _ in (*EXAMPLES, *AUTOPILOT_EXAMPLES)
+    for command, _ in ALL
     if (words := shlex.split(command)[1:])[0] in {*VERBS} - ELSEWHERE and not OF_HANDS & {*words}
 ]
 CODES = {"watch": {0, 7}, "control give": {7}}
@@ -48,7 +49,7 @@ def test_the_document_is_generated() -> None:
 
 
 def test_every_verb_and_action_has_an_example() -> None:
-    shown = {name_of(words) for command, _ in (*EXAMPLES, *AUTOPILOT_EXAMPLES) if (words := shlex.split(command)[1:])[0] in VERBS}
+    shown = {name_of(words) for command, _ in ALL if (words := shlex.split(command)[1:])[0] in VERBS}
     assert {f"{verb} {action}".strip() for verb, actions in VERBS.items() for action in actions} - shown == set()
 
 
