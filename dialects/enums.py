@@ -20,6 +20,8 @@ class Autopilot(IntEnum):
 class VehicleType(IntEnum):
     """MAV_TYPE, as far as the programs use it."""
 
+    GENERIC = rover.MAV_TYPE_GENERIC
+    """It does not say what it is."""
     GCS = rover.MAV_TYPE_GCS
     GROUND_ROVER = rover.MAV_TYPE_GROUND_ROVER
     SURFACE_BOAT = rover.MAV_TYPE_SURFACE_BOAT
@@ -61,6 +63,14 @@ class SystemState(IntEnum):
     """Emergency stop."""
     POWEROFF = rover.MAV_STATE_POWEROFF
     FLIGHT_TERMINATION = rover.MAV_STATE_FLIGHT_TERMINATION
+
+
+class LandedState(IntEnum):
+    """MAV_LANDED_STATE, as far as the programs use it."""
+
+    UNDEFINED = rover.MAV_LANDED_STATE_UNDEFINED
+    ON_GROUND = rover.MAV_LANDED_STATE_ON_GROUND
+    IN_AIR = rover.MAV_LANDED_STATE_IN_AIR
 
 
 class ModeFlag(IntFlag):

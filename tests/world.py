@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.core import Core, EarlyActor, Outgoing, RestingCore, SendListener, TimeTeller
+from link.core import Core, EarlyActor, Outgoing, RestingCore, SendGuard, SendListener, TimeTeller
 from link.protocol.channel import Channel
 from link.runner import REPORT_PERIOD
 from link.transport.memory import LossyPipe
@@ -28,6 +28,8 @@ class Host:
     """As after SIGSTOP: it neither receives nor acts."""
     listener: SendListener | None = field(init=False)
     """The core, if it wants to know what was sent. Checked once, because isinstance() of a protocol is slow."""
+    guard: SendGuard | None = field(init=False)
+    """The core, if it decides at the last moment what is sent."""
     early: EarlyActor | None = field(init=False)
     """The core, if it may have something to do between two ticks."""
     resting: RestingCore | None = field(init=False)
@@ -37,6 +39,7 @@ class Host:
 
     def __post_init__(self) -> None:
         self.listener = self.core if isinstance(self.core, SendListener) else None
+        self.guard = self.core if isinstance(self.core, SendGuard) else None
         self.early = self.core if isinstance(self.core, EarlyActor) else None
         self.resting = self.core if isinstance(self.core, RestingCore) else None
 
@@ -79,6 +82,8 @@ class Host:
         frames: list[bytes] = []
         outbox: list[Outgoing] = [] if self.frozen else self.core.messages_to_send()
         for outgoing in outbox:
+            if self.guard is not None and not self.guard.may_send(outgoing.message, now):
+                continue
             self.sent.append((now, outgoing.message))
             for data, address, sequence in self.channel.send(outgoing, now=now):
                 self.sent_at[sequence] = now

@@ -14,20 +14,21 @@ REMEDIES = {
     "FS_THR_ENABLE": 1.0,
     "COM_RC_IN_MODE": 1.0,
     "COM_RC_LOSS_T": 0.5,
-    "NAV_RCL_ACT": 1.0,
+    "NAV_RCL_ACT": 6.0,
+    "COM_FAIL_ACT_T": 5.0,
     "COM_DL_LOSS_T": 10.0,
-    "NAV_DLL_ACT": 1.0,
+    "NAV_DLL_ACT": 6.0,
 }
 """Parameter -> the value that its warning recommends (vehicles/ardupilot_checks.py, px4_checks.py)."""
 
-STOP_BOUNDS = ("RC_OVERRIDE_TIME", "FS_THR_ENABLE", "COM_RC_LOSS_T", "NAV_RCL_ACT", "COM_RC_IN_MODE")
+STOP_BOUNDS = ("RC_OVERRIDE_TIME", "FS_THR_ENABLE", "COM_RC_LOSS_T", "NAV_RCL_ACT", "COM_FAIL_ACT_T", "COM_RC_IN_MODE")
 """Parameters that decide when the motors stop without demands; the others decide on the ground station failsafe."""
 
 
 ENABLE, AUTO_GOES_ON = "FS_GCS_ENABLE", 2
 """The parameter of our rover and of ArduPilot; its value with which AUTO continues."""
 
-COMMAND, STATION = ("no command", "... no RC"), "no station"
+COMMAND, STATION = ("no command", "... no RC", "... then"), "no station"
 """Names of the bounds that the Drive screen shows (vehicles/stop_bounds.py)."""
 
 
@@ -35,6 +36,8 @@ def stop_bound(facts: DoctorFacts) -> ChainFinding:
     """Judge what the motors do when demands end."""
     if facts.vehicle is None:
         return AFTER_VEHICLE
+    if facts.vehicle.undriven:
+        return unknown("not driven from here")
     wrong = [each for each in facts.settings if each.warning and each.name in STOP_BOUNDS]
     if wrong:
         return _wrong(wrong[0])
@@ -67,7 +70,7 @@ def gcs_failsafe(facts: DoctorFacts) -> ChainFinding:
 
 def _words(stop: StopBound) -> str:
     """Return a bound in words. ArduPilot's bounds without RC follow the one before."""
-    without_rc = " later without RC" if stop.name != COMMAND[0] else ""
+    without_rc = " later without RC" if stop.name == COMMAND[1] else ""
     return f"{stop.does} {stop.bound:g} s{without_rc} ({stop.source})"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dialects.enums import Sensor
+from dialects.mode_tables import HOLD
 from groundstation.doctor.facts import DoctorFacts
 from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
 from groundstation.doctor.prearm_advice import find_advice
@@ -59,11 +60,13 @@ def mode(facts: DoctorFacts) -> ChainFinding:
     view = facts.vehicle
     if view is None:
         return AFTER_VEHICLE
+    if view.undriven:
+        return fault(view.undriven, "drive a rover or a boat")
     if view.drivable:
         return ok(f"{view.mode}: keys drive")
-    if view.mode == "HOLD" and not view.armed:
+    if view.mode == HOLD and not view.armed:
         return warn("HOLD: arming changes to MANUAL", "set MANUAL", "vehicle.manual")
-    if view.mode == "HOLD":
+    if view.mode == HOLD:
         return fault("HOLD: the sticks do nothing", "set MANUAL", "vehicle.manual")
     return fault(f"{view.mode}: the vehicle drives itself, keys do not", "set MANUAL", "vehicle.manual")
 
@@ -75,6 +78,8 @@ def armed(facts: DoctorFacts) -> ChainFinding:
         return AFTER_VEHICLE
     if view.emergency_stop:
         return fault("EMERGENCY STOP: the motors are locked", "release it on Drive", "app.drive")
+    if view.undriven:
+        return unknown("armed, not from here" if view.armed else "no, and not from here")
     if view.armed:
         return ok("armed: keys drive on Drive (F1)")
     if view.refusal and view.refusal.startswith("arm"):

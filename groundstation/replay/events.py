@@ -14,8 +14,9 @@ import msgspec
 from dialects import messages as m
 from dialects.enum_names import enum_names
 from dialects.enums import Command, Failsafe, ModeFlag, Severity, SystemState, VehicleType
+from dialects.kinds import VehicleKind, find_kind
 from dialects.messages import MESSAGES, Message, decode_text, printable
-from dialects.modes import mode_name
+from dialects.modes import custom_mode_of
 from groundstation.vehicles.values import flag_words
 from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
 
@@ -122,6 +123,7 @@ class _Vehicle(msgspec.Struct):
     found: float
     heard: float
     autopilot: int
+    model: VehicleKind
     mode: str = ""
     armed: bool = False
     status: int = SystemState.UNINIT
@@ -170,10 +172,11 @@ def _heartbeat(finder: EventFinder, found: Found) -> Parts:
     known = finder.vehicles.get(found.system)
     if not is_vehicle(beat) or (known is not None and not _speaks_for(found.component, known)):
         return
-    mode, armed = mode_name(beat.custom_mode, beat.autopilot), bool(beat.base_mode & ModeFlag.ARMED)
+    model = find_kind(beat.autopilot, beat.type)
+    mode, armed = model.mode_name(beat.custom_mode), bool(beat.base_mode & ModeFlag.ARMED)
     if known is None or known.component != found.component:
         finder.vehicles[found.system] = _Vehicle(
-            found.time, found.time, beat.autopilot, mode, armed, beat.system_status, component=found.component
+            found.time, found.time, beat.autopilot, model, mode, armed, beat.system_status, component=found.component
         )
         finder.beating[found.system, found.component] = finder.vehicles[found.system]
         yield "MODE", Severity.INFO, mode
@@ -230,7 +233,10 @@ def _command(finder: EventFinder, found: Found) -> Parts:
         name = "arm" if message.param1 else "disarm"
     elif message.command == Command.DO_SET_MODE:
         known = finder.vehicles.get(message.target_system)
-        name = f"set mode {mode_name(int(message.param2), known.autopilot)}" if known and message.param2 >= 0 else name
+        number = (
+            None if known is None else custom_mode_of(message.param1, message.param2, message.param3, known.autopilot)
+        )
+        name = name if known is None or number is None else f"set mode {known.model.mode_name(number)}"
     yield "CMD", Severity.INFO, name
 
 

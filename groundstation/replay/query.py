@@ -11,8 +11,8 @@ from typing import Any
 import msgspec
 
 from dialects.enums import ModeFlag
+from dialects.kinds import find_kind
 from dialects.messages import MESSAGES, Heartbeat, Message
-from dialects.modes import mode_name
 
 _COMPARE: dict[str, Callable[[Any, Any], bool]] = {
     "==": operator.eq, "!=": operator.ne, "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
@@ -65,7 +65,7 @@ def _parse_condition(text: str, name: str, sign: str, value: str) -> Query:
     compare = _COMPARE[sign]
     if name.lower() == "mode":
         wanted = value.upper()
-        return Query(text, Heartbeat.id, lambda beat: compare(mode_name(beat.custom_mode, beat.autopilot), wanted))
+        return Query(text, Heartbeat.id, lambda beat: compare(_mode_of(beat), wanted))
     number = _number(value)
     if name.lower() == "armed":
         return Query(text, Heartbeat.id, lambda beat: compare(bool(beat.base_mode & ModeFlag.ARMED), bool(number)))
@@ -74,6 +74,10 @@ def _parse_condition(text: str, name: str, sign: str, value: str) -> Query:
     if kind is None or field not in kind.fieldnames:
         raise QueryError(f"{name!r} is not known: use MESSAGE.field, mode, armed, {', '.join(ALIASES)}")
     return Query(text, kind.id, lambda each: _compare(each, field, factor, compare, number))
+
+
+def _mode_of(beat: Any) -> str:
+    return find_kind(beat.autopilot, beat.type).mode_name(beat.custom_mode)
 
 
 def _number(value: str) -> float:

@@ -47,6 +47,14 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     armed: bool
     drivable: bool = True
     """The mode is one in which demands drive, such as MANUAL."""
+    drives_itself: bool = False
+    """Armed in an autonomous mode: the vehicle, or a computer on board, decides where it goes."""
+    undriven: str = ""
+    """Why this kind of vehicle is only shown and never driven, in one line; "" if it is driven."""
+    may_fall: bool = False
+    """Armed and, as far as is known, in the air: the emergency stop asks first."""
+    stop_question: float | None = None
+    """s left to press the emergency stop once more, which cuts the motors of a vehicle in the air; None: not asked."""
     status: int
     """MAV_STATE."""
     alive: bool

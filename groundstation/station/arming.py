@@ -15,8 +15,9 @@ from enum import Enum, auto
 
 import msgspec
 
-from dialects.enums import Autopilot, Command, ModeFlag, Result
-from dialects.modes import STANDING_MODES, Mode, custom_mode
+from dialects.enums import Command, Result
+from dialects.kinds import MANUAL
+from dialects.modes import set_mode_params
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.services.command.client import CommandClient, CommandOutcome
 
@@ -82,7 +83,8 @@ class ArmSequence(msgspec.Struct):
             self._arm(client, now)
             return
         self.step = ArmStep.MODE
-        send_mode(client, self.vehicle, Mode.MANUAL, now)
+        if not send_mode(client, self.vehicle, MANUAL, now):
+            self.step, self.failure = ArmStep.DONE, f"arm: {self.vehicle.name} has no mode {MANUAL}"
 
     def _arm(self, client: CommandClient, now: float) -> None:
         self.step = ArmStep.ARM
@@ -97,20 +99,21 @@ class ArmSequence(msgspec.Struct):
 
 def _needs_manual(vehicle: VehicleState) -> bool:
     """Return whether to change to MANUAL before arming. An autonomous mode was chosen on purpose and is kept."""
-    if vehicle.autopilot == Autopilot.PX4:
-        return vehicle.mode != Mode.MANUAL.name
-    return vehicle.mode in STANDING_MODES
+    if vehicle.model.arms_only_in_manual:
+        return vehicle.mode != MANUAL
+    return vehicle.mode in vehicle.model.standing
 
 
-def send_mode(client: CommandClient, vehicle: VehicleState, mode: Mode, now: float) -> None:
-    """Send DO_SET_MODE. Raises ValueError if the autopilot has no such mode."""
-    main, sub = custom_mode(mode, vehicle.autopilot)
+def send_mode(client: CommandClient, vehicle: VehicleState, name: str, now: float) -> bool:
+    """Send DO_SET_MODE, and return True; False, without a command, if a vehicle of this kind has no such mode."""
+    number = vehicle.model.number_of(name) if vehicle.model.is_driven else None
+    if number is None:
+        return False
     client.send(
         Command.DO_SET_MODE,
-        ModeFlag.CUSTOM,
-        main,
-        sub,
+        *set_mode_params(number, vehicle.autopilot),
         target_system=vehicle.system,
         target_component=vehicle.component,
         now=now,
     )
+    return True

@@ -5,13 +5,14 @@ from __future__ import annotations
 import msgspec
 
 from dialects.enums import Command, Result, Severity
+from dialects.kinds import MANUAL
 from dialects.messages import Message
-from dialects.modes import Mode
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.arming import ArmSequence, ArmStep, send_mode
 from groundstation.station.claims import Claims
 from groundstation.station.command_results import CommandResults
 from groundstation.station.emergency import DANGEROUS, EmergencyLock
+from groundstation.station.stop_questions import FALLS, StopQuestions
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Outgoing, Received
@@ -41,6 +42,7 @@ class Commander:
         self._disarms: dict[int, _Disarm] = {}
         self._locks: dict[int, EmergencyLock] = {}
         self._claims = Claims()
+        self._stop_questions = StopQuestions()
         self._vehicles: dict[int, VehicleState] = {}
         """Vehicles that were sent a command, by system id."""
         self._query_outcomes: list[CommandOutcome] = []
@@ -53,12 +55,15 @@ class Commander:
         self._send(vehicle, now, command, *params)
 
     def arm(self, vehicle: VehicleState, now: float) -> None:
-        """Send neutral demands, change from HOLD to MANUAL, then arm."""
+        """Send neutral demands, change from HOLD to MANUAL, then arm; refused for a kind that keys do not drive."""
+        if vehicle.model.refusal:
+            self._results.add_refusal(vehicle.system, f"arm: {vehicle.name}: {vehicle.model.refusal}", now)
+            return
         if vehicle.system in self._locks or vehicle.emergency_stop:
             self._results.add_refusal(vehicle.system, "arm: emergency stop active, clear it first", now)
             return
         self._disarms.pop(vehicle.system, None)
-        self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {Mode.MANUAL.name}")
+        self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {MANUAL}")
         self._vehicles[vehicle.system] = vehicle
         self._arming = ArmSequence.start(vehicle, now)
 
@@ -68,22 +73,28 @@ class Commander:
         self._disarms[vehicle.system] = _Disarm(vehicle, now + DISARM_RETRY, now + DISARM_TIMEOUT)
         self._send(vehicle, now, Command.COMPONENT_ARM_DISARM, 0)
 
-    def release_control(self, vehicle: VehicleState, now: float) -> None:
-        """Release control: at once as far as we are concerned, and with a command for a vehicle that manages it."""
+    def release_control(self, vehicle: VehicleState, now: float, *, station: int = 0) -> None:
+        """Release control: at once as far as we are concerned, and with a command for a vehicle that manages it.
+
+        Our own vehicle gives it to the `station` that has asked for it; with 0 to any that has.
+        """
         self._claims.remove(vehicle.system)
-        self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL, 0, now=now)
+        self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL, 0, 0, 0, station, now=now)
 
     def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
-        """Change the mode to the one of this name (dialects.modes.Mode)."""
-        try:
-            send_mode(self._client, vehicle, Mode[name], now)
-        except (KeyError, ValueError):
-            self._results.add_refusal(vehicle.system, f"{vehicle.name} has no mode {name}", now)
-        else:
+        """Change the mode to the one of this name (dialects/kinds.py); refused if its kind has no such mode."""
+        if send_mode(self._client, vehicle, name, now):
             self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {name}")
+            return
+        why = vehicle.model.refusal or f"it has no mode {name}"
+        self._results.add_refusal(vehicle.system, f"mode {name}: {vehicle.name}: {why}", now)
 
     def emergency_stop(self, vehicle: VehicleState, now: float) -> None:
-        """Stop and lock the motors; repeated until the vehicle has done it."""
+        """Stop and lock the motors; repeated until the vehicle has done it. One in the air is asked about first."""
+        if vehicle.may_fall and not self._stop_questions.confirms(vehicle.system, now):
+            self._log.add(now, "station", f"{vehicle.name} {FALLS}", Severity.CRITICAL)
+            return
+        self._stop_questions.forget(vehicle.system)
         self._arming = None
         self._log.add(now, "station", f"EMERGENCY STOP {vehicle.name}", Severity.EMERGENCY)
         self._locks[vehicle.system] = EmergencyLock(vehicle, now)
@@ -119,6 +130,10 @@ class Commander:
         """Return how far our emergency stop of this vehicle is; None without one."""
         lock = self._locks.get(system)
         return lock.progress(now) if lock else None
+
+    def stop_question(self, system: int, now: float) -> float | None:
+        """Return the s left to press the emergency stop of a vehicle in the air once more; None without a question."""
+        return self._stop_questions.left(system, now)
 
     def is_arming(self, system: int) -> bool:
         """Return whether the vehicle is being armed; neutral demands then go out although it is disarmed."""

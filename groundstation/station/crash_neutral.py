@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dialects.axes import NEUTRAL, axis_map, build_manual_control
-from dialects.enums import Autopilot
+from dialects.kinds import find_kind
 from dialects.messages import Heartbeat, ManualControl, Message
 from groundstation.station.driven import DEMAND_MEMORY
 from groundstation.station.station import Station
@@ -24,6 +24,7 @@ class CrashNeutral:
     def __init__(self, station: Station) -> None:
         self._station = station
         self._autopilots: dict[int, int] = {}
+        """MAV_AUTOPILOT of the vehicles that keys drive. Others get no neutral: it would let a copter fall."""
         self._driven: dict[int, float] = {}
         """System id -> when the vehicle last got a demand from us."""
         self._active = False
@@ -34,7 +35,8 @@ class CrashNeutral:
     def activate(self, now: float) -> None:
         """Take over from the station: send the final neutrals, and do not call the station any more."""
         self._active = True
-        self._driven = {system: at for system, at in self._driven.items() if now - at <= DEMAND_MEMORY}
+        recent = (system for system, at in self._driven.items() if now - at <= DEMAND_MEMORY)
+        self._driven = {system: self._driven[system] for system in recent if system in self._autopilots}
         self._left, self._due = FINAL_NEUTRALS if self._driven else 0, now
         self.tick(now)
 
@@ -58,7 +60,7 @@ class CrashNeutral:
     def receive(self, received: Received, now: float) -> None:
         """Record the vehicle's autopilot, which defines its axes, and pass the message on."""
         if isinstance(received.message, Heartbeat) and is_vehicle(received.message):
-            self._autopilots[received.system] = received.message.autopilot
+            self._note_kind(received.system, received.message)
         if not self._active:
             self._station.receive(received, now)
 
@@ -109,5 +111,11 @@ class CrashNeutral:
         """Return whether a message may still be sent; the station withdraws old demands."""
         return self._active or self._station.may_send(message, now)
 
+    def _note_kind(self, system: int, beat: Heartbeat) -> None:
+        if find_kind(beat.autopilot, beat.type).is_driven:
+            self._autopilots[system] = beat.autopilot
+        else:
+            self._autopilots.pop(system, None)
+
     def _neutral(self, system: int) -> ManualControl:
-        return build_manual_control(NEUTRAL, system, axis_map(self._autopilots.get(system, Autopilot.GENERIC)))
+        return build_manual_control(NEUTRAL, system, axis_map(self._autopilots[system]))

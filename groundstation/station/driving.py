@@ -6,7 +6,6 @@ import math
 
 from dialects.axes import NEUTRAL, Axes, build_manual_control
 from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverOperatorPresence
-from dialects.modes import DRIVABLE_MODES
 from groundstation.station.commander import Commander
 from groundstation.station.driven import DEMAND_MEMORY, DrivenVehicle
 from groundstation.station.link_stats import LinkStats
@@ -121,7 +120,7 @@ class DrivingController:
         return tuple(
             DrivenVehicle.of(contact.state, self._operator.session, verified=contact.verified)
             for contact in self._fleet
-            if now - contact.demanded_at <= DEMAND_MEMORY
+            if now - contact.demanded_at <= DEMAND_MEMORY and contact.state.model.is_driven
         )
 
     def end(self) -> None:
@@ -159,7 +158,7 @@ class DrivingController:
         obstacle = "quitting" if self._ending else self._operator.blocked_reason(now)
         if obstacle or contact is None:
             return obstacle or "no vehicle"
-        return self._vehicle_blocked_reason(contact, now)
+        return contact.state.model.refusal or self._vehicle_blocked_reason(contact, now)
 
     def _vehicle_blocked_reason(self, contact: Contact, now: float) -> str | None:
         state = contact.state
@@ -177,7 +176,7 @@ class DrivingController:
             return f"GCS {state.driver} is in control" if state.driver else "not in control"
         if contact.releasing or contact.closing:
             return "releasing control" if contact.releasing else "its link is being closed"
-        return None if state.mode in DRIVABLE_MODES else f"mode {state.mode}"
+        return None if state.mode in state.model.keys else f"mode {state.mode}"
 
     def _may_stream(self, contact: Contact) -> bool:
         """Return whether demands go to this vehicle: only if armed and ours, so as not to fight another driver.
@@ -187,6 +186,8 @@ class DrivingController:
         state = contact.state
         if self._ending or contact.releasing or contact.closing or not self._operator.live:
             return False
+        if not state.model.is_driven:
+            return False
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)
         follows = self.is_driven_by_twin(contact) and state.control.silent
@@ -195,7 +196,8 @@ class DrivingController:
     def _update_ours(self, contact: Contact) -> None:
         """Note which vehicles this station has armed or drives; until the vehicle reports disarmed."""
         state = contact.state
-        if self._commander.is_arming(state.system) or (state.armed and self.is_in_control(contact)):
+        drives = state.armed and state.model.is_driven and self.is_in_control(contact)
+        if self._commander.is_arming(state.system) or drives:
             contact.ours = True
         elif not state.armed:
             contact.ours = False

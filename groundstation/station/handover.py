@@ -47,6 +47,8 @@ class _Release(msgspec.Struct):
 
     contact: Contact
     until: float
+    station: int = 0
+    """Who gets control; 0: whoever asks the vehicle for it."""
     sent: bool = False
 
 
@@ -77,13 +79,21 @@ class Handover:
 
     def request(self, vehicle: VehicleState, now: float) -> None:
         """Request control; the vehicle asks the operator in control, if there is one."""
+        if vehicle.model.refusal:
+            text = f"request control: {vehicle.name}: {vehicle.model.refusal}"
+            self._log.add(now, "station", text, Severity.WARNING)
+            return
         self._send_request(vehicle, now)
         contact = self._fleet.get(vehicle.system)
         if contact is not None:
             self._asked = _Asked(contact, now + ANSWER_WITHIN, now + REPEAT_PERIOD)
 
-    def release(self, vehicle: VehicleState, now: float) -> None:
-        """Release control. Our own vehicle changes to HOLD; others get the final neutrals, then no more demands."""
+    def release(self, vehicle: VehicleState, now: float, *, station: int = 0) -> None:
+        """Release control. Others than our own vehicle get the final neutrals, then no more demands.
+
+        Our own gives control to the `station` that has asked for it, with 0 to any that has, and keeps its mode; while
+        nobody asks it changes to HOLD.
+        """
         self._asked = None
         contact = self._fleet.get(vehicle.system)
         if contact is None or not self._driving.is_in_control(contact):
@@ -92,7 +102,9 @@ class Handover:
         if self._notice is not None and self._notice.contact is contact:
             self._notice = None
         contact.releasing = True
-        self._releases.append(_Release(contact, now + RELEASE_WITHIN))
+        self._releases.append(
+            _Release(contact, now + RELEASE_WITHIN, station if contact.state.has_rover_dialect else 0)
+        )
 
     def release_all(self, now: float) -> None:
         """Release control of every vehicle that we control."""
@@ -101,11 +113,11 @@ class Handover:
                 self.release(contact.state, now)
 
     def give(self, now: float) -> None:
-        """Release control to the station that asks for it; without a request nothing happens."""
+        """Give control to the station that asks for it; without a request nothing happens."""
         notice = self._notice
         if notice is not None:
             self._log.add(now, "station", f"control given to GCS {notice.station}", Severity.NOTICE)
-            self.release(notice.contact.state, now)
+            self.release(notice.contact.state, now, station=notice.station)
 
     def keep(self, now: float) -> None:
         """Refuse the request; without one nothing happens."""
@@ -140,6 +152,11 @@ class Handover:
             self._follow_request(self._asked, now)
 
     @property
+    def finished(self) -> bool:
+        """No release is under way."""
+        return not self._releases
+
+    @property
     def busy(self) -> bool:
         """Whether a request for control, ours or another station's, is under way."""
         return self._notice is not None or self._asked is not None or bool(self._releases)
@@ -168,7 +185,7 @@ class Handover:
         contact = release.contact
         if not release.sent and contact.demand_stream.finished:
             release.sent = True
-            self._commander.release_control(contact.state, now)
+            self._commander.release_control(contact.state, now, station=release.station)
         if now >= release.until or (release.sent and not self._driving.is_in_control(contact)):
             contact.releasing = False
             self._releases.remove(release)

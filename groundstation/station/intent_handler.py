@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from dialects.enums import Severity
-from dialects.modes import Mode
+from dialects.mode_tables import HOLD
 from groundstation.intents.base import Intent
 from groundstation.intents.charts import PinSeries
 from groundstation.intents.driving import (
@@ -157,8 +157,8 @@ class IntentHandler:
     def _stop(self, intent: Stop, now: float) -> None:
         self._operator.sticks.stop()
         selected = self._fleet.selected
-        if intent.reason == STOP_KEY and selected is not None and selected.state.drives_itself:
-            self._commander.set_mode(selected.state, Mode.HOLD.name, now)  # neutral sticks do not stop a mission
+        if intent.reason == STOP_KEY and selected is not None and selected.state.may_move:
+            self._commander.set_mode(selected.state, HOLD, now)  # neutral sticks do not stop a mission
 
     def _emergency_stop(self, intent: EmergencyStop, now: float) -> None:
         """Stop the selected vehicle and those that we armed or drove; the second request in a row stops all."""
@@ -242,6 +242,7 @@ class IntentHandler:
 
     def _quit(self, intent: Quit, now: float) -> None:
         self._operator.sticks.block(now)
+        self._handover.give(now)
         self._driving.end()
         self._departure.begin(now, disarm=intent.disarm)
 

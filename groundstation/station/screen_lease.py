@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 
 from dialects.enums import Severity
-from dialects.modes import Mode
+from dialects.mode_tables import HOLD
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import STOP_KEY, DriveKeyDown, DriveKeyUp, DrivePad, ReleasePad, Stop
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
@@ -138,7 +138,7 @@ class ScreenLease(msgspec.Struct):
             if intent.reason == STOP_KEY:
                 self.operator.sticks.block(now)  # the holder's keys must be released before they drive again
             return intent.reason == STOP_KEY  # the other reasons only close the gate of that screen
-        if intent.open_to_all or (isinstance(intent, SetMode) and intent.mode == Mode.HOLD.name):
+        if intent.open_to_all or (isinstance(intent, SetMode) and intent.mode == HOLD):
             return True
         if intent.is_input and not isinstance(intent, _DRIVES):
             text = f"{type(intent).__name__} of the {screen.name} refused: it does not drive"

@@ -45,6 +45,7 @@ from groundstation.station.vehicle_builder import VehicleBuilder
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.verb_relay import VerbRelay
 from groundstation.station.view_feed import ViewFeed, ViewSource
+from groundstation.vehicles.drive_gate import drive_refusal
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.motor_outputs import is_turn
@@ -332,7 +333,11 @@ class Station:
         self._refusals.handle(message, why, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
-        """Return False for what moves a vehicle and was made before the process stood still."""
+        """Return False for what would move a vehicle: its kind is not driven, or our process stood still."""
+        why = drive_refusal(message, (contact.state for contact in self.fleet))
+        if why is not None:
+            self._refusals.handle(message, why, now)
+            return False
         moves = isinstance(message, DEMANDS) or is_turn(message)
         return not moves or not self.operator.stall.is_stalled(now)
 
@@ -381,7 +386,13 @@ class Station:
     @property
     def finished(self) -> bool:
         """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
-        return self.driving.ending and self.driving.finished and self.departure.finished and self.relay.finished
+        return (
+            self.driving.ending
+            and self.driving.finished
+            and self.departure.finished
+            and self._handover.finished
+            and self.relay.finished
+        )
 
     def snapshot(self, now: float, wall: float) -> Snapshot:
         """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""

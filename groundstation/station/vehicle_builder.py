@@ -31,6 +31,7 @@ class VehicleBuilder:
             control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
+            stop_question=commander.stop_question(state.system, now),
             refusal=commander.last_refusal(state.system, now),
             **self._display.build_fields(contact, now),
         )

@@ -95,6 +95,13 @@ def _hold(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.QUESTION, text)
 
 
+def _stop_question(now: DisplayState) -> Iterator[Alert]:
+    vehicle = now.snapshot.vehicle
+    if vehicle is not None and vehicle.stop_question is not None:
+        text = f"{vehicle.name} is in the air and falls without power: {now.key('stop.emergency')} again cuts it"
+        yield Alert(AlertLevel.QUESTION, f"{text} ({vehicle.stop_question:.0f} s)")
+
+
 def handover_text(now: DisplayState) -> str:
     """Return the request of another screen or ground station with the keys that answer it; "" without one."""
     notice, lease = now.snapshot.handover, now.snapshot.lease
@@ -196,7 +203,9 @@ def _obeys(now: DisplayState) -> Iterator[Alert]:
 
 def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
-    if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
+    if vehicle is None or vehicle.undriven:
+        return
+    if not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
         if vehicle.twin:
             who = f"another program with our id {vehicle.driver} drives (use --system)"
@@ -258,8 +267,8 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _silence, _emergency, _failsafe, _handover, _state, _key, _gate, _obeys, _operator, _driver,
-    _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording, _vehicles,
+    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _handover, _state, _key, _gate, _obeys, _operator,
+    _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording, _vehicles,
 )  # fmt: skip
 """Most urgent first."""
 

@@ -18,7 +18,7 @@ def hint(now: DisplayState) -> str:
 def _gamepad_hint(now: DisplayState) -> str:
     """Return which button of the gamepad arms, or drives if keys would."""
     vehicle = now.snapshot.vehicle
-    if now.gamepad is None or vehicle is None or now.snapshot.lease.driver:
+    if now.gamepad is None or vehicle is None or vehicle.undriven or now.snapshot.lease.driver:
         return ""
     drivable = vehicle.in_control and vehicle.mode == "MANUAL" and not vehicle.obeys
     return f" · {now.gamepad.hint(armed=vehicle.armed)}" if drivable or not vehicle.armed else ""
@@ -34,6 +34,9 @@ def _drive_hint(now: DisplayState) -> str:
         return f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} quits"
     if now.snapshot.lease.driver:
         return f"SPACE stops, {now.key('stop.emergency')} cuts the motors, {now.key('app.quit')} leaves the station"
+    if vehicle.undriven:
+        asks = "asks, then " if vehicle.may_fall else ""
+        return f"{vehicle.undriven} · {now.key('stop.emergency')} {asks}cuts the motors"
     if not vehicle.armed:
         return _arming_hint(vehicle, now)
     stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"

@@ -9,13 +9,12 @@ import msgspec
 
 from dialects import messages as m
 from dialects.enums import Capability
+from groundstation.vehicles.mode_list import MAX_MODES, listed_name
 from link.core import Received
 
 TRIES = 3
 RETRY_AFTER = 1.0
 """s without the message before it is requested again: its COMMAND_ACK does not mean that it comes (ArduPilot)."""
-MAX_MODES = 128
-"""AVAILABLE_MODES of one vehicle; ArduPilot has 30, PX4 up to 40 with modes of other programs."""
 NOT_SELECTABLE = 2
 """MAV_MODE_PROPERTY_NOT_USER_SELECTABLE."""
 
@@ -151,10 +150,11 @@ class VehicleIdentity:
         if count != self._mode_count:
             self._modes.clear()
             self._mode_count = count
-        name = m.printable(message._mode_name_raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
         if self._last == RequestedMessage(m.AvailableModes.id, index):
             self._due = 0.0  # the next is requested at once
-        self._modes[index] = AvailableMode(name, message.custom_mode, message.standard_mode, message.properties)
+        self._modes[index] = AvailableMode(
+            listed_name(message), message.custom_mode, message.standard_mode, message.properties
+        )
 
     def _forget_modes(self) -> None:
         self._modes.clear()

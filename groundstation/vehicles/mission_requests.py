@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable
 
 from dialects.enums import Autopilot, Command
+from dialects.kinds import VehicleKind
+from dialects.mode_tables import HOLD
 from dialects.modes import Mode
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.mode_requests import ModeRequests
@@ -26,15 +28,12 @@ CHANGE_MODE = 1.0
 """MAV_DO_REPOSITION_FLAGS_CHANGE_MODE."""
 DEFAULT_SPEED = -1.0
 """Parameter 1 of DO_REPOSITION that leaves the speed to the vehicle."""
-_PX4_AUTO = 4 << 16
-"""Main mode AUTO in PX4's custom_mode; the sub mode is in bits 24-31."""
-_AUTO: dict[int, int] = {Autopilot.ARDUPILOT: int(Mode.AUTO), Autopilot.PX4: _PX4_AUTO | 4 << 24}
-_HOLD: dict[int, int] = {Autopilot.ARDUPILOT: int(Mode.HOLD), Autopilot.PX4: _PX4_AUTO | 3 << 24}
-"""custom_mode that drives the mission, and that pauses it."""
+_AUTO: dict[int, str] = {Autopilot.ARDUPILOT: Mode.AUTO.name, Autopilot.PX4: "AUTO_MISSION"}
+"""MAV_AUTOPILOT -> the mode that drives the mission; HOLD pauses it."""
 
 
 class MissionRequests:
-    """Requests to one vehicle; `autopilot` returns its MAV_AUTOPILOT."""
+    """Requests to one vehicle; `autopilot` returns its MAV_AUTOPILOT, `model` its kind."""
 
     def __init__(
         self,
@@ -43,18 +42,23 @@ class MissionRequests:
         progress: PlanProgress,
         book: RequestBook,
         autopilot: Callable[[], int],
+        model: Callable[[], VehicleKind],
     ) -> None:
         self._commands = commands
         self._modes = modes
         self._progress = progress
         self._book = book
         self._autopilot = autopilot
+        self._model = model
 
     def start(self, number: int, now: float) -> None:
         """Start the mission with the current item, or go on where it was paused."""
-        custom = _AUTO.get(self._autopilot())
-        if custom is not None:
-            self._modes.set(number, self._mode(custom), now)
+        auto, refusal = _AUTO.get(self._autopilot()), self._model().refusal
+        if refusal:
+            if self._book.begin(number, "start the mission"):
+                self._book.refuse(number, refusal, now, by_vehicle=False)
+        elif auto is not None:
+            self._modes.set(number, auto, now)
         elif self._progress.state == PAUSED and self._modes.current == Mode.AUTO:
             self._commands.send(number, Command.DO_PAUSE_CONTINUE, (1.0,), "go on with the mission", now)
         else:
@@ -62,9 +66,8 @@ class MissionRequests:
 
     def pause(self, number: int, now: float) -> None:
         """Stop where the vehicle is."""
-        custom = _HOLD.get(self._autopilot())
-        if custom is not None:
-            self._modes.set(number, self._mode(custom), now)
+        if self._autopilot() in _AUTO:
+            self._modes.set(number, HOLD, now)
         else:
             self._commands.send(number, Command.DO_PAUSE_CONTINUE, (0.0,), "pause the mission", now)
 
@@ -74,7 +77,7 @@ class MissionRequests:
         self._commands.send(number, Command.DO_SET_MISSION_CURRENT, (float(item),), f"jump to item {item}", now)
 
     def go_to(self, number: int, latitude: float, longitude: float, now: float) -> None:
-        """Drive to a place; the vehicle changes to GUIDED (PX4: AUTO_LOITER)."""
+        """Drive to a place; the vehicle changes to GUIDED (PX4: HOLD)."""
         what = f"go to {latitude:.6f} {longitude:.6f}"
         altitude = math.nan if self._autopilot() == Autopilot.PX4 else 0.0
         frame = GLOBAL if self._autopilot() == Autopilot.PX4 else RELATIVE
@@ -101,10 +104,6 @@ class MissionRequests:
             self._commands.send(number, command, params, what, now, place)
         elif self._book.begin(number, what):
             self._book.refuse(number, fault, now, by_vehicle=False)
-
-    def _mode(self, custom: int) -> str:
-        """Return the vehicle's name for a mode; one that it does not list is refused by its number."""
-        return next((mode.name for mode in self._modes.modes if mode.custom_mode == custom), f"mode {custom}")
 
 
 def place_fault(latitude: float, longitude: float) -> str | None:

@@ -1,14 +1,19 @@
-"""The modes of one vehicle: as it lists them, else by autopilot and type; and changes of mode, to the heartbeat."""
+"""The modes of one vehicle: as it lists them, else by autopilot and type; and changes of mode, to the heartbeat.
+
+A vehicle of a kind that is not driven is only sent a mode that it lists itself: numbers mean something else there.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import msgspec
+from msgspec.structs import replace
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, Result, result_name
-from dialects.modes import DRIVABLE_MODES, STANDING_MODES, known_modes, mode_name, set_mode_params
+from dialects.enums import Command, Result, result_name
+from dialects.kinds import VehicleKind, find_kind
+from dialects.modes import set_mode_params
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.identity import AvailableMode, VehicleIdentity
 from groundstation.vehicles.requests import RequestBook
@@ -26,11 +31,10 @@ class VehicleMode(msgspec.Struct, frozen=True):
     custom_mode: int
     selectable: bool = True
     """Whether the vehicle takes it now."""
-
-    @property
-    def moves_itself(self) -> bool:
-        """Whether the vehicle may move without demands in this mode; also of one that is not known here."""
-        return self.name not in DRIVABLE_MODES | STANDING_MODES
+    moves_itself: bool = True
+    """The vehicle may move without demands in this mode; also in one that is not known here."""
+    listed: str = ""
+    """The vehicle's own name for it."""
 
 
 class _Change(msgspec.Struct):
@@ -66,6 +70,14 @@ class ModeRequests:
     def modes(self) -> tuple[VehicleMode, ...]:
         """The modes of the vehicle, in its order."""
         return listed_or_known(self._identity, self._autopilot())
+
+    def find(self, name: str) -> VehicleMode | None:
+        """Return the mode of this name, in any case: the usual one, the vehicle's own, or an alias."""
+        kind, wanted = find_kind(*self._autopilot()), name.upper()
+        modes = self.modes
+        found = next((mode for mode in modes if wanted in (mode.name.upper(), mode.listed.upper())), None)
+        number = kind.number_of(name) if found is None else None
+        return found or next((mode for mode in modes if mode.custom_mode == number), None)
 
     def list_modes(self, number: int, now: float) -> None:
         """Request the list of modes; it ends when `modes` are as good as they get."""
@@ -125,17 +137,23 @@ class ModeRequests:
         change = self._change
         if change is None or change.mode is not None or self._commands.is_waiting(Command.DO_SET_MODE):
             return
-        change.mode = next((mode for mode in self.modes if mode.name.upper() == change.name.upper()), None)
+        change.mode = self.find(change.name)
         if change.mode is None and not self._identity.modes_settled:
             self._identity.want_modes()
             return
         if change.mode is None:
             self._change = None
-            names = ", ".join(mode.name for mode in self.modes) or "none is known"
-            self._book.refuse(change.number, f"no such mode; there are: {names}", now, by_vehicle=False)
+            self._book.refuse(change.number, self._unknown_reason(), now, by_vehicle=False)
             return
         params = set_mode_params(change.mode.custom_mode, self._autopilot()[0])
         self._commands.query(Command.DO_SET_MODE, params, now)
+
+    def _unknown_reason(self) -> str:
+        names = ", ".join(mode.name for mode in self.modes)
+        if names:
+            return f"no such mode; there are: {names}"
+        refusal = find_kind(*self._autopilot()).refusal
+        return f"{refusal}, and it lists no modes itself" if refusal else "no such mode; none is known"
 
     def _confirm(self) -> None:
         change = self._change
@@ -148,14 +166,27 @@ class ModeRequests:
 
 def listed_or_known(identity: VehicleIdentity | None, model: tuple[int, int]) -> tuple[VehicleMode, ...]:
     """Return the modes that the vehicle has listed, else those of its `model`: MAV_AUTOPILOT and MAV_TYPE."""
-    autopilot, kind = model
+    kind = find_kind(*model)
     if identity is not None and identity.modes is not None:
-        return tuple(_listed(mode, autopilot) for mode in identity.modes)
-    return tuple(VehicleMode(name, number) for name, number in known_modes(autopilot, kind).items())
+        return _without_doubles(_listed(mode, kind) for mode in identity.modes)
+    return tuple(
+        VehicleMode(name, number, moves_itself=kind.moves_itself(name)) for name, number in kind.choices.items()
+    )
 
 
-def _listed(mode: AvailableMode, autopilot: int) -> VehicleMode:
+def _listed(mode: AvailableMode, kind: VehicleKind) -> VehicleMode:
     """Return a mode of the list. ArduPilot abbreviates names to four letters: the usual ones stand for them."""
-    usual = mode_name(mode.custom_mode, autopilot)
-    name = usual if autopilot == Autopilot.ARDUPILOT and not usual.startswith("mode ") else mode.name
-    return VehicleMode(name or usual, mode.custom_mode, mode.selectable)
+    name = kind.modes.get(mode.custom_mode) or mode.name or kind.mode_name(mode.custom_mode)
+    return VehicleMode(name, mode.custom_mode, mode.selectable, kind.moves_itself(name), mode.name)
+
+
+def _without_doubles(modes: Iterable[VehicleMode]) -> tuple[VehicleMode, ...]:
+    """Return each custom_mode once; a name that another one has already is told apart by its number."""
+    found: dict[int, VehicleMode] = {}
+    names: set[str] = set()
+    for mode in modes:
+        if mode.custom_mode not in found:
+            name = mode.name if mode.name not in names else f"{mode.name} {mode.custom_mode}"
+            names.add(name)
+            found[mode.custom_mode] = replace(mode, name=name)
+    return tuple(found.values())

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result, VehicleType
+from dialects.kinds import VehicleKind, find_kind
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.mode_requests import ModeRequests
@@ -91,7 +92,7 @@ class VehicleServices:
         self._texts = {} if texts is None else texts
         self.autopilot: int = Autopilot.GENERIC
         """MAV_AUTOPILOT of its HEARTBEAT."""
-        self.kind: int = VehicleType.GROUND_ROVER
+        self.kind: int = VehicleType.GENERIC
         """MAV_TYPE of its HEARTBEAT."""
         self.book = RequestBook()
         self._used = False
@@ -159,7 +160,7 @@ class VehicleServices:
         """The mission and places: started, paused, gone to."""
         from groundstation.vehicles.mission_requests import MissionRequests
 
-        return MissionRequests(self.commands, self.modes, self.progress, self.book, lambda: self.autopilot)
+        return MissionRequests(self.commands, self.modes, self.progress, self.book, lambda: self.autopilot, self._model)
 
     @cached_property
     def logs(self) -> LogRequests:
@@ -242,6 +243,9 @@ class VehicleServices:
         self._followers.append(made)
         self._disk_users.append(made)
         return made
+
+    def _model(self) -> VehicleKind:
+        return find_kind(self.autopilot, self.kind)
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""

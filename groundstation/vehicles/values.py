@@ -6,16 +6,15 @@ import math
 from functools import lru_cache
 
 from dialects import messages as m
-from dialects.enums import Autopilot, DriveLimit, Failsafe, VehicleType
+from dialects.enums import Autopilot, DriveLimit, Failsafe
 
 _AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
-_KINDS: dict[int, str] = {VehicleType.GROUND_ROVER: "rover", VehicleType.SURFACE_BOAT: "boat"}
 
 
 @lru_cache(maxsize=256)
-def vehicle_name(autopilot: int, kind: int, system: int) -> str:
-    """Return a name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
-    text = f"{_AUTOPILOTS.get(autopilot, '')}{_KINDS.get(kind, 'vehicle')} {system}"
+def vehicle_name(autopilot: int, word: str, system: int) -> str:
+    """Return a name for the driver, e.g. "Rover 1", "ArduPilot rover 1". `word` is that of its kind."""
+    text = f"{_AUTOPILOTS.get(autopilot, '')}{word} {system}"
     return text[0].upper() + text[1:]
 
 

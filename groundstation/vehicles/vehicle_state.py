@@ -10,8 +10,9 @@ from collections.abc import Callable
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, Sensor, SystemState, VehicleType
-from dialects.modes import DRIVABLE_MODES, STANDING_MODES, mode_name
+from dialects.enums import Autopilot, DriveLimit, Failsafe, LandedState, ModeFlag, Sensor, SystemState, VehicleType
+from dialects.kinds import find_kind
+from dialects.mode_tables import HOLD
 from groundstation.geo import LocalFrame, Place, Point
 from groundstation.snapshot import OutputView, VehicleView
 from groundstation.vehicles.control_report import ControlReport
@@ -19,6 +20,7 @@ from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.foreign_drive import ForeignDrive
 from groundstation.vehicles.key_to_motor import KeyTimings
 from groundstation.vehicles.latency import LatencyMeter
+from groundstation.vehicles.mode_list import ModeList
 from groundstation.vehicles.outputs import drive_names
 from groundstation.vehicles.track import Track
 from groundstation.vehicles.values import all_finite, battery_values, drive_demand, flag_words, vehicle_name, within
@@ -42,9 +44,6 @@ UNKNOWN_U16 = 0xFFFF
 ESTOP = int(DriveLimit.ESTOP)
 """A number, because `&` with a flag makes another flag, 120 times a second while driving."""
 
-BY_HAND = DRIVABLE_MODES | STANDING_MODES
-"""Modes in which nothing on board decides where the vehicle goes."""
-
 
 class VehicleState:
     """One vehicle as reported by its messages. `system` and `component` are those of its HEARTBEAT."""
@@ -63,7 +62,10 @@ class VehicleState:
         self.latency = LatencyMeter(self.key_timings)
         self.foreign = ForeignDrive()
         self.autopilot: int = Autopilot.GENERIC
-        self.kind: int = VehicleType.GROUND_ROVER
+        self.kind: int = VehicleType.GENERIC
+        self.model = find_kind(self.autopilot, self.kind)
+        """Its kind, as its newest HEARTBEAT tells."""
+        self.listed_modes = ModeList()
         self.mode = "unknown"
         self.armed = False
         self.status: int = SystemState.UNINIT
@@ -75,6 +77,7 @@ class VehicleState:
         """When the pre-arm checks were passed; None while they are not, or it is not known."""
         self._times: dict[type[m.Message], float] = {}
         self._drive: m.RoverDriveStatus | None = None
+        self._landed: int = LandedState.UNDEFINED
         self._failsafe: m.RoverFailsafeStatus | None = None
         self._frame: LocalFrame | None = None
         """Metres around the first place, for a vehicle without LOCAL_POSITION_NED."""
@@ -121,7 +124,17 @@ class VehicleState:
     @property
     def drives_itself(self) -> bool:
         """Armed in an autonomous mode: the vehicle, or a computer on board, decides where it goes."""
-        return self.armed and self.mode not in BY_HAND
+        return self.armed and self.model.moves_itself(self.mode)
+
+    @property
+    def may_move(self) -> bool:
+        """Armed in a mode in which it may move without demands: HOLD of PX4 drives to the place of a go-to, too."""
+        return self.drives_itself or (self.armed and self.model.hold_moves and self.mode == HOLD)
+
+    @property
+    def may_fall(self) -> bool:
+        """Armed and, as far as is known, in the air: without power it falls."""
+        return self.armed and self.model.falls and self._landed != LandedState.ON_GROUND
 
     @property
     def failsafes(self) -> tuple[str, ...]:
@@ -141,7 +154,7 @@ class VehicleState:
     @property
     def kind_name(self) -> str:
         """Kind and system id, e.g. "Rover 1", "ArduPilot rover 1"."""
-        return vehicle_name(self.autopilot, self.kind, self.system)
+        return vehicle_name(self.autopilot, self.model.word, self.system)
 
     def restart(self) -> None:
         """Forget where the vehicle was: it has restarted, and its origin and home may be others."""
@@ -164,7 +177,10 @@ class VehicleState:
             autopilot=self.autopilot,
             mode=self.mode,
             armed=self.armed,
-            drivable=self.mode in DRIVABLE_MODES,
+            drivable=self.mode in self.model.keys,
+            drives_itself=self.drives_itself,
+            undriven=self.model.refusal,
+            may_fall=self.may_fall,
             status=self.status,
             alive=self.monitor.is_alive(now),
             silence=self.monitor.silence(now),
@@ -188,7 +204,11 @@ class VehicleState:
         self.kind = message.type
         self.status = message.system_status
         self.armed = bool(message.base_mode & ModeFlag.ARMED)
-        self.mode = mode_name(message.custom_mode, message.autopilot)
+        self.model = find_kind(message.autopilot, message.type)
+        self.mode = self.model.modes.get(message.custom_mode) or self.listed_modes.name_of(message.custom_mode)
+
+    def _extended_state(self, message: m.ExtendedSysState, now: float) -> None:
+        self._landed = message.landed_state
 
     def _drive_status(self, message: m.RoverDriveStatus, now: float) -> None:
         self._drive = message
@@ -311,6 +331,9 @@ class VehicleState:
 
 _HANDLERS: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.Heartbeat: VehicleState._heartbeat,
+    m.ExtendedSysState: VehicleState._extended_state,
+    m.AvailableModes: lambda state, message, now: state.listed_modes.add(message),
+    m.AvailableModesMonitor: lambda state, message, now: state.listed_modes.note_change(message),
     m.ControlStatus: lambda state, message, now: state.control.handle_control_status(message),
     m.RoverControl: lambda state, message, now: state.control.handle_rover_control(message),
     m.RoverDriveStatus: VehicleState._drive_status,

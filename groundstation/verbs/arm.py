@@ -18,6 +18,7 @@ from groundstation.station.arming import ArmSequence, ArmStep
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.requests import RequestBook, RequestReport, RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
+from groundstation.verbs.kinds import need_driven
 from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
@@ -81,6 +82,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
 async def arm(session: VerbSession, wait: float, output: Output) -> RequestReport:
     """Arm a vehicle that is disarmed, once it is ready, `wait` s after the start at most. Raises VerbError."""
     contact, state = session.contact, session.vehicle
+    need_driven(session.vehicle)
     if state.emergency_stop:
         raise VerbError(
             ExitCode.REFUSED, f"{state.name}: emergency stop; `groundstation estop --clear` releases it first"

@@ -13,8 +13,8 @@ from typing import Any
 
 from dialects import rover
 from dialects.enums import Autopilot, Command, VehicleType
+from dialects.kinds import find_kind
 from dialects.messages import MESSAGES
-from dialects.modes import known_modes
 from groundstation.station_socket.names import MODES, PARAMS, PLAIN_NAME, VEHICLES
 from groundstation.verbs.shells import SHELLS
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
@@ -249,7 +249,7 @@ def _quote(text: str) -> str:
     return f"'{escaped}'"
 
 
-_MODES = [known_modes(autopilot, VehicleType.GROUND_ROVER) for autopilot in (Autopilot.ARDUPILOT, Autopilot.PX4)]
+_MODES = [find_kind(autopilot, VehicleType.GROUND_ROVER).choices for autopilot in (Autopilot.ARDUPILOT, Autopilot.PX4)]
 _MESSAGES = sorted(message.msgname for message in MESSAGES.values())
 USUAL: Mapping[str, Sequence[str]] = {MODES: sorted({name for modes in _MODES for name in modes})}
 """Kind of names of a station -> those to propose without one."""

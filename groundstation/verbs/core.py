@@ -10,6 +10,7 @@ from dialects import messages as m
 from dialects.vehicle_types import AUTOPILOT_COMPONENT
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.heartbeat_sender import HeartbeatSender
+from groundstation.vehicles.drive_gate import drive_refusal
 from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
 from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.contact import VehicleContact
@@ -102,9 +103,17 @@ class VerbCore:
         found = [Outgoing(message) for message in outbox]
         return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
 
+    def may_send(self, message: m.Message, now: float) -> bool:
+        """Return False for what would move a vehicle of a kind that is not driven; the verb is told why."""
+        why = drive_refusal(message, (contact.state for contact in self.contacts.values()))
+        if why is not None:
+            self.handle_refused(message, why, now)
+        return why is None
+
     def driven(self) -> tuple[DrivenVehicle, ...]:
-        """Return what the watchdog must know."""
-        return () if self.chosen is None else (self.chosen.driven,)
+        """Return what the watchdog must know. It sends no neutral to a kind that is not driven: it may fall by it."""
+        chosen = self.chosen
+        return (chosen.driven,) if chosen is not None and chosen.state.model.is_driven else ()
 
     def add_look(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
         """Return a future that is done once `condition` holds, checked after each message and tick."""

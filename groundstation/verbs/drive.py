@@ -34,6 +34,7 @@ from groundstation.verbs.driving import (
 )
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.key_script import KeyScript, SteadyDemand, parse_script
+from groundstation.verbs.kinds import need_driven
 from groundstation.verbs.local_file import read_text
 from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
@@ -88,6 +89,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     """Drive; done when the time is over or the script has ended, and neutral was sent."""
     await session.need_only_vehicle(options.vehicle)
     state, armed_here = session.vehicle, False
+    need_driven(state)
     need_control(session)
     if not state.armed:
         if not options.arm:

@@ -6,12 +6,14 @@ import asyncio
 
 from dialects.axes import NEUTRAL
 from dialects.enums import Autopilot
-from dialects.modes import DRIVABLE_MODES, STANDING_MODES, Mode
+from dialects.kinds import MANUAL
+from dialects.modes import Mode
 from groundstation.station.operator import NEUTRAL_LEAD
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.control import ask_for_control
 from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.kinds import need_driven
 from groundstation.verbs.session import TOLD_WITHIN, VerbSession
 from groundstation.verbs.stop_jobs import disarm_job
 from groundstation.verbs.stops import run_job
@@ -25,13 +27,14 @@ FRAME_PARAMETER = "CA_AIRFRAME"
 async def prepare(session: VerbSession, *, leave_hold: bool = True) -> None:
     """Take control, change HOLD to MANUAL unless told not to, and show neutral. Raises VerbError."""
     contact, state = session.contact, session.vehicle
+    need_driven(session.vehicle)
     if state.drives_itself:
         raise VerbError(ExitCode.REFUSED, f"{state.name} drives itself ({state.mode}); `groundstation stop` stops it")
     if state.has_rover_dialect and not state.driver:
         need_accepted(await ask_for_control(session), session)
-    if leave_hold and state.mode in STANDING_MODES:
+    if leave_hold and state.mode in state.model.standing:
         modes = session.services.modes
-        need_accepted(await session.request(lambda number, now: modes.set(number, Mode.MANUAL.name, now)), session)
+        need_accepted(await session.request(lambda number, now: modes.set(number, MANUAL, now)), session)
     await learn_frame(session)
     contact.operator.demanding = True
     if state.has_rover_dialect:
@@ -69,11 +72,13 @@ def need_control(session: VerbSession) -> None:
 def drive_fault(session: VerbSession) -> str | None:
     """Return why the vehicle takes no demands now, or None."""
     state = session.vehicle
+    if state.model.refusal:
+        return f"is not driven: {state.model.refusal}"
     if state.emergency_stop:
         return "is in the emergency stop"
     if not state.armed:
         return "is disarmed"
-    return None if state.mode in DRIVABLE_MODES else f"takes no demands in {state.mode}"
+    return None if state.mode in state.model.keys else f"takes no demands in {state.mode}"
 
 
 def need_accepted(report: RequestReport, session: VerbSession) -> None:

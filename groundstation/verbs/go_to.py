@@ -7,12 +7,14 @@ import math
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, MissionType, command_name
+from dialects.enums import Command, MissionType, command_name
+from dialects.mode_tables import HOLD
 from dialects.modes import Mode
 from groundstation.geo import LocalFrame, Place, find_way, is_on_earth
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.arguments import finite
 from groundstation.verbs.exit_codes import ExitCode, VerbError
+from groundstation.verbs.kinds import need_driven
 from groundstation.verbs.output import Output
 from groundstation.verbs.plan import count_text, download, has_place
 from groundstation.verbs.reports import finish, wait_for_report
@@ -27,8 +29,8 @@ GROUND_SPEED, KEEP_THROTTLE = 1.0, -1.0
 """Parameters 1 and 3 of DO_CHANGE_SPEED."""
 FARTHEST = 100_000.0
 """m; beyond that a plane is no picture of the earth."""
-PX4_RETURN = 4 << 16 | 5 << 24
-"""custom_mode of PX4's AUTO_RTL."""
+RETURNING = (Mode.RTL.name, Mode.SMART_RTL.name, "AUTO_RTL")
+"""Modes that drive home, of ArduRover, our vehicle and PX4."""
 POSITION_TRIES = 3
 """Requests for the position: what follows the acknowledgement may get lost."""
 AT_HOME = 3.0
@@ -86,7 +88,7 @@ async def go_to(session: VerbSession, options: argparse.Namespace, output: Outpu
         lambda number, now: commands.send(number, Command.DO_REPOSITION, params, what, now, where)
     )
     done = f"drives to {place.latitude:.7f} {place.longitude:.7f}"
-    return await _finish(session, report, output, done, lambda: session.vehicle.drives_itself)
+    return await _finish(session, report, output, done, lambda: session.vehicle.may_move)
 
 
 async def home(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -105,6 +107,7 @@ async def home(session: VerbSession, options: argparse.Namespace, output: Output
 async def speed(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Set the speed of modes that drive by themselves; done when the vehicle has accepted."""
     await session.need_only_vehicle(options.vehicle)
+    need_driven(session.vehicle)
     commands, params = session.services.commands, (GROUND_SPEED, options.speed, KEEP_THROTTLE)
     report = await session.request(
         lambda number, now: commands.send(number, Command.DO_CHANGE_SPEED, params, "speed", now)
@@ -123,25 +126,24 @@ async def _finish(
         return ExitCode.REFUSED
     code = finish(session, report, output, done, mode=state.mode)
     if code is ExitCode.DONE:
-        output.note(f"{state.name} drives by itself; this program no longer sends heartbeats, and `stop` stops it")
+        output.note(f"{state.name} drives by itself{session.afterwards}; `stop` stops it")
     return code
 
 
 def _need_armed(session: VerbSession) -> None:
+    need_driven(session.vehicle)
     if not session.vehicle.armed:
         raise VerbError(ExitCode.REFUSED, f"{session.vehicle.name} is disarmed; `groundstation arm` arms it")
 
 
 def _returns(session: VerbSession) -> bool:
-    if session.vehicle.autopilot == Autopilot.PX4:
-        return session.services.modes.current == PX4_RETURN
-    return session.vehicle.mode in (Mode.RTL.name, Mode.SMART_RTL.name)
+    return session.vehicle.mode in RETURNING
 
 
 def _holds_at_home(session: VerbSession) -> bool:
     """Return whether it stands at home: it has arrived between two heartbeats, or was there already."""
     way = find_way(session.contact.details.place, session.contact.details.home)
-    return way is not None and way.distance <= AT_HOME and session.vehicle.mode == Mode.HOLD.name
+    return way is not None and way.distance <= AT_HOME and session.vehicle.mode == HOLD
 
 
 async def _find_place(session: VerbSession, options: argparse.Namespace) -> Place:

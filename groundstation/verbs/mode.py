@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from dialects.mode_tables import HOLD
+from groundstation.vehicles.mode_requests import VehicleMode
 from groundstation.vehicles.requests import RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
@@ -32,7 +34,17 @@ async def set_mode(session: VerbSession, options: argparse.Namespace, output: Ou
     await session.need_only_vehicle(options.vehicle)
     modes, name = session.services.modes, options.name.upper()
     report = await session.request(lambda number, now: modes.set(number, name, now))
-    moves = any(mode.name.upper() == name and mode.moves_itself for mode in modes.modes)
-    if moves and report.state is RequestState.ACCEPTED:
-        output.note(f"{session.vehicle.name} may move by itself in {name}; this program no longer sends heartbeats")
+    mode = modes.find(name)
+    name = name if mode is None else mode.name
+    if mode is not None and report.state is RequestState.ACCEPTED:
+        _tell_of_motion(session, mode, output)
     return finish(session, report, output, mode=name)
+
+
+def _tell_of_motion(session: VerbSession, mode: VehicleMode, output: Output) -> None:
+    """Say how the vehicle may move in its new mode without demands."""
+    vehicle = session.vehicle
+    if mode.moves_itself:
+        output.note(f"{vehicle.name} may move by itself in {mode.name}{session.afterwards}")
+    elif mode.name == HOLD and vehicle.model.hold_moves:
+        output.note(f"{vehicle.name} holds its place, and may drive for it")

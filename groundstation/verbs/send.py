@@ -12,13 +12,13 @@ import math
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.modes import STANDING_MODES
 from dialects.traits import SECRET
 from groundstation.station.operator import NEUTRAL_LEAD
 from groundstation.vehicles.demand_neutrals import DEMANDS
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.verbs.demands import build_demand, check_demand
 from groundstation.verbs.exit_codes import ExitCode, VerbError
+from groundstation.verbs.kinds import need_driven
 from groundstation.verbs.message_builder import build, parse_fields
 from groundstation.verbs.message_values import find_message
 from groundstation.verbs.output import Output
@@ -54,12 +54,14 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
         if name in options.kind.fieldnames:
             options.values.setdefault(name, (session.vehicle.system, session.vehicle.component)[index])
     if is_demand(options):
+        need_driven(session.vehicle)
         _warn_of_no_effect(session, output)
         count = await _send_demand(session, options)
         ending = ", then neutral"
     else:
         message, ending = build(options.kind, options.values), ""
         count = await _repeat(session, lambda now: session.core.outbox.append(message), options.rate, options.seconds)
+        session.need_sent()
     name = options.kind.msgname
     output.note(f"{name} sent {'once' if count == 1 else f'{count} times'} to {session.vehicle.name}{ending}")
     output.result(True, session.vehicle.system, name=name, count=count)
@@ -70,7 +72,7 @@ def _warn_of_no_effect(session: VerbSession, output: Output) -> None:
     state = session.vehicle
     if not state.armed:
         output.note(f"{state.name} is disarmed, and ignores demands")
-    elif state.mode in STANDING_MODES:
+    elif state.mode in state.model.standing:
         output.note(f"{state.name} ignores demands in {state.mode}")
 
 

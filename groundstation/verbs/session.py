@@ -62,6 +62,8 @@ class VerbSession:
         self._ended: dict[int, RequestReport] = {}
         self.began = self.now
         """When the verb began."""
+        self.afterwards = "; this program no longer sends heartbeats"
+        """What becomes of this program when the verb has ended, for a vehicle that moves by itself."""
 
     @property
     def now(self) -> float:
@@ -140,7 +142,7 @@ class VerbSession:
         if condition():
             return True
         await self.look_for(lambda: condition() or bool(self._refusal), seconds)
-        self._need_sent()
+        self.need_sent()
         return condition()
 
     async def look_for(self, condition: Callable[[], bool], seconds: float) -> bool:
@@ -156,7 +158,8 @@ class VerbSession:
         contact = self._contact or self.core.chosen
         return contact.refusal if contact else ""
 
-    def _need_sent(self) -> None:
+    def need_sent(self) -> None:
+        """Raise VerbError if a message to the vehicle may not be sent."""
         if self._refusal:
             raise VerbError(ExitCode.REFUSED, f"{self.vehicle.name}: {self._refusal}")
 
@@ -171,7 +174,7 @@ class VerbSession:
         start(number, self.now)
         self.flush()
         await self.core.add_look(lambda: self._collect(number) or bool(self._refusal))
-        self._need_sent()
+        self.need_sent()
         return self._ended.pop(number)
 
     def heard_at(self, kind: type[m.Message]) -> float:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from dialects.enums import Autopilot, Command, Result, result_name
-from dialects.modes import Mode, custom_mode
+from dialects.enums import Command, Result, result_name
+from dialects.mode_tables import HOLD
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.arming import CONFIRM_WITHIN, send_mode
 from groundstation.station.commander import DISARM_RETRY
@@ -85,18 +85,32 @@ def disarm_job(number: int, state: VehicleState, until: float) -> RepeatedComman
     return RepeatedCommand(number, command, send, lambda: not state.armed, "armed", until)
 
 
-def hold_job(number: int, state: VehicleState, services: VehicleServices, until: float) -> RepeatedCommand:
-    """Return the job that changes to HOLD, of PX4 to its mode that stops (AUTO_LOITER)."""
+def hold_job(number: int, state: VehicleState, services: VehicleServices, until: float) -> RepeatedCommand | RefusedJob:
+    """Return the job that changes to HOLD. The number of HOLD means another mode to a kind that is not driven."""
+    if state.model.refusal:
+        return RefusedJob(number, f"{state.model.refusal}; `mode` takes a mode that it lists, `disarm` ends its power")
 
     def is_held() -> bool:
-        main, sub = custom_mode(Mode.HOLD, state.autopilot)
-        wanted = main << 16 | sub << 24 if state.autopilot == Autopilot.PX4 else main
-        return services.modes.current == wanted
+        return services.modes.current == state.model.number_of(HOLD)
 
     def send(client: CommandClient, now: float) -> None:
-        send_mode(client, state, Mode.HOLD, now)
+        send_mode(client, state, HOLD, now)
 
     return RepeatedCommand(number, Command.DO_SET_MODE, send, is_held, "another mode", until)
+
+
+class RefusedJob(msgspec.Struct):
+    """A stop that a vehicle of this kind has not got, so that nothing is sent."""
+
+    number: int
+    why: str
+
+    def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
+        """End at once."""
+        book.refuse(self.number, self.why, now, by_vehicle=False)
+
+    def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:
+        """Take nothing: no command is sent."""
 
 
 class EmergencyJob(msgspec.Struct):

@@ -60,6 +60,8 @@ class ForeignVehicle:
         self, autopilot: int = ARDUPILOT, *, loss: float = 0.0, loss_in: float = 0.0, ftp: bool = True, system: int = 1
     ) -> None:
         self.autopilot = autopilot
+        self.kind = 10
+        """MAV_TYPE."""
         self.loss = loss
         self.loss_in = loss_in
         self.params: dict[str, ForeignParam] = {}
@@ -70,6 +72,8 @@ class ForeignVehicle:
         self.logs: list[bytes] = []
         self.modes: list[tuple[str, int, int]] = []
         """Name, custom_mode and properties of AVAILABLE_MODES."""
+        self.standard_modes: dict[int, int] = {}
+        """custom_mode -> MAV_STANDARD_MODE in AVAILABLE_MODES."""
         self.mode = 0
         """custom_mode of its HEARTBEAT."""
         self.armed = False
@@ -142,7 +146,9 @@ class ForeignVehicle:
             if self._peer and time.monotonic() >= self._beat_due:
                 self._beat_due = time.monotonic() + self.beat_period
                 flags, state = (209, 4) if self.armed else (81, 3)
-                self.send(mav.MAVLink_heartbeat_message(10, self.autopilot, flags, self.mode, state, 3), certain=True)
+                self.send(
+                    mav.MAVLink_heartbeat_message(self.kind, self.autopilot, flags, self.mode, state, 3), certain=True
+                )
 
     def send(self, message: Any, *, certain: bool = False) -> None:
         """Send a message of pymavlink."""
@@ -208,7 +214,8 @@ class ForeignVehicle:
         if number == 435:
             chosen = enumerate(self.modes, 1) if index == 0 else [(index, self.modes[index - 1])]
             for at, (name, custom, properties) in chosen:
-                self.send_ours(m.AvailableModes(len(self.modes), at, 0, custom, properties, name.encode()))
+                standard = self.standard_modes.get(custom, 0)
+                self.send_ours(m.AvailableModes(len(self.modes), at, standard, custom, properties, name.encode()))
 
     def _timesync(self, message: Any) -> None:
         if self.answers_timesync and message.tc1 == 0:

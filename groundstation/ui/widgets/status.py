@@ -149,16 +149,25 @@ def driver_part(vehicle: VehicleView, *, station_runs: bool, watches: bool) -> P
         return (f"link lost for {vehicle.silence:.0f} s", style(RED, bold=True))
     if vehicle.obeys:
         return ("obeys another GCS", style(AMBER, bold=True))
-    if vehicle.in_control and vehicle.armed and vehicle.emergency_stop:
-        return ("", style())  # the keys do not drive, and the badge before it says why
-    if vehicle.in_control and watches:
-        return ("you watch", style(AMBER, bold=True))
+    if vehicle.undriven:
+        return ("only shown", style(AMBER, bold=True))
     if vehicle.in_control:
-        return ("you drive" if vehicle.armed and vehicle.drivable else "you are in control", style(GREEN, bold=True))
+        return _own_part(vehicle, watches=watches)
     if vehicle.driver:
         who = f"another {vehicle.driver}" if vehicle.twin else f"{vehicle.driver}"
         return (f"driven by {who}", style(AMBER, bold=True))
     return ("" if vehicle.driver is None else "no GCS in control", style(DIM))
+
+
+def _own_part(vehicle: VehicleView, *, watches: bool) -> Part:
+    """Return what moves a vehicle that this station controls."""
+    if vehicle.armed and vehicle.emergency_stop:
+        return ("", style())  # the keys do not drive, and the badge before it says why
+    if watches:
+        return ("you watch", style(AMBER, bold=True))
+    if vehicle.drives_itself:
+        return (f"{vehicle.mode} drives", style(YELLOW, bold=True))
+    return ("you drive" if vehicle.armed and vehicle.drivable else "you are in control", style(GREEN, bold=True))
 
 
 def _field(weight: int, name: str, text: str, colour: str = TEXT) -> StatusField:

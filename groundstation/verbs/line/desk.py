@@ -47,7 +47,7 @@ class LineDesk:
         except (VerbError, FileFormatError) as error:
             self._end(intent, FAILED, [], here(str(error)))
             return
-        if parsed.rule.asks(parsed.options) and not intent.confirmed:
+        if parsed.rule.asks(parsed.options, contact.state) and not intent.confirmed:
             self._show(intent, ASKS, f"{contact.state.name}: {intent.text}?")
             return
         self._show(intent, RUNNING, f"{intent.text} ...")

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from dialects.modes import DRIVABLE_MODES, STANDING_MODES
+from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.verbs.line import own
 from groundstation.verbs.line.session import LineOutput, LineSession
 
@@ -22,21 +22,22 @@ Own = Callable[[LineSession, argparse.Namespace, LineOutput], Awaitable[int]]
 class LineRule(msgspec.Struct, frozen=True):
     """One verb or action."""
 
-    asks: Callable[[Any], bool] = lambda _: False
-    """Whether it asks first; takes the parsed arguments."""
+    asks: Callable[[Any, VehicleState], bool] = lambda options, state: False
+    """Whether it asks first; takes the parsed arguments and the vehicle."""
     own: Own | None = None
     """What runs in place of the verb's function."""
     elsewhere: str = ""
     """Where to do it; then a line does not run it."""
 
 
-def _moves(options: argparse.Namespace) -> bool:
+def _moves(options: argparse.Namespace, state: VehicleState) -> bool:
     """Return whether the vehicle may move by itself in this mode."""
-    return options.name.upper() not in DRIVABLE_MODES | STANDING_MODES
+    number = state.model.number_of(options.name)
+    return number is None or state.model.moves_itself(state.model.mode_name(number))
 
 
 _RUN = LineRule()
-_ASK = LineRule(asks=lambda _: True)
+_ASK = LineRule(asks=lambda options, state: True)
 _HOLD_KEY = "is a key that is held for 1 s on Drive, so that no text does it"
 _MAP, _PARAMS, _FILES = "the Map screen (F2)", "the Params screen (F4)", "the Files screen (^g 9)"
 _MESSAGES, _LINKS, _SETUP = "the Messages screen (F3)", "the Links screen (F7)", "the Setup screen (F8)"

@@ -62,6 +62,8 @@ class LineSession:
         self.services: VehicleServices = station.services.services_of(contact)
         self.told: list[str] = []
         """How its requests have ended; the log has these lines already."""
+        self.afterwards = ""
+        """Nothing: the station goes on."""
 
     @property
     def now(self) -> float:

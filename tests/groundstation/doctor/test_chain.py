@@ -28,7 +28,7 @@ LINK = LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, fram
 OURS = {"MAN_TIMEOUT": 0.45, "FS_TIMEOUT": 1.5, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0}
 ARDUPILOT = {"RC_OVERRIDE_TIME": 0.5, "FS_THR_ENABLE": 1.0, "FS_TIMEOUT": 1.5, "FS_ACTION": 2.0,
              "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0}  # fmt: skip
-PX4 = {"COM_RC_IN_MODE": 1.0, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 1.0, "COM_DL_LOSS_T": 10.0, "NAV_DLL_ACT": 1.0}
+PX4 = {"COM_RC_IN_MODE": 1.0, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 6.0, "COM_DL_LOSS_T": 10.0, "NAV_DLL_ACT": 1.0}
 
 
 def stops(params: Mapping[str, float], autopilot: int = 0, *, drives_itself: bool = False) -> tuple[StopBound, ...]:
@@ -157,7 +157,7 @@ CASES: list[tuple[str, DoctorFacts, Health, str]] = [
     ("stop_bound", foreign(Autopilot.ARDUPILOT, ARDUPILOT | {"FS_THR_ENABLE": 0.0}), FAULT, "never stops"),
     ("stop_bound", foreign(Autopilot.ARDUPILOT, ARDUPILOT | {"FS_ACTION": 0.0}), WARNING, "without RC (FS_THR_ENABLE), "
      "then nothing"),
-    ("stop_bound", foreign(Autopilot.PX4, PX4), OK, "HOLD 0.5 s (COM_RC_LOSS_T) after the last demand"),
+    ("stop_bound", foreign(Autopilot.PX4, PX4), OK, "disarm 0.5 s (COM_RC_LOSS_T) after the last demand"),
     ("stop_bound", foreign(Autopilot.PX4, PX4 | {"NAV_RCL_ACT": 0.0}), FAULT, "never stops"),
     ("stop_bound", facts(vehicle(stops=stops({}))), UNKNOWN, "not known yet"),
     ("stop_bound", facts(vehicle(stops=stops({}, 99)), rover_dialect=False), UNKNOWN, "not known yet"),

@@ -51,7 +51,7 @@ def test_heartbeat() -> None:
         (10, 0, "Rover 1"),
         (10, 3, "ArduPilot rover 1"),
         (11, 12, "PX4 boat 1"),
-        (2, 0, "Vehicle 1"),
+        (2, 0, "Copter 1"),
         (99, 77, "Vehicle 1"),
     ],
 )

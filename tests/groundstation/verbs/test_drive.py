@@ -77,7 +77,7 @@ def test_it_needs_an_armed_vehicle_that_takes_demands() -> None:
         vehicle.armed = True
         itself = drive(vehicle, *words)
         assert itself.code == ExitCode.REFUSED
-        assert "drives itself (AUTO); `groundstation stop` stops it" in itself.err
+        assert "drives itself (AUTO_MISSION); `groundstation stop` stops it" in itself.err
         assert vehicle.of("MANUAL_CONTROL") == []
 
 

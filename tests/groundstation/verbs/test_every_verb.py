@@ -56,7 +56,7 @@ LINES: dict[str, tuple[Line, ...]] = {
     "arm": line("arm --wait 20"), "disarm": line("disarm", armed=True), "stop": line("stop", armed=True),
     "estop": (*line("estop", armed=True), *line("estop --clear")),
     "control request": line("control request"), "control show": line("control show"),
-    "control release": line("control release"), "doctor": line("doctor", PX4=7),
+    "control release": line("control release"), "doctor": line("doctor"),
     "control give": line("control give 200", ours=7, ArduPilot=7, PX4=7),
     "drive": line("drive --throttle 20 --for 0.3", armed=True),
     "goto": line("goto --by 3 0", armed=True), "home": line("home", armed=True), "speed": line("speed 0.6", armed=True),

@@ -49,7 +49,7 @@ def test_a_change_is_done_when_the_heartbeat_reports_it(capsys: Capture, autopil
         assert changed.code == 0, changed.err
         assert vehicle.mode == custom
         [record] = changed.records
-        assert (record["ok"], record["mode"], record["verb"]) == (True, name.upper(), "mode")
+        assert (record["ok"], record["mode"], record["verb"]) == (True, "HOLD", "mode")
 
 
 def test_a_usual_mode_does_not_wait_for_the_list(capsys: Capture) -> None:
@@ -82,6 +82,44 @@ def test_a_mode_that_moves_the_vehicle_is_named(capsys: Capture) -> None:
         vehicle.modes = SHORT
         assert "may move by itself in AUTO" in verb(capsys, vehicle, "mode", "AUTO").err
         assert verb(capsys, vehicle, "mode", "STEERING").err == ""
+
+
+def hold_of_px4(vehicle: ForeignVehicle) -> None:
+    """List modes as PX4's main branch does: standard modes have no name."""
+    vehicle.modes = [("", 3 << 24 | 4 << 16, 0), ("", 4 << 24 | 4 << 16, 0), ("", 5 << 24 | 4 << 16, 0),
+                     ("", 3 << 16, 0), ("Manual", 1 << 16, 0), ("Mine", 11 << 24 | 4 << 16, 0),
+                     ("", 99 << 16, 0), ("", 98 << 16, 0), ("Manual", 1 << 16, 0)]  # fmt: skip
+    vehicle.standard_modes = {5 << 24 | 4 << 16: 5, 4 << 24 | 4 << 16: 6, 3 << 16: 1, 99 << 16: 7, 98 << 16: 7}
+
+
+def test_px4_modes_have_names_and_none_is_listed_twice(capsys: Capture) -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        hold_of_px4(vehicle)
+        records = verb(capsys, vehicle, "modes", "--json").records
+        assert [each["name"] for each in records] == [
+            "HOLD", "AUTO_MISSION", "AUTO_RTL", "POSCTL", "MANUAL", "AUTO_EXTERNAL1", "LAND", "LAND 6422528",
+        ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "custom", "told"),
+    [
+        ("Hold", 3 << 24 | 4 << 16, "holds its place, and may drive for it"),
+        ("auto_loiter", 3 << 24 | 4 << 16, "holds its place, and may drive for it"),
+        ("Position", 3 << 16, ""),
+        ("Manual", 1 << 16, ""),
+        ("Mission", 4 << 24 | 4 << 16, "may move by itself in AUTO_MISSION; this program no longer sends heartbeats"),
+        ("mine", 11 << 24 | 4 << 16, "may move by itself in AUTO_EXTERNAL1"),
+    ],
+)
+def test_a_mode_of_px4_is_told_as_it_is(capsys: Capture, name: str, custom: int, told: str) -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        hold_of_px4(vehicle)
+        vehicle.mode = 1 << 16
+        changed = verb(capsys, vehicle, "mode", name)
+        assert (changed.code, vehicle.mode) == (0, custom)
+        assert told in changed.err
+        assert bool(told) == ("may" in changed.err)
 
 
 def test_a_mode_that_does_not_exist(capsys: Capture) -> None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from dialects.enums import Autopilot, VehicleType
+from dialects.kinds import find_kind
+from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.verbs.exit_codes import VerbError
 from groundstation.verbs.line.parser import parse_line
 from groundstation.verbs.line.rules import LINE_RULES
@@ -62,7 +65,9 @@ def test_a_mistake_is_one_line(text: str, error: str, capsys: pytest.CaptureFixt
 )  # fmt: skip
 def test_what_asks_first(text: str, asks: bool) -> None:
     parsed = parse_line(text)
-    assert parsed.rule.asks(parsed.options) is asks
+    rover = VehicleState(1, 1)
+    rover.model = find_kind(Autopilot.GENERIC, VehicleType.GROUND_ROVER)
+    assert parsed.rule.asks(parsed.options, rover) is asks
 
 
 @pytest.mark.parametrize(

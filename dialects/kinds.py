@@ -1,0 +1,172 @@
+"""KINDS and DRIVEN: the kinds of vehicles by MAV_TYPE and MAV_AUTOPILOT, and those of them that keys drive.
+
+Only what neutral demands, HOLD and disarming stop is driven. Every other kind is shown, with one line why it is not
+driven. To drive another kind, give it a row in DRIVEN, and its axes (dialects/axes.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+
+import msgspec
+
+from dialects import rover
+from dialects.enums import Autopilot, ModeFlag, VehicleType, type_name
+from dialects.mode_tables import ARDUPILOT, AUTO_MAIN, HOLD, PX4, PX4_ALIASES, ROVER, VTOL, ModeTable, px4_number
+from dialects.modes import Mode
+
+MANUAL = "MANUAL"
+"""The mode in which the demand goes to the motors, of all autopilots that have one."""
+
+
+class VehicleKind(msgspec.Struct, frozen=True):
+    """One kind of vehicle of one autopilot. The default is a kind that is only shown."""
+
+    word: str
+    """What it is called, e.g. "rover"."""
+    refusal: str = ""
+    """Why keys, setpoints and modes by number do not drive it, in one line; "" if they do."""
+    modes: ModeTable = {}
+    """custom_mode -> name, also of modes that are not selectable."""
+    aliases: Mapping[str, str] = {}
+    """Other names of these modes -> name."""
+    keys: frozenset[str] = frozenset()
+    """Names of the modes in which the driver's demand moves it."""
+    standing: frozenset[str] = frozenset()
+    """Names of the modes in which it stays where it is. Every mode in neither set is autonomous."""
+    hidden: frozenset[str] = frozenset()
+    """Names of modes that nobody selects."""
+    arms_only_in_manual: bool = False
+    """It changes to MANUAL before arming from every mode; others only from a standing one, where no demand counts."""
+    hold_moves: bool = False
+    """Its HOLD keeps a place by driving, instead of keeping the motors neutral."""
+    falls: bool = False
+    """Without power it falls: the emergency stop of one that is in the air asks first."""
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether keys drive it."""
+        return not self.refusal
+
+    def mode_name(self, custom_mode: int) -> str:
+        """Return the name of a HEARTBEAT's custom_mode; "mode 99" for a number that is not known."""
+        return self.modes.get(custom_mode) or f"mode {custom_mode}"
+
+    def number_of(self, name: str) -> int | None:
+        """Return the custom_mode of a name or an alias in any case; None if this kind has no such mode."""
+        wanted = name.upper()
+        wanted = self.aliases.get(wanted, wanted)
+        return next((number for number, each in self.modes.items() if each == wanted), None)
+
+    @property
+    def choices(self) -> dict[str, int]:
+        """Name -> custom_mode of what the operator may select; empty for a kind that is not driven."""
+        if not self.is_driven:
+            return {}
+        return {name: number for number, name in self.modes.items() if name not in self.hidden}
+
+    def moves_itself(self, mode: str) -> bool:
+        """Return whether it may move without demands in this mode; also in one that is not known."""
+        return mode not in self.keys and mode not in self.standing
+
+
+_STANDING = frozenset({HOLD, Mode.INITIALISING.name})
+_ROVER_KEYS = frozenset(mode.name for mode in Mode if mode.flag & ModeFlag.MANUAL)
+_PX4_KEYS = frozenset({MANUAL, "ALTCTL", "POSCTL", "POSCTL_SLOW", "ACRO", "STABILIZED"})
+_PX4_ROVER_MODES = (
+    *(px4_number(main) for main in (1, 2, 3, 5, 6, 7)),
+    *(px4_number(AUTO_MAIN, sub) for sub in (3, 4, 5)),
+)
+"""custom_mode of what a rover of PX4 has."""
+
+_ROVER = VehicleKind(
+    "rover", modes=ROVER, keys=_ROVER_KEYS, standing=_STANDING, hidden=frozenset({Mode.INITIALISING.name})
+)
+"""Of ArduRover. Our own vehicle, and what follows its definitions, has the same modes."""
+_PX4_ROVER = VehicleKind(
+    "rover", modes=PX4, aliases=PX4_ALIASES, keys=_PX4_KEYS, standing=_STANDING, arms_only_in_manual=True,
+    hold_moves=True, hidden=frozenset(name for number, name in PX4.items() if number not in _PX4_ROVER_MODES),
+)  # fmt: skip
+
+DRIVEN: Mapping[tuple[str, int], VehicleKind] = {
+    (word, autopilot): msgspec.structs.replace(kind, word=word)
+    for word in ("rover", "boat")
+    for autopilot, kind in (
+        (Autopilot.GENERIC, _ROVER),
+        (Autopilot.ARDUPILOT, _ROVER),
+        (Autopilot.PX4, _PX4_ROVER),
+    )
+}
+"""Word of KINDS and MAV_AUTOPILOT -> the kinds that keys drive."""
+
+
+class TypeRow(msgspec.Struct, frozen=True):
+    """What is known of a MAV_TYPE."""
+
+    word: str
+    """What it is called."""
+    why: str
+    """Completes "keys do not drive a WORD: ", for a kind without a row in DRIVEN."""
+    falls: bool = False
+    """See VehicleKind."""
+
+
+KINDS: Mapping[int, TypeRow] = {
+    VehicleType.GROUND_ROVER: TypeRow("rover", "its autopilot is not known"),
+    VehicleType.SURFACE_BOAT: TypeRow("boat", "its autopilot is not known"),
+    **dict.fromkeys(
+        (
+            rover.MAV_TYPE_QUADROTOR, rover.MAV_TYPE_HEXAROTOR, rover.MAV_TYPE_OCTOROTOR, rover.MAV_TYPE_TRICOPTER,
+            rover.MAV_TYPE_DECAROTOR, rover.MAV_TYPE_DODECAROTOR, rover.MAV_TYPE_GENERIC_MULTIROTOR,
+        ),
+        TypeRow("copter", "a released key lets it fall", falls=True),
+    ),
+    **dict.fromkeys(
+        (rover.MAV_TYPE_HELICOPTER, rover.MAV_TYPE_COAXIAL, rover.MAV_TYPE_VTOL_GYRODYNE),
+        TypeRow("helicopter", "a released key lets it fall", falls=True),
+    ),
+    **dict.fromkeys(
+        (
+            rover.MAV_TYPE_FIXED_WING, rover.MAV_TYPE_FLAPPING_WING, rover.MAV_TYPE_PARAFOIL, rover.MAV_TYPE_KITE,
+        ),
+        TypeRow("plane", "it cannot stand still", falls=True),
+    ),
+    **dict.fromkeys(VTOL, TypeRow("VTOL plane", "it cannot stand still", falls=True)),
+    **dict.fromkeys(
+        (rover.MAV_TYPE_AIRSHIP, rover.MAV_TYPE_FREE_BALLOON),
+        TypeRow("airship", "no neutral stops it", falls=True),
+    ),
+    rover.MAV_TYPE_ROCKET: TypeRow("rocket", "no neutral stops it", falls=True),
+    rover.MAV_TYPE_SUBMARINE: TypeRow("submarine", "two axes are not enough for it"),
+    rover.MAV_TYPE_ANTENNA_TRACKER: TypeRow("antenna tracker", "it does not drive"),
+}  # fmt: skip
+"""MAV_TYPE -> what it is. A type without a row is not driven: what stops it is not known."""
+
+
+@lru_cache(maxsize=256)
+def find_kind(autopilot: int, kind: int) -> VehicleKind:
+    """Return the kind of a vehicle with these MAV_AUTOPILOT and MAV_TYPE."""
+    row = KINDS.get(kind)
+    if row is None:
+        return VehicleKind("vehicle", _unknown(kind), _modes(autopilot, kind), _aliases(autopilot), falls=True)
+    driven = DRIVEN.get((row.word, autopilot))
+    if driven is not None:
+        return driven
+    refusal = f"keys do not drive a {row.word}: {row.why}"
+    return VehicleKind(row.word, refusal, _modes(autopilot, kind), _aliases(autopilot), falls=row.falls)
+
+
+def _unknown(kind: int) -> str:
+    if kind == rover.MAV_TYPE_GENERIC:
+        return "keys drive rovers and boats, and this one does not say what it is (MAV_TYPE 0)"
+    return f"keys drive rovers and boats, and this is a {type_name(kind)} (MAV_TYPE {kind})"
+
+
+def _modes(autopilot: int, kind: int) -> ModeTable:
+    """Return the names of the modes of a vehicle that is only shown."""
+    return PX4 if autopilot == Autopilot.PX4 else ARDUPILOT.get(kind, {}) if autopilot == Autopilot.ARDUPILOT else {}
+
+
+def _aliases(autopilot: int) -> Mapping[str, str]:
+    return PX4_ALIASES if autopilot == Autopilot.PX4 else {}
