@@ -27,9 +27,10 @@ REASONS: tuple[tuple[str, str], ...] = (
     ("ARMING_CHECK", "0: the rover arms with any fault that its checks would have found."),
     # PX4
     ("COM_RC_LOSS_T", "The rover keeps the last demand for this long when the link is cut."),
-    ("NAV_RCL_ACT", "What follows when manual control is lost: 1 holds, 2 drives home, 0 does nothing."),
+    ("NAV_RCL_ACT", "When manual control is lost: 6 disarms, 1 holds a place and may drive for it, 2 drives home."),
+    ("COM_FAIL_ACT_T", "For how long the rover holds a place before it drives home, when a link is lost."),
     ("COM_DL_LOSS_T", "From the last heartbeat of the ground station to NAV_DLL_ACT."),
-    ("NAV_DLL_ACT", "What follows when the ground station is lost: 1 holds, 2 drives home, 0 does nothing."),
+    ("NAV_DLL_ACT", "When the ground station is lost: 6 disarms, 1 holds a place, 2 drives home, 0 does nothing."),
     ("COM_RC_IN_MODE", "0 and 4: keys do not drive. 1: manual control of a ground station does."),
     # mavhelm
     ("MAN_TIMEOUT", "A demand older than this is neutral: the time from a lost link to stopped motors."),

@@ -157,7 +157,7 @@ def test_a_px4_tells_its_actuators_and_its_failsafes() -> None:
     cockpit = Cockpit(vehicle)
     cockpit.run(6.0)
     assert [(each.source, each.bound, each.never) for each in cockpit.view.stops] == [
-        ("COM_RC_LOSS_T", 0.5, False), ("COM_DL_LOSS_T", None, True),
+        ("COM_RC_LOSS_T", 0.5, False), ("NAV_RCL_ACT", None, False), ("COM_DL_LOSS_T", None, True),
     ]  # fmt: skip
     assert [(output.name, output.value) for output in cockpit.view.outputs] == [("output 1", 0.0), ("output 2", -0.5)]
     assert cockpit.view.demand is None

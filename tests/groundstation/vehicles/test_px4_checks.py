@@ -26,7 +26,8 @@ ALERT_WIDTH = 76
 """Columns of the alert line at 80 columns."""
 
 DEFAULTS: dict[str, float] = {
-    "COM_RC_IN_MODE": 3, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 2, "COM_DL_LOSS_T": 10, "NAV_DLL_ACT": 0,
+    "COM_RC_IN_MODE": 3, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 2, "COM_FAIL_ACT_T": 5,
+    "COM_DL_LOSS_T": 10, "NAV_DLL_ACT": 0,
     "CA_AIRFRAME": 6,
 }  # fmt: skip
 """Of PX4 v1.16 with the airframe 50000, Generic Rover Differential."""
@@ -34,7 +35,7 @@ DEFAULTS: dict[str, float] = {
 
 def value(name: str, number: float) -> Received:
     """Return a PARAM_VALUE of PX4: the bytes of an int32 in the place of the float."""
-    if name == "COM_RC_LOSS_T":
+    if name in ("COM_RC_LOSS_T", "COM_FAIL_ACT_T"):
         message = ParamValue(name.encode(), number, REAL32, 1000, 500)
     else:
         (coded,) = struct.unpack("<f", struct.pack("<i", int(number)))
@@ -69,11 +70,13 @@ class FakePx4(FakeVehicle):
     ("name", "good", "bad", "warning"),
     [
         ("COM_RC_LOSS_T", 0.5, 5.0, "COM_RC_LOSS_T 5: drives on for 5 s when the link is lost; set it to 0.5"),
-        ("NAV_RCL_ACT", 1, 0, "NAV_RCL_ACT 0: never stops when the link is lost; set it to 1 (hold)"),
-        ("NAV_RCL_ACT", 6, 2, "NAV_RCL_ACT 2: drives home when the link is lost; set it to 1 (hold)"),
-        ("NAV_RCL_ACT", 5, 3, "NAV_RCL_ACT 3: selects land mode when the link is lost; set it to 1 (hold)"),
-        ("NAV_DLL_ACT", 1, 0, "NAV_DLL_ACT 0: no failsafe when the GCS is lost; set it to 1 (hold)"),
-        ("NAV_DLL_ACT", 6, 2, "NAV_DLL_ACT 2: drives home when the GCS is lost; set it to 1 (hold)"),
+        ("NAV_RCL_ACT", 6, 0, "NAV_RCL_ACT 0: never stops when the link is lost; set it to 6 (disarm)"),
+        ("NAV_RCL_ACT", 6, 1, "NAV_RCL_ACT 1: holds a place, and may drive for it; set it to 6 (disarm)"),
+        ("NAV_RCL_ACT", 6, 2, "NAV_RCL_ACT 2: drives home when the link is lost; set it to 6 (disarm)"),
+        ("NAV_RCL_ACT", 5, 3, "NAV_RCL_ACT 3: land mode when the link is lost; set it to 6 (disarm)"),
+        ("COM_FAIL_ACT_T", 5, 25, "COM_FAIL_ACT_T 25: holds a place for 25 s before it acts; set it to 5"),
+        ("NAV_DLL_ACT", 1, 0, "NAV_DLL_ACT 0: no failsafe when the GCS is lost; set it to 6 (disarm)"),
+        ("NAV_DLL_ACT", 6, 2, "NAV_DLL_ACT 2: drives home when the GCS is lost; set it to 6 (disarm)"),
         ("COM_DL_LOSS_T", 10, 60, "COM_DL_LOSS_T 60: notices a lost ground station after 60 s; set it to 10"),
         ("COM_RC_IN_MODE", 1, 0, "COM_RC_IN_MODE 0: obeys RC only, keys do not drive; set it to 1"),
         ("COM_RC_IN_MODE", 2, 4, "COM_RC_IN_MODE 4: ignores manual control, keys do not drive; set it to 1"),
@@ -87,19 +90,24 @@ def test_each_setting(name: str, good: float, bad: float, warning: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("after", "action", "words"),
+    ("after", "action", "hold", "words"),
     [
-        (0.5, 1, "by its settings it stops after 0.5 s"),
-        (5.0, 6, "by its settings it stops after 5 s"),
-        (0.5, 2, "by its settings it drives home after 0.5 s"),
-        (0.5, 0, "by its settings it never stops"),
-        (0.5, 3, None),
-        (0.5, None, None),
-        (None, 1, None),
+        (0.5, 1, 5.0, "by its settings it holds a place after 0.5 s, and may drive for it"),
+        (5.0, 6, None, "by its settings it stops after 5 s (disarmed)"),
+        (0.5, 5, None, "by its settings it stops after 0.5 s (terminated)"),
+        (0.5, 2, 5.0, "by its settings it holds a place after 0.5 s, and drives home 5 s later"),
+        (0.5, 3, 2.0, "by its settings it holds a place after 0.5 s, and selects land mode 2 s later"),
+        (0.5, 2, None, None),
+        (0.5, 0, 5.0, "by its settings it never stops"),
+        (0.5, 4, 5.0, None),
+        (0.5, None, 5.0, None),
+        (None, 1, 5.0, None),
     ],
 )
-def test_what_a_lost_link_means(after: float | None, action: float | None, words: str | None) -> None:
-    known = {"COM_RC_LOSS_T": after, "NAV_RCL_ACT": action}
+def test_what_a_lost_link_means(
+    after: float | None, action: float | None, hold: float | None, words: str | None
+) -> None:
+    known = {"COM_RC_LOSS_T": after, "NAV_RCL_ACT": action, "COM_FAIL_ACT_T": hold}
     check = check_with(**{name: number for name, number in known.items() if number is not None})
     assert check.without_link == words
 
@@ -108,11 +116,11 @@ def test_a_rover_with_default_settings_is_read_and_warned_of() -> None:
     cockpit = Cockpit(FakePx4())
     cockpit.run(2.0)
     assert [warning.split(":")[0] for warning in cockpit.view.warnings] == ["NAV_RCL_ACT 2", "NAV_DLL_ACT 0"]
-    assert cockpit.view.without_link == "by its settings it drives home after 0.5 s"
+    assert cockpit.view.without_link == "by its settings it holds a place after 0.5 s, and drives home 5 s later"
 
 
 def test_settings_that_cannot_be_read_are_named_and_asked_for_again() -> None:
-    vehicle = FakePx4(NAV_RCL_ACT=1, NAV_DLL_ACT=1)
+    vehicle = FakePx4(NAV_RCL_ACT=6, NAV_DLL_ACT=1)
     del vehicle.values["COM_RC_LOSS_T"]
     cockpit = Cockpit(vehicle)
     cockpit.run(5.0)
@@ -124,7 +132,7 @@ def test_settings_that_cannot_be_read_are_named_and_asked_for_again() -> None:
 
 
 def test_a_restart_reads_the_settings_again() -> None:
-    vehicle = FakePx4(NAV_RCL_ACT=1, NAV_DLL_ACT=1)
+    vehicle = FakePx4(NAV_RCL_ACT=6, NAV_DLL_ACT=1)
     cockpit = Cockpit(vehicle)
     cockpit.run(2.0)
     assert not cockpit.view.warnings

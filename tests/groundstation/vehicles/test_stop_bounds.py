@@ -17,7 +17,10 @@ ARDUPILOT = {
     "RC_OVERRIDE_TIME": 3.0, "FS_THR_ENABLE": 1.0, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0, "FS_TIMEOUT": 1.5,
     "FS_ACTION": 2.0,
 }  # fmt: skip
-PX4 = {"COM_RC_IN_MODE": 1.0, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 1.0, "COM_DL_LOSS_T": 10.0, "NAV_DLL_ACT": 2.0}
+PX4 = {
+    "COM_RC_IN_MODE": 1.0, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 2.0, "COM_FAIL_ACT_T": 5.0,
+    "COM_DL_LOSS_T": 10.0, "NAV_DLL_ACT": 2.0,
+}  # fmt: skip
 
 Row = tuple[str, str, float | str | None]
 
@@ -111,9 +114,22 @@ def test_a_boat_is_an_ardurover() -> None:
 
 
 def test_a_px4_rover() -> None:
-    assert rows(foreign(Autopilot.PX4, PX4)) == [("no command", "HOLD", 0.5), ("no station", "RTL", 10.0)]
+    """Measured with its defaults: HOLD 0.7 s after the last demand, RTL 5.9 s."""
+    assert rows(foreign(Autopilot.PX4, PX4)) == [
+        ("no command", "HOLD", 0.5),
+        ("... then", "RTL", 5.5),
+        ("no station", "RTL", 15.0),
+    ]
+    holding = foreign(Autopilot.PX4, PX4 | {"NAV_RCL_ACT": 1.0, "NAV_DLL_ACT": 1.0})
+    assert rows(holding) == [("no command", "HOLD", 0.5), ("... then", "--", None), ("no station", "HOLD", 10.0)]
+    disarming = foreign(Autopilot.PX4, PX4 | {"NAV_RCL_ACT": 6.0, "NAV_DLL_ACT": 6.0})
+    assert rows(disarming) == [("no command", "disarm", 0.5), ("... then", "--", None), ("no station", "disarm", 10.0)]
     off = foreign(Autopilot.PX4, PX4 | {"NAV_RCL_ACT": 0.0, "NAV_DLL_ACT": 0.0})
-    assert rows(off) == [("no command", "nothing", "never"), ("no station", "nothing", "never")]
+    assert rows(off) == [
+        ("no command", "nothing", "never"),
+        ("... then", "--", None),
+        ("no station", "nothing", "never"),
+    ]
     ignoring = foreign(Autopilot.PX4, PX4 | {"COM_RC_IN_MODE": 4.0})
     assert rows(ignoring)[0] == ("no command", "ignored", None)
 
