@@ -41,7 +41,7 @@ async def request(session: VerbSession, options: argparse.Namespace, output: Out
         output.note(f"GCS {asked} is asked for control of {session.vehicle.name}")
         until = session.now + ANSWER_WITHIN
         while report.state is RequestState.REFUSED and session.now < until:
-            if await session.wait_for(lambda: not session.vehicle.driver, until - session.now):
+            if await session.wait_for(lambda: _is_free_or_ours(session), until - session.now):
                 report = await ask_for_control(session, takeover=options.takeover)
     return _finish(session, report, output, "is controlled by this program; control ends some seconds after this verb")
 
@@ -53,7 +53,7 @@ async def release(session: VerbSession, options: argparse.Namespace, output: Out
 
 
 async def give(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-    """Release control when this ground station asks for it; done when the vehicle reports it as the driver."""
+    """Give control to this ground station when it asks; done when the vehicle reports it as the driver."""
     await session.need_only_vehicle(options.vehicle)
     asked = _listen(session, options.system, options.station)
     report = await ask_for_control(session)
@@ -63,7 +63,7 @@ async def give(session: VerbSession, options: argparse.Namespace, output: Output
     if not await session.wait_for(asked, options.wait):
         await _release(session)
         raise VerbError(ExitCode.DIFFERS, f"GCS {options.station} did not ask within {options.wait:g} s")
-    report = await _release(session)
+    report = await _release(session, options.station if session.vehicle.has_rover_dialect else 0)
     if report.state is RequestState.ACCEPTED:
         station = options.station
         if not await session.wait_for(lambda: session.vehicle.driver == station, ANSWER_WITHIN):
@@ -89,8 +89,13 @@ async def ask_for_control(session: VerbSession, *, takeover: bool = False) -> Re
     return await _send(session, "request control", (REQUEST, float(takeover), ANSWER_WITHIN))
 
 
-async def _release(session: VerbSession) -> RequestReport:
-    report = await _send(session, "release control", (RELEASE,))
+def _is_free_or_ours(session: VerbSession) -> bool:
+    """Return whether the driver has released control, or given it to this program."""
+    return not session.vehicle.driver or session.contact.in_control
+
+
+async def _release(session: VerbSession, station: int = 0) -> RequestReport:
+    report = await _send(session, "release control", (RELEASE, 0.0, 0.0, float(station)))
     if report.state is RequestState.ACCEPTED:
         await session.wait_for(lambda: not session.contact.in_control, RELEASE_WITHIN)
     return report

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from groundstation.intents.driving import DriveKeyUp
-from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.session import Quit, ReportKeyReleases
 from groundstation.intents.union import AnyIntent
-from groundstation.intents.vehicle import GiveControl, KeepControl, RequestControl, SetMode
+from groundstation.intents.vehicle import GiveControl, KeepControl, ReleaseControl, RequestControl
 from groundstation.snapshot import Snapshot
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import FORWARD, Screen, until
@@ -48,22 +48,31 @@ def pair(tmp_path: Path) -> Iterator[Pair]:
         yield Pair(tmp_path, stack)
 
 
+def in_manual(screen: Screen) -> bool:
+    vehicle = screen.snapshot.vehicle
+    return vehicle is not None and vehicle.armed and vehicle.mode == "MANUAL" and not vehicle.failsafes
+
+
 def drives(screen: Screen) -> Snapshot:
     return screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.in_control)
 
 
-def test_given_control_stops_the_rover_and_the_other_station_drives(pair: Pair) -> None:
-    pair.answer(GiveControl())
+@pytest.mark.parametrize("intent", [GiveControl(), ReleaseControl(), Quit()], ids=["give", "release", "quit"])
+def test_given_control_stops_the_rover_and_the_other_station_drives(pair: Pair, intent: AnyIntent) -> None:
+    """Wheels turn, control is handed over, wheels are neutral, and the mode stays; nothing says failsafe."""
+    pair.answer(intent)
     drives(pair.other)
     until(pair.vehicle.stands)
-    pair.driver.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 254)
-    assert pair.driver.snapshot.handover is None
+    assert in_manual(pair.other)
+    if not isinstance(intent, Quit):
+        pair.driver.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 254)
+        assert pair.driver.snapshot.handover is None
     pair.other.client.send(ReportKeyReleases())
-    pair.other.insist(
-        lambda: pair.other.client.send(SetMode(mode="MANUAL")),
-        lambda seen: seen.vehicle is not None and seen.vehicle.mode == "MANUAL",
-    )
     pair.other.insist(lambda: pair.other.client.send(DriveKeyUp(key="i"), FORWARD), lambda _: pair.vehicle.turning())
+    assert in_manual(pair.other)
+    texts = [line.text for screen in (pair.driver, pair.other) for line in screen.snapshot.texts]
+    assert any("in control" in text for text in texts)
+    assert [text for text in texts if "ailsafe" in text or "HOLD" in text] == []
 
 
 def test_kept_control_drives_on(pair: Pair) -> None:

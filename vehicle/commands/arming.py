@@ -30,6 +30,13 @@ SAFE, DANGEROUS = 0, 1
 """SAFETY_SWITCH_STATE."""
 FORWARD_INTERVAL = 3.0
 """s until the request of the same ground station is forwarded to the owner again."""
+ANSWER_WITHIN, LEAST_ANSWER, MOST_ANSWER = 10.0, 3.0, 60.0
+"""s for which a request for control may be answered, unless its parameter 3 names another time within these limits of
+the specification (development.xml, 32100)."""
+_STATIONS = range(256)
+"""System ids, and 0."""
+ASKERS_MAX = 8
+"""Ground stations that ask for control at a time; the oldest is forgotten."""
 
 
 class ArmingCommands:
@@ -44,6 +51,9 @@ class ArmingCommands:
         self._note = context.arming_note
         self._forwarded: tuple[Conversation | None, float] = (None, -math.inf)
         """Who sent the newest REQUEST_OPERATOR_CONTROL that was forwarded, and when."""
+        self._asking: dict[int, tuple[CommandRequest, float]] = {}
+        """System id of a ground station that was refused control -> its request, and until when it is answered; the
+        newest last."""
 
     def commands(self) -> CommandTable:
         """Return the rows of the commands handled here."""
@@ -64,7 +74,7 @@ class ArmingCommands:
             CommandSpec(Command.DO_FLIGHTTERMINATION, self._terminate, Access.ANYONE,
                         "1: above 0.5 emergency stop until a restart", broadcast=True),
             CommandSpec(Command.REQUEST_OPERATOR_CONTROL, self._request_control, Access.INTRODUCED,
-                        "1: 1 request control, 0 release it; 2: 1 others may take over"),
+                        "1: 1 request control, 0 give it to who asks (4: to whom); 2: 1 others may take over"),
         )  # fmt: skip
 
     def messages(self) -> InboundTable:
@@ -154,32 +164,62 @@ class ArmingCommands:
         return self._refuse("termination", request, "parameter 1 is not 1", now)
 
     def _request_control(self, request: CommandRequest, now: float) -> Result | CommandReply:
-        """Parameter 1: 1 requests control, 0 releases it; 2: 1 lets others take over without asking."""
+        """Parameter 1: 1 requests control, 0 releases it; 2: 1 lets others take over without asking.
+
+        Parameter 4 of a release names the ground station that gets control, if it asks for it; 0: the newest that does.
+        """
         action, takeover, gcs = (
             request.params[0],
             value_or_default(request.params[1]),
             value_or_default(request.params[3]),
         )
-        if action not in (0, 1) or takeover not in (0, 1) or gcs not in (0, request.system):
+        if action not in (0, 1) or takeover not in (0, 1) or gcs not in _STATIONS:
             return Result.DENIED
         if action == 0:
-            return self._release_control(request, now)
+            return self._release_control(request, int(gcs), now)
+        if gcs not in (0, request.system):
+            return Result.DENIED
         denial = self._ownership.takeover_denial_reason(request, now)
         if denial is None:
             self._control.take(Conversation.of(request), now)
             self._ownership.takeover_allowed = bool(takeover)
+            self._asking.pop(request.system, None)
             return Result.ACCEPTED
+        self._note_asker(request, now)
         forwarded = self._forward(request, now)
         return CommandReply(self._refuse("control", request, denial, now), forwarded)
 
-    def _release_control(self, request: CommandRequest, now: float) -> Result:
+    def _release_control(self, request: CommandRequest, station: int, now: float) -> Result:
+        """Give control to a ground station that asks for it, in its mode and neutral first; else change to HOLD."""
         if self._ownership.driver is None:
             return Result.ACCEPTED
         if not self._ownership.is_driver(request, now):
             return Result.FAILED
+        asker = self._pop_asker(station if station != request.system else 0, now)
+        if asker is not None:
+            self._control.take(Conversation.of(asker), now)
+            return Result.ACCEPTED
         self._control.release("gave it up", now)
         self._safety.choose_mode(Mode.HOLD, now)
         return Result.ACCEPTED
+
+    def _note_asker(self, request: CommandRequest, now: float) -> None:
+        """Keep who may be given control: one with other ids than the driver, and a key that may drive."""
+        if not self._ownership.may_be_given_to(request):
+            return
+        within = value_or_default(request.params[2])
+        within = within if LEAST_ANSWER <= within <= MOST_ANSWER else ANSWER_WITHIN
+        self._asking.pop(request.system, None)
+        if len(self._asking) >= ASKERS_MAX:
+            del self._asking[next(iter(self._asking))]
+        self._asking[request.system] = (request, now + within)
+
+    def _pop_asker(self, station: int, now: float) -> CommandRequest | None:
+        """Return the request of this ground station, or the newest one (0), that still waits for an answer."""
+        waiting = [each for each, until in self._asking.values() if now <= until and station in (0, each.system)]
+        self._asking.clear()
+        may = [each for each in waiting if self._ownership.may_be_given_to(each)]
+        return may[-1] if may else None
 
     def _forward(self, request: CommandRequest, now: float) -> tuple[Outgoing, ...]:
         """Forward the request to the driver alone: it may release control, or allow the takeover.

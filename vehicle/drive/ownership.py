@@ -40,7 +40,8 @@ class Ownership:
         """Other ground stations may take control without the consent of the owner."""
         self._params = params
         self._texts = texts
-        self._boot = boot
+        self._heard = boot
+        """When a driver that has left was heard last; the boot before there was one."""
         self._proofs = RecentProofs()
         self._proof_at: dict[Conversation, float] = {}
         """Sender -> when its newest proof came, good or not; the newest last."""
@@ -81,7 +82,7 @@ class Ownership:
         return driver is not None and driver.session is None and not (driver.is_copy or driver.is_barred(now))
 
     def silence_duration(self, now: float) -> float:
-        """Return the s since the last message of the driver, or since boot if there was none."""
+        """Return the s since the last message of the driver, or of the one before; without any, since boot."""
         return now - self._last_heard
 
     @property
@@ -92,7 +93,7 @@ class Ownership:
 
     @property
     def _last_heard(self) -> float:
-        return self.driver.last_heard if self.driver else self._boot
+        return self.driver.last_heard if self.driver else self._heard
 
     def is_lost(self, now: float) -> bool:
         """Return True if the driver has sent nothing for FS_GCS_TIMEOUT."""
@@ -122,6 +123,10 @@ class Ownership:
         if sender.role < Role.DRIVE or self._is_excluded(sender) or not (self.takeover_allowed or self.is_lost(now)):
             return reason
         return None
+
+    def may_be_given_to(self, sender: Sender) -> bool:
+        """Return whether the driver may give control to a sender that asks for it."""
+        return sender.role >= Role.DRIVE and not self._is_excluded(sender) and not self.has_driver_ids(sender)
 
     def setpoint_denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a setpoint does not count, or None: only the driver's do, and only fresh ones."""
@@ -170,6 +175,7 @@ class Ownership:
         """Release control; `why` completes the STATUSTEXT."""
         self._texts.send_event(Severity.NOTICE, f"No GCS is in control: GCS {self.owner} {why}", now)
         self._texts.reset_once("demand")
+        self._heard = self._last_heard
         self.driver = None
 
     def add_proof(self, conversation: Conversation, proof: Proof, now: float, *, good: bool) -> None:
