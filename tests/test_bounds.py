@@ -1,0 +1,57 @@
+"""The bounds that docs/safety.md and docs/security.md promise, as numbers: elsewhere tests use the constants."""
+
+from __future__ import annotations
+
+import importlib
+
+import pytest
+
+DAY = 86_400 * 100_000
+"""In timestamps of 10 us."""
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("vehicle.drive.driver.SUCCESSION_TIME", 0.7),
+        ("vehicle.drive.driver.CLASH_PAUSE", 0.7),
+        ("vehicle.drive.operator_session.PROOF_VALID", 1.0),
+        ("vehicle.drive.gate.MOTOR_TEST_THROTTLE_MAX", 0.3),
+        ("vehicle.drive.gate.MOTOR_TEST_TIME_MAX", 3.0),
+        ("vehicle.safety.monitor.LATE_CYCLE_TIME", 0.1),
+        ("vehicle.safety.monitor.BAD_CYCLES_MAX", 3),
+        ("vehicle.navigation.estimator.GPS_LOST", 3.0),
+        ("vehicle.safety.battery.CRITICAL_TIMER", 3.0),
+        ("vehicle.safety.battery.SENSOR_TIMEOUT", 5.0),
+        ("vehicle.safety.failsafe.BLOCKED_SPEED_MAX", 0.05),
+        ("vehicle.safety.failsafe.BLOCKED_THROTTLE_MIN", 0.2),
+        ("vehicle.drive.gate.RAMP_TOLERANCE", 0.05),
+        ("groundstation.station.stall.STALL_TIMEOUT", 0.3),
+        ("groundstation.station.stall.REST_STALL_TIMEOUT", 1.0),
+        ("groundstation.watchdog.watchdog.SEND_FOR", 5.0),
+        ("groundstation.intents.session.LEASE_TIMEOUT", 0.3),
+        ("groundstation.intents.session.REST_LEASE_TIMEOUT", 1.0),
+        ("groundstation.intents.driving.HOLD_TIME", 1.0),
+        ("groundstation.station.motor_test.LONGEST", 2.0),
+        ("groundstation.station_socket.relay.ALIVE_WITHIN", 0.3),
+        ("groundstation.station.handover.ANSWER_WITHIN", 10.0),
+        ("groundstation.input.pad_stick.PAD_WINDOW", 0.25),
+        ("groundstation.station.departure.DISARM_TIMEOUT", 2.0),
+        ("link.signing.verifier.NEW_STREAM_WINDOW", 6_000_000),
+        ("link.signing.verifier.CRASH_WINDOW", 500_000),
+        ("link.signing.verifier.PINNED_FOR", 10.0),
+        ("link.signing.verifier.AHEAD_MAX", DAY),
+        ("link.signing.clock.BOOT_LEAD", 6_000_000),
+        ("link.signing_keeper.STORE_PERIOD", 30.0),
+        ("link.signing.signature.DIGEST_SIZE", 6),
+        ("link.signing.streams.MAX_STREAMS", 64),
+        ("link.protocol.peer_table.PEER_SILENCE", 10.0),
+        ("link.protocol.peer_table.OWNER_PLACES", 4),
+        ("link.protocol.peer_table.RUN_SILENCE", 1.5),
+        ("vehicle.rover.STOP_ANSWER_PERIOD", 1.0),
+        ("link.protocol.signing_guard.ANSWER_PERIOD", 1.0),
+    ],
+)
+def test_a_bound_is_the_one_that_the_documents_promise(name: str, value: float) -> None:
+    module, _, constant = name.rpartition(".")
+    assert getattr(importlib.import_module(module), constant) == value
