@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import time
 from typing import Any
 
 import pytest
@@ -108,14 +107,12 @@ def test_ten_thousand_positions_are_thinned_and_keep_their_outline() -> None:
         for step in range(10_000)
     )  # fmt: skip
     points = tuple(LayerShape((place,)) for place in circle)
-    begun = time.perf_counter()
     for shapes in ((LayerShape(circle),), points):
         found = thin(shapes, 2000)
         count = sum(len(each.places) for each in found)
         assert 500 < count <= 2000
         latitudes = [place.latitude for each in found for place in each.places]
         assert (min(latitudes), max(latitudes)) == pytest.approx((46.99, 47.01), abs=0.0001)
-    assert time.perf_counter() - begun < 5.0
     assert thin(points[:2000], 2000) == points[:2000]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from msgspec.structs import replace
 from link.endpoint import Side, parse_endpoint
 from link.fleet.config import LEASE, THREADS, THREADS_VARIABLE, load_config, load_zenoh
 from link.fleet.transport import open_fleet
+from link.runtime.install_hint import install_command
 from link.signing.role import Role
 from link.transport.reach import is_private
 from link.transport.transport import LinkError
@@ -113,7 +115,8 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 
 def test_without_the_package_one_line_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "zenoh", None)
-    with pytest.raises(LinkError, match=r"^fleets need the package eclipse-zenoh: pip install 'mavhelm\[fleet\]'$"):
+    expected = f"fleets need the package eclipse-zenoh: {install_command('fleet')}"
+    with pytest.raises(LinkError, match=f"^{re.escape(expected)}$"):
         open_fleet(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
     assert not is_private(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
 

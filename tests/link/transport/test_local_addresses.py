@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from contextlib import suppress
 
 from link.transport.local_addresses import PERIOD, LocalAddresses
 
@@ -18,9 +19,10 @@ def test_a_socket_can_listen_on_each_address() -> None:
 
 def test_the_address_of_the_default_route_comes_first() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        sock.connect(("192.0.2.1", 9))
+        with suppress(OSError):  # a machine without a network has no such route
+            sock.connect(("192.0.2.1", 9))
         own = sock.getsockname()[0]
-    if not own.startswith("127."):
+    if own != "0.0.0.0" and not own.startswith("127."):
         assert LocalAddresses().find(0.0)[0] == own
 
 
