@@ -1,16 +1,69 @@
-"""How long a busy machine delayed programs: the time that they were ready to run without a processor (Linux schedstat).
+"""Waits of tests of real programs: until a condition holds, and no less patient on a busy machine than on an idle one.
 
-A bound on a time is the programs' own; the delays of a shared machine are added to it, and no more.
+`wait_until` is the one way to wait for a program, a thread or a socket. What has an event (a condition variable, a
+readable file) waits for that, for at most PATIENCE. What is in virtual time waits in tests/world.py.
+
+`Waits` measures how long a busy machine kept programs waiting for a processor (Linux schedstat). A bound on a time is
+the programs' own; the delays of a shared machine are added to it, and no more.
 """
 
 from __future__ import annotations
 
+import asyncio
 import os
+import threading
+import time
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import TypeVar
 
+Value = TypeVar("Value")
+
+PATIENCE = 60.0
+"""s until a test gives up on what must come. Nothing may be asserted by it: it only ends a test that has failed."""
+POLL = 0.01
+"""s between two looks."""
 SECOND = 1e-9
 """The kernel counts ns here (/proc/PID/task/TID/schedstat, the second number)."""
+
+
+def wait_until(
+    condition: Callable[[], Value],
+    what: str | Callable[[], str] = "it",
+    within: float = PATIENCE,
+    *,
+    each: Callable[[], object] | None = None,
+) -> Value:
+    """Look until `condition` returns something true, and return that.
+
+    `each` is called between two looks in place of a pause, as to read a socket or to renew a lease; it must take a
+    little time itself. Raises AssertionError with `what` after `within` s, to which the delays of this process by a
+    busy machine are added.
+    """
+    waits, began, pause = Waits(), time.monotonic(), threading.Event()
+    while not (value := condition()):
+        took = time.monotonic() - began
+        if took > within and took > within + waits.total():
+            raise AssertionError(f"not within {within:g} s: {what if isinstance(what, str) else what()}")
+        if each is None:
+            pause.wait(POLL)
+        else:
+            each()
+    return value
+
+
+async def wait_until_async(
+    condition: Callable[[], Value], what: str | Callable[[], str] = "it", within: float = PATIENCE
+) -> Value:
+    """Let the event loop run until `condition` returns something true, and return that, as `wait_until` does."""
+    waits, began = Waits(), time.monotonic()
+    while not (value := condition()):
+        took = time.monotonic() - began
+        if took > within and took > within + waits.total():
+            raise AssertionError(f"not within {within:g} s: {what if isinstance(what, str) else what()}")
+        await asyncio.sleep(0.001)
+    return value
 
 
 class Waits:

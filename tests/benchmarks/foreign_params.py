@@ -9,7 +9,8 @@ from statistics import median
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.session import VerbSession, run_session
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Table, brief
-from tests.groundstation.foreign_vehicle import ForeignVehicle, many_params
+from tests.fakes.params import many_params
+from tests.fakes.services import foreign_vehicle
 
 COUNT = 1200
 """Parameters; ArduRover 4.7 has 1235."""
@@ -39,8 +40,8 @@ def run(options: Options) -> Report:
 
 def _fetch(*, files: bool) -> float:
     """Return the s from the request to its end; the vehicle's capabilities are asked for before."""
-    with ForeignVehicle(ftp=files) as vehicle:
-        vehicle.params = dict(many_params(COUNT))
+    with foreign_vehicle(ftp=files) as vehicle:
+        vehicle.params.replace(dict(many_params(COUNT)))
 
         async def script(session: VerbSession) -> int:
             await session.find_vehicle(20.0, 1, vehicle.endpoint)

@@ -13,9 +13,10 @@ from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.driving import SetStyle
 from groundstation.ui.app import ConsoleApp
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.host.crashing_station import ORDER
-from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.groundstation.ui.frames import text
 from tests.groundstation.ui.ptys import PATIENCE, until
 from tests.ports import free_port
@@ -28,10 +29,10 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
     client = StationClient.start([endpoint], log_file=tmp_path / "log")
     app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]))
     try:
-        with UdpVehicle(endpoint) as vehicle:
+        with on_line(FakeVehicle(), endpoint=endpoint) as vehicle:
             async with app.run_test(size=(80, 24)) as pilot:
                 await until(lambda: app.drive.snapshot.vehicle is not None)
-                await hold_until(lambda: pilot.press("r"), lambda: vehicle.core.armed)
+                await hold_until(lambda: pilot.press("r"), lambda: vehicle.armed)
                 await until(lambda: app.drive.snapshot.operator.gate_open)
                 pressed = time.monotonic()
 

@@ -18,8 +18,8 @@ from groundstation.station_socket.connect import running_stations
 from tests.e2e.conftest import Rig
 from tests.e2e.programs import LET_GO, PATIENCE, GroundStation, drive_on
 from tests.e2e.test_stop_matrix import assert_stood, assert_stops
-from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
-from tests.groundstation.line_vehicle import LineVehicle
+from tests.fakes.lines import on_line
+from tests.fakes.rover import LATCH, FakeArduPilot
 from tests.groundstation.screen import children, running, until
 from tests.groundstation.ui.wheel import modes
 from tests.ports import free_port
@@ -72,7 +72,7 @@ class Bench:
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self.rover = FakeArduPilot()
-        vehicle = stack.enter_context(LineVehicle(self.rover, "udpin"))
+        vehicle = stack.enter_context(on_line(self.rover, "udpin"))
         self.program = GroundStation(folder, vehicle.endpoint)
         stack.callback(self.program.end)
         self.before = termios.tcgetattr(self.program._terminal)

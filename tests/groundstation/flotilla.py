@@ -11,7 +11,7 @@ from groundstation.station.station import Station
 from groundstation.vehicles.places import PLACES
 from groundstation.views.base import View, ViewRequest
 from link.protocol.channel import Channel
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.fakes.vehicle import FakeVehicle
 from tests.world import Host
 
 STEP = 0.02

@@ -11,25 +11,26 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.screen import running, until
-from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.ports import free_port
 from tests.waits import Waits
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def moving(vehicle: UdpVehicle, since: float) -> list[float]:
+def moving(vehicle: FakeVehicle, since: float) -> list[float]:
     """Return when the demands arrived that move the vehicle."""
     return [at for at, x in vehicle.demands(since) if x]
 
 
-def neutral(vehicle: UdpVehicle, since: float) -> list[float]:
+def neutral(vehicle: FakeVehicle, since: float) -> list[float]:
     """Return when the neutral demands arrived."""
     return [at for at, x in vehicle.demands(since) if not x]
 
 
-def assert_said_neutral(vehicle: UdpVehicle, since: float) -> None:
+def assert_said_neutral(vehicle: FakeVehicle, since: float) -> None:
     """Check that the last demands of the station were five neutrals."""
     until(lambda: len(neutral(vehicle, since)) >= 5)
     assert len(neutral(vehicle, since)) == 5
@@ -37,7 +38,7 @@ def assert_said_neutral(vehicle: UdpVehicle, since: float) -> None:
 
 
 @contextmanager
-def killed_screen(within: float, *options: str) -> Iterator[tuple[UdpVehicle, int, float]]:
+def killed_screen(within: float, *options: str) -> Iterator[tuple[FakeVehicle, int, float]]:
     """Start a screen and its station, see the wheels turn, kill the screen, see neutral `within` s.
 
     Yields the vehicle, the station's process id, and when the screen was killed. The station ends with the block.
@@ -45,7 +46,10 @@ def killed_screen(within: float, *options: str) -> Iterator[tuple[UdpVehicle, in
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "tests.groundstation.parent", endpoint, *options]
     station = 0
-    with UdpVehicle(endpoint) as vehicle, subprocess.Popen(command, stdout=subprocess.PIPE, cwd=ROOT) as parent:
+    with (
+        on_line(FakeVehicle(), endpoint=endpoint) as vehicle,
+        subprocess.Popen(command, stdout=subprocess.PIPE, cwd=ROOT) as parent,
+    ):
         try:
             assert parent.stdout is not None
             station = int(parent.stdout.readline())

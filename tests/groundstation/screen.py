@@ -16,7 +16,7 @@ from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm
 from groundstation.snapshot import Snapshot
-from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.fakes.vehicle import FakeVehicle
 from tests.ports import free_port
 
 PATIENCE = 60.0
@@ -79,7 +79,7 @@ class Screen:
                     return newest
         raise AssertionError(f"not seen within {within} s (alive: {self.client.alive}); last: {self.snapshot}")
 
-    def drive(self, vehicle: UdpVehicle) -> None:
+    def drive(self, vehicle: FakeVehicle) -> None:
         """Arm and hold `i`; return when the vehicle receives the demand."""
         self.hold_forward()
         begun = time.monotonic()

@@ -9,13 +9,14 @@ import pytest
 
 from groundstation.client import StationClient, StationError
 from groundstation.intents.driving import DriveKeyUp
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.screen import FORWARD, Screen, until
-from tests.groundstation.udp_vehicle import UdpVehicle
 
 pytestmark = pytest.mark.e2e
 
 
-def moving(vehicle: UdpVehicle, since: float) -> list[float]:
+def moving(vehicle: FakeVehicle, since: float) -> list[float]:
     return [at for at, x in vehicle.demands(since) if x]
 
 
@@ -42,7 +43,7 @@ def test_port_in_use() -> None:
 
 
 def test_a_screen_that_does_not_read_blocks_nothing() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         start = time.monotonic()
 

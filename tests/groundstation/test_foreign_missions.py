@@ -18,7 +18,7 @@ from groundstation.intents.watch import Watch
 from groundstation.ui.map.copies import PlanCopies
 from groundstation.views.plan import PlanKind
 from groundstation.views.requests import RequestLine
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.ui.map.plans import HOME, at, item, task
 
 ITEMS = (item(16, 5), item(19, 5, 5, 3.0), task(177, 0.0, 2.0))
@@ -78,7 +78,7 @@ def open_station(endpoint: str) -> Iterator[Station]:
 
 @pytest.fixture(params=[ARDUPILOT, PX4], ids=["ardupilot", "px4"])
 def vehicle(request: pytest.FixtureRequest) -> Iterator[ForeignVehicle]:
-    with ForeignVehicle(request.param) as made:
+    with foreign_vehicle(request.param) as made:
         yield made
 
 

@@ -32,9 +32,10 @@ from groundstation.station_socket.folder import (
     socket_path,
 )
 from groundstation.station_socket.hello import SCREEN, Hello
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.killed_screen import ROOT, assert_said_neutral, killed_screen, moving, neutral
 from tests.groundstation.screen import FORWARD, Screen, running, until
-from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.ports import free_port
 
 pytestmark = pytest.mark.e2e
@@ -86,7 +87,7 @@ print(sock.recv(4096))
 
 
 def test_the_second_screen_watches_stops_and_drives_once_the_first_gives_the_keys() -> None:
-    with Screen() as first, UdpVehicle(first.endpoint) as vehicle:
+    with Screen() as first, on_line(FakeVehicle(), endpoint=first.endpoint) as vehicle:
         first.drive(vehicle)
         until(lambda: first.client.pid in running_stations())
         with Screen.attach(first.client.pid) as second:
@@ -123,7 +124,7 @@ def test_a_kept_station_goes_neutral_when_its_screen_is_killed_and_takes_the_nex
             screen.drive(vehicle)
             screen.client.send(Quit(disarm=True))
             until(lambda: not running(station))
-            assert not vehicle.core.armed
+            assert not vehicle.armed
 
 
 def test_a_station_without_a_screen_is_silent_and_outlives_its_screens() -> None:
@@ -136,7 +137,7 @@ def test_a_station_without_a_screen_is_silent_and_outlives_its_screens() -> None
             f"station {station.pid} on {endpoint}; `groundstation attach` opens a screen\n"
         )
         until(lambda: running_stations() == [station.pid])
-        with UdpVehicle(endpoint) as vehicle:
+        with on_line(FakeVehicle(), endpoint=endpoint) as vehicle:
             with Screen.attach(station.pid) as screen:
                 screen.drive(vehicle)
                 left = time.monotonic()
@@ -144,7 +145,7 @@ def test_a_station_without_a_screen_is_silent_and_outlives_its_screens() -> None
             assert_said_neutral(vehicle, left)
             quiet = time.monotonic() + 0.2
             until(lambda: time.monotonic() > quiet + 2.0)
-            assert [at for at, _ in vehicle.core.all(m.Heartbeat) if at > quiet] == [], "the failsafe must act"
+            assert [at for at, _ in vehicle.all(m.Heartbeat) if at > quiet] == [], "the failsafe must act"
             assert running_stations() == [station.pid]
         station.send_signal(signal.SIGINT)
         assert station.wait(20) == 0

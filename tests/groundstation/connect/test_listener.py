@@ -7,8 +7,8 @@ import socket
 
 from groundstation.connect.listener import VehicleListener
 from groundstation.views.connect import HeardRow
-from tests.groundstation.fake_vehicle import FakeVehicle
-from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.ui.ptys import until
 from tests.ports import free_port
 
@@ -26,11 +26,11 @@ async def test_a_vehicle_is_heard_and_hears_nothing() -> None:
     listener = VehicleListener(IDS, (here, there))
     listener.listen(())
     assert [row.endpoint for row in listener.listening] == [here, there]
-    with UdpVehicle(here) as one, UdpVehicle(there, FakeVehicle(system=7)) as other:
+    with on_line(FakeVehicle(), endpoint=here) as one, on_line(FakeVehicle(system=7), endpoint=there) as other:
         first, second = sorted(await heard(listener, 2), key=lambda row: row.system)
         assert (first.name, first.mode, first.armed, first.endpoint) == ("Rover 1", "MANUAL", False, here)
         assert (second.system, second.endpoint, second.open) == (7, there, False)
-        assert one.core.received == other.core.received == []
+        assert one.received == other.received == []
     listener.close()
     assert not listener.listening
 
@@ -57,7 +57,7 @@ async def test_a_flood_of_system_ids_and_of_noise_is_bounded() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.connect(("127.0.0.1", int(here.rpartition(":")[2])))
         sender.send(b"\xfd" * 900)
-        vehicles = [UdpVehicle(here, FakeVehicle(system=system)) for system in range(1, 30)]
+        vehicles = [on_line(FakeVehicle(system=system), endpoint=here) for system in range(1, 30)]
         for each in vehicles:
             each.__enter__()
         assert len(await heard(listener, 16)) == 16

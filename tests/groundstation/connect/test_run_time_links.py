@@ -16,9 +16,9 @@ from groundstation.intents.vehicle import Disarm
 from groundstation.intents.watch import Watch
 from groundstation.views.connect import ConnectRequest, ConnectView, LinkAttempt
 from groundstation.views.links import LinksRequest, LinksView
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.screen import Screen, until
-from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.ports import free_port
 from tests.waits import Waits
 
@@ -67,12 +67,12 @@ def index_of(screen: Screen, name: str) -> int:
 
 
 def test_a_driver_notices_nothing_of_a_link_that_is_added_and_closed() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         waits, begun = Waits(screen.client.pid), time.monotonic()
         other = endpoint()
         assert add(screen, other, "open").problem == ""
-        with UdpVehicle(other, FakeVehicle(system=2)):
+        with on_line(FakeVehicle(system=2), endpoint=other):
             screen.see(lambda seen: seen.vehicles == (1, 2))
             screen.client.send(CloseLink(link=index_of(screen, other)))
             screen.see(lambda seen: seen.vehicles == (1,) and other not in seen.endpoints)
@@ -86,7 +86,7 @@ def test_a_driver_notices_nothing_of_a_link_that_is_added_and_closed() -> None:
 
 
 def test_closing_a_link_is_neutral_first_and_then_silence() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         begun = time.monotonic()
         assert any(x == 600 for _, x in vehicle.demands(begun - 1.0))
@@ -100,12 +100,12 @@ def test_closing_a_link_is_neutral_first_and_then_silence() -> None:
         screen.client.send(DriveKeyDown(key="i", throttle=1, steering=0))
         number = screen.snapshot.number
         screen.see(lambda seen: seen.number > number + 5)
-        assert not [each for at, each in vehicle.core.received if at > closed + 0.3]
+        assert not [each for at, each in vehicle.received if at > closed + 0.3]
         assert screen.snapshot.left_armed, "it is armed, and stays on the list"
 
 
 def test_a_disarmed_vehicle_is_forgotten_with_its_link() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         screen.client.send(Disarm())
         screen.see(lambda seen: seen.vehicle is not None and not seen.vehicle.armed)
@@ -119,13 +119,13 @@ def test_a_link_that_only_watches_never_sends_a_byte() -> None:
     with Screen() as screen:
         watched = endpoint()
         add(screen, watched, "open", watch_only=True)
-        with UdpVehicle(watched) as vehicle:
+        with on_line(FakeVehicle(), endpoint=watched) as vehicle:
             screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.alive)
             screen.insist(
                 lambda: screen.client.send(Disarm()),
                 lambda seen: any("no answer" in line.text for line in seen.texts),
             )
-            assert vehicle.core.received == []
+            assert vehicle.received == []
             assert [link.watch_only for link in screen.snapshot.links] == [False, True]
 
 

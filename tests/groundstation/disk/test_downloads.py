@@ -11,7 +11,7 @@ import pytest
 
 from groundstation.intents.files import GetFile
 from groundstation.intents.session import Quit
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.screen import Screen, running, until
 
 pytestmark = pytest.mark.e2e
@@ -31,7 +31,7 @@ def begin(screen: Screen, vehicle: ForeignVehicle, folder: Path) -> Path:
 
 
 def test_a_download_is_written_by_the_station(tmp_path: Path) -> None:
-    with ForeignVehicle() as vehicle, Screen(vehicle.endpoint) as screen:
+    with foreign_vehicle() as vehicle, Screen(vehicle.endpoint) as screen:
         begin(screen, vehicle, tmp_path)
         until(lambda: (tmp_path / "1.bin").exists())
         assert (tmp_path / "1.bin").read_bytes() == DATA
@@ -40,7 +40,7 @@ def test_a_download_is_written_by_the_station(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("patient")
 def test_quitting_keeps_what_has_arrived(tmp_path: Path) -> None:
-    with ForeignVehicle() as vehicle, Screen(vehicle.endpoint) as screen:
+    with foreign_vehicle() as vehicle, Screen(vehicle.endpoint) as screen:
         part = begin(screen, vehicle, tmp_path)
         screen.client.send(Quit())
         until(lambda: not running(screen.client.pid))
@@ -50,7 +50,7 @@ def test_quitting_keeps_what_has_arrived(tmp_path: Path) -> None:
 
 
 def test_a_killed_station_leaves_no_file_under_the_final_name(tmp_path: Path) -> None:
-    with ForeignVehicle() as vehicle, Screen(vehicle.endpoint) as screen:
+    with foreign_vehicle() as vehicle, Screen(vehicle.endpoint) as screen:
         begin(screen, vehicle, tmp_path)
         os.kill(screen.client.pid, signal.SIGKILL)
         until(lambda: not running(screen.client.pid))

@@ -18,17 +18,18 @@ from groundstation.intents.watch import Watch
 from groundstation.ipc import IntentBatch, encode
 from groundstation.snapshot import LogLine, Snapshot
 from groundstation.views.log import LogPage, LogRequest
-from tests.groundstation.fake_ardupilot import FakeArduPilot
+from tests.fakes.lines import on_line
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.killed_screen import assert_said_neutral, killed_screen, moving, neutral
 from tests.groundstation.screen import FORWARD, Screen, running, until
-from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.waits import Waits
 
 pytestmark = pytest.mark.e2e
 
 
 def test_a_held_key_drives_and_its_release_is_neutral_at_once() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         waits, released = Waits(screen.client.pid), time.monotonic()
         screen.client.send(DriveKeyUp(key="i"))
@@ -39,7 +40,7 @@ def test_a_held_key_drives_and_its_release_is_neutral_at_once() -> None:
 
 def test_the_log_is_sent_while_it_is_watched_and_lasting_alerts_are_in_the_log_file_once(tmp_path: Path) -> None:
     file = tmp_path / "station.log"
-    with Screen(log_file=file) as screen, UdpVehicle(screen.endpoint, FakeArduPilot()):
+    with Screen(log_file=file) as screen, on_line(FakeArduPilot(), endpoint=screen.endpoint):
         warned = screen.see(lambda seen: seen.vehicle is not None and len(seen.vehicle.warnings) > 0)
         screen.see(lambda seen: seen.number > warned.number + 10)
         assert screen.client.pop_views() == []
@@ -56,7 +57,7 @@ def test_the_log_is_sent_while_it_is_watched_and_lasting_alerts_are_in_the_log_f
 
 @pytest.mark.usefixtures("patient")
 def test_quit_sends_neutral_several_times_and_ends() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         at = time.monotonic()
         assert screen.client.close() == 0
@@ -65,29 +66,29 @@ def test_quit_sends_neutral_several_times_and_ends() -> None:
 
 @pytest.mark.usefixtures("patient")
 def test_quit_names_what_it_leaves_armed() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         assert screen.client.close() == 0
         assert screen.client.left_armed == ("Rover 1 is left ARMED in MANUAL",)
-        assert vehicle.core.armed
+        assert vehicle.armed
 
 
 @pytest.mark.usefixtures("patient")
 def test_quit_disarms_on_request_and_ends() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         at = time.monotonic()
         screen.client.send(Quit(disarm=True))
         until(lambda: not running(screen.client.pid))
         assert_said_neutral(vehicle, at)
-        assert not vehicle.core.armed
+        assert not vehicle.armed
         assert screen.client.close() == 0
         assert screen.client.left_armed == ()
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_signals_mean_neutral_and_end(number: signal.Signals) -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         at = time.monotonic()
         os.kill(screen.client.pid, number)
@@ -98,7 +99,7 @@ def test_signals_mean_neutral_and_end(number: signal.Signals) -> None:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTSTP])
 def test_the_terminals_keys_do_not_reach_the_station(number: signal.Signals) -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         os.kill(screen.client.pid, number)
         seen = screen.snapshot.number
@@ -113,7 +114,7 @@ def test_killed_screen_is_neutral_and_the_station_ends() -> None:
 
 
 def test_frozen_screen_is_neutral_within_half_a_second_and_control_is_given_up() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         waits = Waits(screen.client.pid)
         screen.freeze()
@@ -125,13 +126,13 @@ def test_frozen_screen_is_neutral_within_half_a_second_and_control_is_given_up()
         still = quiet + 0.1 + waits.total()  # what was on its way
         until(lambda: time.monotonic() > still + 0.5)
         assert vehicle.demands(still) == []
-        assert [at for at, _ in vehicle.core.all(m.Heartbeat) if at > still] == []
+        assert [at for at, _ in vehicle.all(m.Heartbeat) if at > still] == []
 
 
 def test_no_key_is_lost_at_5_ms() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
-        until(lambda: bool(vehicle.core.all(m.RoverOperatorPresence)))
+        until(lambda: bool(vehicle.all(m.RoverOperatorPresence)))
         before = counted(vehicle) + late(screen.snapshot)
         started = time.monotonic()
         for number in range(1000):
@@ -143,9 +144,9 @@ def test_no_key_is_lost_at_5_ms() -> None:
         assert counted(vehicle) + late(screen.snapshot) == before + 1000
 
 
-def counted(vehicle: UdpVehicle) -> int:
+def counted(vehicle: FakeVehicle) -> int:
     """Return the number of inputs that the station reported last."""
-    return vehicle.core.all(m.RoverOperatorPresence)[-1][1].input_count
+    return vehicle.all(m.RoverOperatorPresence)[-1][1].input_count
 
 
 def late(snapshot: Snapshot) -> int:
@@ -154,7 +155,7 @@ def late(snapshot: Snapshot) -> int:
 
 
 def test_intents_that_waited_in_the_pipe_of_a_frozen_station_are_dropped() -> None:
-    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.see(lambda snapshot: snapshot.vehicle is not None)
         old = IntentBatch(
             time.monotonic() - 2.0, (Arm(held=1.0), FORWARD, SetKeyGate(open=False, reason="late but true"))
@@ -162,7 +163,7 @@ def test_intents_that_waited_in_the_pipe_of_a_frozen_station_are_dropped() -> No
         screen.client._pipe.send(encode(old))
         screen.see(lambda snapshot: snapshot.operator.gate_reason == "late but true")
         screen.see(lambda snapshot: any("late and was dropped" in line.text for line in snapshot.texts))
-        assert vehicle.core.all(m.CommandLong) == [] or not vehicle.core.armed
+        assert vehicle.all(m.CommandLong) == [] or not vehicle.armed
 
 
 def test_noise_in_the_pipe_is_ignored() -> None:

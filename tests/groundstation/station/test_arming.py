@@ -7,8 +7,8 @@ from dialects.enums import Autopilot, Command, Result
 from dialects.modes import Mode
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.vehicle import Arm, Disarm
-from tests.groundstation.cockpits import armed_cockpit, cockpit_with
-from tests.groundstation.fake_vehicle import OURS, FakeVehicle
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import OURS, armed_cockpit, cockpit_with
 
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
@@ -30,7 +30,7 @@ def test_arming_in_guided_leaves_the_mode_alone() -> None:
 
 
 def test_neutral_demands_precede_arming_without_control_status() -> None:
-    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
+    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT)
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
@@ -58,7 +58,7 @@ def test_refused_mode_ends_the_arming() -> None:
 
 def test_acknowledged_but_not_armed_is_reported() -> None:
     vehicle = FakeVehicle()
-    vehicle._obey = lambda message, source: None  # type: ignore[method-assign]
+    vehicle.obeys = False
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm(held=1.0))
     cockpit.run(4.0)
@@ -66,7 +66,7 @@ def test_acknowledged_but_not_armed_is_reported() -> None:
 
 
 def test_disarm_during_arming_ends_the_arming() -> None:
-    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
+    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT)
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm(held=1.0))
     cockpit.run(0.05)
@@ -77,7 +77,7 @@ def test_disarm_during_arming_ends_the_arming() -> None:
 
 
 def test_emergency_stop_during_arming_ends_the_arming() -> None:
-    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
+    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT)
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm(held=1.0))
     cockpit.run(0.05)

@@ -11,9 +11,8 @@ from groundstation.intents.vehicle import Arm, Disarm, RequestControl
 from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.station.claims import Claims
 from groundstation.vehicles.vehicle_state import VehicleState
-from tests.groundstation.cockpits import FORWARD, cockpit_with, driving_cockpit
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.fakes.rover import FakeArduPilot
+from tests.groundstation.cockpits import FORWARD, Cockpit, cockpit_with, driving_cockpit
 
 
 def foreign_disarm_and_arm(cockpit: Cockpit) -> None:

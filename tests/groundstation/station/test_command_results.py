@@ -8,15 +8,15 @@ from groundstation.intents.vehicle import Arm
 from groundstation.station.command_results import SHOWN_FOR
 from groundstation.ui.log.join import find_group
 from groundstation.views.log import LogRequest
-from tests.groundstation.cockpits import cockpit_with
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit, cockpit_with
 
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
 
 def test_refusal_comes_with_the_vehicles_reason() -> None:
     vehicle = FakeVehicle()
-    vehicle.answers[ARM], vehicle.reasons[ARM] = Result.FAILED, b"PreArm: battery low"
+    vehicle.answers[ARM] = Result.FAILED, "PreArm: battery low"
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
@@ -26,7 +26,7 @@ def test_refusal_comes_with_the_vehicles_reason() -> None:
 
 def test_the_log_joins_the_request_the_result_and_the_reason() -> None:
     vehicle = FakeVehicle()
-    vehicle.answers[ARM], vehicle.reasons[ARM] = Result.FAILED, b"PreArm: battery low"
+    vehicle.answers[ARM] = Result.FAILED, "PreArm: battery low"
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
@@ -79,7 +79,7 @@ def sys_status(*, ready: bool) -> m.SysStatus:
 
 def refused_arming() -> Cockpit:
     vehicle = FakeVehicle()
-    vehicle.answers[ARM], vehicle.reasons[ARM] = Result.FAILED, b"Arm: Accels inconsistent"
+    vehicle.answers[ARM] = Result.FAILED, "Arm: Accels inconsistent"
     cockpit = cockpit_with(vehicle)
     vehicle.send(sys_status(ready=False))
     cockpit.do(Arm(held=1.0))

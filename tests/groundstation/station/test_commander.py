@@ -9,27 +9,26 @@ from dialects.enums import Autopilot, Command, Result
 from groundstation.intents.driving import DriveKeyUp
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Disarm, RequestControl, SetMode
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, cockpit_with
-from tests.groundstation.fake_vehicle import FakeVehicle
 
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
 
 def test_disarm_is_repeated_while_the_heartbeat_reports_armed() -> None:
     cockpit = armed_cockpit()
-    obey, vehicle = cockpit.vehicle._obey, cockpit.vehicle
-    vehicle._obey = lambda message, source: None  # type: ignore[method-assign]  # acknowledged, and not done
+    cockpit.vehicle.obeys = False  # acknowledged, and not done
     cockpit.do(Disarm())
     cockpit.run(2.0)
     assert cockpit.view.armed
-    vehicle._obey = obey  # type: ignore[method-assign]
+    cockpit.vehicle.obeys = True
     cockpit.run(2.0)
     assert not cockpit.view.armed
 
 
 def test_disarm_that_never_takes_effect_is_reported() -> None:
     cockpit = armed_cockpit()
-    cockpit.vehicle._obey = lambda message, source: None  # type: ignore[method-assign]
+    cockpit.vehicle.obeys = False
     cockpit.do(Disarm())
     cockpit.run(8.0)
     assert cockpit.view.refusal == "disarm: Rover 1 still reports armed"
@@ -53,7 +52,7 @@ def test_unknown_mode_is_reported_and_not_sent(name: str) -> None:
 
 
 def test_request_control_of_a_vehicle_that_does_not_know_the_command_claims_it() -> None:
-    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
+    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT)
     vehicle.armed = True
     vehicle.answers[Command.REQUEST_OPERATOR_CONTROL] = Result.UNSUPPORTED
     cockpit = cockpit_with(vehicle)

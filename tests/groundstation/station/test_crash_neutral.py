@@ -16,9 +16,10 @@ from groundstation.intents.vehicle import Arm
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.core import Peer, Received
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.host.crashing_station import ORDER
 from tests.groundstation.screen import Screen, running, until
-from tests.groundstation.udp_vehicle import UdpVehicle
 
 PEER = Peer(0, "vehicle")
 
@@ -101,7 +102,7 @@ def _a_bug_in_the_station(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> None:
     log_file = tmp_path / "station.log"
-    with Screen(log_file=log_file) as screen, UdpVehicle(screen.endpoint) as vehicle:
+    with Screen(log_file=log_file) as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         broke = time.monotonic()
         screen.insist(

@@ -10,9 +10,9 @@ from dialects.enums import Command
 from dialects.modes import Mode
 from groundstation.intents.session import Quit
 from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
-from tests.groundstation.cockpits import armed_cockpit, cockpit_with, driving_cockpit
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit, armed_cockpit, cockpit_with, driving_cockpit
 
 ARM = Command.COMPONENT_ARM_DISARM
 

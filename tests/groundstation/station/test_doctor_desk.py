@@ -17,8 +17,9 @@ from groundstation.intents.setup import (
 from groundstation.intents.watch import Watch
 from groundstation.views.doctor import DoctorRequest, DoctorRow, DoctorView, TerminalFacts
 from link.runtime.diagnosis import Health
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit
 from tests.test_stops import Drive
 
 REQUEST = DoctorRequest(TerminalFacts(0.005))
@@ -116,7 +117,7 @@ def test_ardupilots_settings_and_reasons() -> None:
 
 def test_an_ardupilot_that_obeys_another_station() -> None:
     vehicle = FakeArduPilot(station=250)
-    vehicle.parameters["MAV_GCS_SYSID"] = 250.0
+    vehicle.params["MAV_GCS_SYSID"] = 250.0
     clinic = Clinic(vehicle)
     assert clinic.row("our_id").health is Health.FAULT
     view = clinic.station.views.build(DoctorRequest(station=250), clinic.now, clinic.now)
@@ -124,8 +125,8 @@ def test_an_ardupilot_that_obeys_another_station() -> None:
 
 
 def test_px4_reports_the_bit_and_its_own_texts() -> None:
-    vehicle = FakeVehicle(autopilot=Autopilot.PX4, driver=None)
-    vehicle.parameters = {"COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 0.0}
+    vehicle = FakeVehicle(autopilot=Autopilot.PX4)
+    vehicle.params.replace({"COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 0.0})
     clinic = Clinic(vehicle)
     vehicle.send(sys_status(0))
     clinic.say("Preflight Fail: No manual control input")
@@ -302,7 +303,7 @@ def move_sticks(clinic: Clinic, *pulses: dict[int, int]) -> None:
 
 def test_the_ends_and_centres_of_the_sticks_become_changes() -> None:
     vehicle = FakeArduPilot()
-    vehicle.parameters |= STICK_PARAMS
+    vehicle.params |= STICK_PARAMS
     clinic = Clinic(vehicle)
     vehicle.sticks = {1: 1500, 2: 1500, 3: 1500, 4: 65535, 5: 0}
     assert clinic.doctor.sticks is None
@@ -346,7 +347,7 @@ def test_no_sticks_of_an_armed_vehicle() -> None:
 
 
 def test_px4_says_in_texts_what_to_do() -> None:
-    clinic = Clinic(FakeVehicle(autopilot=Autopilot.PX4, driver=None))
+    clinic = Clinic(FakeVehicle(autopilot=Autopilot.PX4))
     clinic.do(Calibrate(1, 1, "compass-px4"))
     clinic.run(0.5)
     assert clinic.vehicle.commands(Command.PREFLIGHT_CALIBRATION)[0].param2 == 1

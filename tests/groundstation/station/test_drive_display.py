@@ -20,9 +20,8 @@ from groundstation.station.station import Station
 from groundstation.views.base import View
 from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, TrackView
 from link.protocol.channel import Channel
-from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.fakes.rover import FakeArduPilot
+from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit, driving_cockpit
 
 SETTINGS = {"FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0, "FS_TIMEOUT": 1.5, "FS_ACTION": 2.0}
 LARGEST = 8_000
@@ -31,7 +30,7 @@ LARGEST = 8_000
 
 def ardupilot() -> FakeArduPilot:
     vehicle = FakeArduPilot()
-    vehicle.parameters |= SETTINGS
+    vehicle.params |= SETTINGS
     vehicle.set_pulses("SERVO1", "SERVO3", "RC1", "RC3")
     return vehicle
 
@@ -82,7 +81,7 @@ def test_the_outputs_of_our_vehicle_are_no_measure_of_its_latency() -> None:
 
 def test_the_bars_of_our_vehicle_fill_when_the_link_is_cut() -> None:
     cockpit = driving_cockpit()
-    cockpit.vehicle.parameters |= {"FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0, "OPR_TIMEOUT": 10.0}
+    cockpit.vehicle.params |= {"FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0, "OPR_TIMEOUT": 10.0}
     info = m.RoverDriveInfo(2.0, 1.0, 0.4, math.nan, 450, DriveType.SKID, 0, 3, 0, 2)
     cockpit.vehicle.send(info)
     cockpit.run(1.0)
@@ -97,7 +96,7 @@ def test_the_bars_of_our_vehicle_fill_when_the_link_is_cut() -> None:
 
 def test_no_key_counts_only_while_a_demand_moves_the_vehicle() -> None:
     cockpit = driving_cockpit()
-    cockpit.vehicle.parameters["OPR_TIMEOUT"] = 10.0
+    cockpit.vehicle.params["OPR_TIMEOUT"] = 10.0
     cockpit.run(4.0)
     assert stop(cockpit.view, "OPR_TIMEOUT").share == pytest.approx(0.45, abs=0.02)
     cockpit.do(DriveKeyUp(key="i"))
@@ -153,7 +152,7 @@ def test_a_changed_parameter_changes_the_bound_at_once() -> None:
 
 def test_a_px4_tells_its_actuators_and_its_failsafes() -> None:
     vehicle = FakeArduPilot(autopilot=Autopilot.PX4)
-    vehicle.parameters = {"COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 1.0, "COM_DL_LOSS_T": 10.0, "NAV_DLL_ACT": 0.0}
+    vehicle.params.replace({"COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 1.0, "COM_DL_LOSS_T": 10.0, "NAV_DLL_ACT": 0.0})
     cockpit = Cockpit(vehicle)
     cockpit.run(6.0)
     assert [(each.source, each.bound, each.never) for each in cockpit.view.stops] == [

@@ -12,8 +12,8 @@ from dialects.modes import Mode
 from groundstation.intents.driving import DriveKeyUp, Stop
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, Disarm, RequestControl
-from tests.groundstation.cockpits import FORWARD, LEFT, armed_cockpit, driving_cockpit
-from tests.groundstation.fake_vehicle import OURS, Cockpit, FakeVehicle
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import FORWARD, LEFT, OURS, Cockpit, armed_cockpit, driving_cockpit
 
 
 def test_a_key_is_sent_at_once_and_then_at_20_hz() -> None:
@@ -175,7 +175,7 @@ def test_disarm_stops_at_once_and_then_sends_nothing() -> None:
 
 
 def test_ardupilot_gets_its_own_axes() -> None:
-    cockpit = armed_cockpit(FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None))
+    cockpit = armed_cockpit(FakeVehicle(autopilot=Autopilot.ARDUPILOT))
     cockpit.do(ReportKeyReleases(), FORWARD, LEFT)
     cockpit.run(0.1)
     _, message = cockpit.vehicle.all(m.ManualControl)[-1]
@@ -186,7 +186,7 @@ def test_ardupilot_gets_its_own_axes() -> None:
 
 
 def test_px4_neutral_is_500() -> None:
-    cockpit = armed_cockpit(FakeVehicle(autopilot=Autopilot.PX4, driver=None))
+    cockpit = armed_cockpit(FakeVehicle(autopilot=Autopilot.PX4))
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.1)
     assert cockpit.vehicle.all(m.ManualControl)[-1][1].z == 800

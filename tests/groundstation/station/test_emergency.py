@@ -10,9 +10,9 @@ from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.emergency import FORCE_DISARM
-from tests.groundstation.cockpits import FORWARD, armed_cockpit
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit
 
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 

@@ -27,7 +27,8 @@ from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm
 from groundstation.views.files import FilesRequest, FilesView
 from link.services.ftp.protocol import crc32
-from tests.groundstation.file_vehicle import FileCockpit, FileVehicle
+from tests.fakes.served import FileVehicle
+from tests.groundstation.file_cockpit import FileCockpit
 
 DATA = random.Random(3).randbytes(120_000)
 

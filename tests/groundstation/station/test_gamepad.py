@@ -11,8 +11,7 @@ from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Disarm, SelectNextVehicle
 from groundstation.station.screen_lease import ScreenLease
-from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit, driving_cockpit
 
 PERIOD = 0.05
 

@@ -11,9 +11,9 @@ from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Disarm, GiveControl, KeepControl, ReleaseControl, RequestControl
 from groundstation.snapshot import HandoverNotice
 from groundstation.station.handover import ANSWER_WITHIN
-from tests.groundstation.cockpits import FORWARD, armed_cockpit, cockpit_with, driving_cockpit
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import OURS, Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import FORWARD, OURS, Cockpit, armed_cockpit, cockpit_with, driving_cockpit
 
 OTHER = 254
 CONTROL = Command.REQUEST_OPERATOR_CONTROL
@@ -164,29 +164,30 @@ def test_release_of_all_releases_what_we_control() -> None:
     assert not cockpit.view.in_control
 
 
-class ForwardingVehicle(FakeVehicle):
-    """A vehicle that another station drives until it gives control."""
+def driven_by_another() -> FakeVehicle:
+    """Return a vehicle that another station drives until it gives control."""
+    vehicle = FakeVehicle(driver=OTHER)
+    vehicle.armed = True
+    vehicle.answers[CONTROL] = Result.FAILED
+    return vehicle
 
-    def __init__(self) -> None:
-        super().__init__(driver=OTHER)
-        self.armed = True
-        self.answers[CONTROL] = Result.FAILED
 
-    def give(self) -> None:
-        self.driver = 0
-        self.answers.pop(CONTROL)
-        self.beat()
+def give(vehicle: FakeVehicle) -> None:
+    """Give control, as the other station does."""
+    vehicle.driver = 0
+    vehicle.answers.pop(CONTROL)
+    vehicle.beat()
 
 
 def test_our_request_is_repeated_once_the_vehicle_is_free() -> None:
-    vehicle = ForwardingVehicle()
+    vehicle = driven_by_another()
     cockpit = cockpit_with(vehicle)
     cockpit.do(RequestControl())
     cockpit.run(3.0)
     assert not cockpit.view.in_control
     assert cockpit.view.control_wait == pytest.approx(7.0, abs=0.2)
     assert len(vehicle.commands(CONTROL)) == 1, "the other operator is asked once"
-    vehicle.give()
+    give(vehicle)
     cockpit.run(0.5)
     assert cockpit.view.in_control
     assert cockpit.view.control_wait is None
@@ -194,13 +195,13 @@ def test_our_request_is_repeated_once_the_vehicle_is_free() -> None:
 
 
 def test_our_request_ends_without_an_answer() -> None:
-    vehicle = ForwardingVehicle()
+    vehicle = driven_by_another()
     cockpit = cockpit_with(vehicle)
     cockpit.do(RequestControl())
     cockpit.run(ANSWER_WITHIN + 0.2)
     assert cockpit.view.control_wait is None
     assert "control not given by GCS 254" in cockpit.texts
-    vehicle.give()
+    give(vehicle)
     cockpit.run(2.0)
     assert not cockpit.view.in_control, "a request of long ago takes nothing"
 

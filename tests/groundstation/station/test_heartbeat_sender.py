@@ -9,7 +9,7 @@ from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.station import Station
 from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
 from link.core import Peer, Received
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import Cockpit
 
 
 def test_heartbeats_once_a_second_as_ground_station() -> None:

@@ -13,8 +13,7 @@ from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, Scal
 from groundstation.intents.session import Quit, ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, SelectVehicle
 from groundstation.station.intent_handler import VEHICLE_COMMANDS
-from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit, driving_cockpit
 
 
 def test_style_changes_are_logged_and_latch_drives_without_a_held_key() -> None:

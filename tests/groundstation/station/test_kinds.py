@@ -14,9 +14,9 @@ from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, Disarm, RequestControl, SetMode
 from groundstation.station.stop_questions import CONFIRM_AFTER, CONFIRM_WITHIN
 from link.core import Peer, Received
-from tests.groundstation.cockpits import FORWARD, cockpit_with
-from tests.groundstation.fake_copter import FORCED, QUADROTOR, FakeCopter
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.copter import FORCED, QUADROTOR, FakeCopter
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import FORWARD, Cockpit, cockpit_with
 
 WHY = "keys do not drive a copter: a released key lets it fall"
 OTHER_KINDS = [
@@ -148,11 +148,11 @@ def test_a_mode_that_it_lists_is_sent_by_its_own_number() -> None:
     cockpit = cockpit_with(copter)
     cockpit.do(ChooseMode(1, 1, mode="LAND"))
     cockpit.run(3.0)
-    assert copter.custom_mode == 9
+    assert copter.mode == 9
     assert cockpit.view.mode == "LAND"
     cockpit.do(ChooseMode(2, 1, mode="HOLD"))
     cockpit.run(3.0)
-    assert copter.custom_mode == 9, "4 is GUIDED there"
+    assert copter.mode == 9, "4 is GUIDED there"
 
 
 def test_without_a_list_no_mode_is_sent_by_number() -> None:
@@ -218,7 +218,7 @@ class TestStops:
         copter, cockpit = flying()
         cockpit.do(Stop())
         cockpit.run(2.0)
-        assert copter.custom_mode == 5
+        assert copter.mode == 5
 
 
 def flying() -> tuple[FakeCopter, Cockpit]:

@@ -25,7 +25,7 @@ from groundstation.views.links import (
 )
 from link.core import Received
 from link.protocol.channel import Channel
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.flotilla import SESSION, Flotilla
 from tests.world import Host
 

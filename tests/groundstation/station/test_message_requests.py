@@ -12,7 +12,7 @@ from groundstation.intents.services import RequestMessage, ServiceIntent, SetMes
 from groundstation.intents.watch import Watch
 from groundstation.views.messages import MessageRequest, MessagesPage, MessagesRequest, MessageView
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import Cockpit
 from tests.test_stops import Drive
 
 ATTITUDE = m.Attitude.id

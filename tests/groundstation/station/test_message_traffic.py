@@ -12,7 +12,7 @@ from groundstation.station.message_traffic import MAX_KINDS, MAX_ROWS, MessageTr
 from groundstation.views.base import View
 from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
 from link.core import LinkReport, SourceCount
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import Cockpit
 
 BEAT = m.Heartbeat(10, 0, 0, 0, 3, 3)
 ATTITUDE = m.Attitude(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -15,8 +15,8 @@ from groundstation.intents.watch import Watch
 from groundstation.station.motor_test import LONGEST
 from groundstation.vehicles.motor_outputs import build_stop, build_turn, is_turn, motors_of
 from groundstation.views.doctor import DoctorRequest
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.fakes.rover import FakeArduPilot
+from tests.groundstation.cockpits import Cockpit
 from tests.test_stops import Drive
 from vehicle.safety.states import SafetyState
 
@@ -211,7 +211,7 @@ def test_the_vehicles_refusal_is_shown_and_ends_it() -> None:
 
 def motor_cockpit() -> Cockpit:
     vehicle = FakeArduPilot()
-    vehicle.parameters |= {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
+    vehicle.params |= {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
     cockpit = Cockpit(vehicle)
     cockpit.do(RenewLease(), ReportKeyReleases(), WATCH)
     cockpit.run(3.0)

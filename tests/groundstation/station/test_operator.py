@@ -8,8 +8,8 @@ from dialects import messages as m
 from dialects.enums import Autopilot
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
-from tests.groundstation.fake_vehicle import FakeVehicle
 
 
 def test_closing_the_gate_is_neutral_at_once() -> None:
@@ -96,6 +96,6 @@ def test_operator_presence_precedes_each_demand_to_a_vehicle_of_our_dialect() ->
 
 
 def test_no_operator_presence_to_a_foreign_vehicle() -> None:
-    cockpit = driving_cockpit(FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None))
+    cockpit = driving_cockpit(FakeVehicle(autopilot=Autopilot.ARDUPILOT))
     cockpit.run(1.0)
     assert cockpit.vehicle.all(m.RoverOperatorPresence) == []

@@ -16,7 +16,8 @@ from groundstation.views.requests import RequestsRequest
 from link.fleet.keys import read_frame
 from link.fleet.roles import needed_role
 from link.signing.role import Role
-from tests.groundstation.fake_vehicle import QUERIES, Cockpit, FakeVehicle
+from tests.fakes.vehicle import QUERIES, FakeVehicle
+from tests.groundstation.cockpits import Cockpit
 from tests.world import Host
 
 WHY = "the certificate of bob may watch only; ask for the role drive"

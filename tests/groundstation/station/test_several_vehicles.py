@@ -15,7 +15,7 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.protocol.channel import Channel
-from tests.groundstation.fake_vehicle import QUERIES, FakeVehicle
+from tests.fakes.vehicle import QUERIES, FakeVehicle
 from tests.world import Host
 
 FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)

@@ -10,8 +10,7 @@ from groundstation.intents.session import LEASE_TIMEOUT, REST_PERIOD, RenewLease
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.station.driven import DEMAND_MEMORY
 from groundstation.station.station import REST_AFTER, TICK_PERIOD
-from tests.groundstation.cockpits import armed_cockpit
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import Cockpit, armed_cockpit
 
 
 def test_waiting_line_names_the_endpoint() -> None:

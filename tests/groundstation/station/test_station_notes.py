@@ -12,8 +12,7 @@ from groundstation.intents.session import ReportScreen, SetKeyGate
 from groundstation.intents.vehicle import Disarm, ReleaseControl
 from groundstation.station.station_notes import REPEATED_WITHIN
 from link.core import LinkReport
-from tests.groundstation.cockpits import FORWARD, LEFT, armed_cockpit, driving_cockpit
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import FORWARD, LEFT, Cockpit, armed_cockpit, driving_cockpit
 
 BACK = DriveKeyDown(key=",", throttle=-1, steering=0)
 

@@ -8,8 +8,9 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command
 from groundstation.vehicles.stream_requests import CAPACITY_SHARE, LOAD
 from link.core import Peer, Received
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit
 
 INTERVAL = Command.SET_MESSAGE_INTERVAL
 
@@ -51,8 +52,10 @@ def test_the_capacity_is_that_of_the_vehicles_link() -> None:
 
 
 def test_ardupilot_settings_that_let_it_drive_on_are_warned_of() -> None:
-    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
-    vehicle.parameters = {"RC_OVERRIDE_TIME": 3.0, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0, "MAV_GCS_SYSID": 255.0}
+    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT)
+    vehicle.params.replace(
+        {"RC_OVERRIDE_TIME": 3.0, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0, "MAV_GCS_SYSID": 255.0}
+    )
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
     assert cockpit.view.warnings == (
@@ -66,14 +69,14 @@ OVERRIDE = "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost; set it 
 
 def test_settings_that_could_not_be_read_are_named_and_read_later() -> None:
     vehicle = FakeArduPilot()
-    del vehicle.parameters["RC_OVERRIDE_TIME"]
-    vehicle.parameters["MAV_GCS_SYSID"] = 255.0
+    del vehicle.params["RC_OVERRIDE_TIME"]
+    vehicle.params["MAV_GCS_SYSID"] = 255.0
     cockpit = Cockpit(vehicle)
     cockpit.run(6.0)
     words = "could not read, trying again: RC_OVERRIDE_TIME"
     assert words in cockpit.view.warnings
     assert cockpit.texts.count(f"ArduPilot rover 1: {words}") == 1
-    vehicle.parameters["RC_OVERRIDE_TIME"] = 3.0
+    vehicle.params["RC_OVERRIDE_TIME"] = 3.0
     cockpit.run(12.0)
     assert words not in cockpit.view.warnings
     assert OVERRIDE in cockpit.view.warnings
@@ -82,14 +85,14 @@ def test_settings_that_could_not_be_read_are_named_and_read_later() -> None:
 @pytest.mark.parametrize("silence", [0.0, 4.0], ids=["fast reboot", "link lost"])
 def test_settings_are_read_again_after_a_restart(silence: float) -> None:
     vehicle = FakeArduPilot()
-    vehicle.parameters |= {"RC_OVERRIDE_TIME": 0.5, "FS_GCS_ENABLE": 1.0, "MAV_GCS_SYSID": 255.0}
+    vehicle.params |= {"RC_OVERRIDE_TIME": 0.5, "FS_GCS_ENABLE": 1.0, "MAV_GCS_SYSID": 255.0}
     cockpit = Cockpit(vehicle)
     cockpit.run(10.0)
     assert not cockpit.view.warnings
     cockpit.world.cut()
     cockpit.run(silence)
     vehicle.reboot()
-    vehicle.parameters |= {"RC_OVERRIDE_TIME": 3.0, "FS_THR_ENABLE": 1.0}
+    vehicle.params |= {"RC_OVERRIDE_TIME": 3.0, "FS_THR_ENABLE": 1.0}
     cockpit.world.cut(False)
     if not silence:
         vehicle.send(m.Attitude(1000, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
@@ -116,7 +119,7 @@ def test_a_restarted_vehicle_has_a_new_track_and_home() -> None:
 
 def test_the_clock_of_another_component_is_no_reboot() -> None:
     vehicle = FakeArduPilot()
-    vehicle.parameters["MAV_GCS_SYSID"] = 255.0
+    vehicle.params["MAV_GCS_SYSID"] = 255.0
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
     before = len(vehicle.all(m.ParamRequestRead))

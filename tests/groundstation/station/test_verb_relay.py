@@ -12,9 +12,9 @@ from dialects.messages import INVALID_AXIS, UINT16_MAX
 from groundstation.station.verb_relay import Verb, VerbRelay
 from groundstation.station_socket.relay import ALIVE_WITHIN, KEEP
 from link.core import Received
-from tests.groundstation.cockpits import armed_cockpit
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit, armed_cockpit
 
 BEAT = m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)
 STEP = 0.05

@@ -17,7 +17,7 @@ from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import ConsoleApp
 from link.runtime.child_process import start_module
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import foreign_vehicle
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.example_connect import remember
 from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
@@ -103,10 +103,10 @@ async def links(size: tuple[int, int]) -> dict[str, frames.Picture]:
 async def files(size: tuple[int, int]) -> dict[str, frames.Picture]:
     """Return the Files screen: one log is here, one is on its way, a script was compared."""
     data = random.Random(1).randbytes(14_200_000)
-    with ForeignVehicle() as vehicle, tempfile.TemporaryDirectory() as folder:
+    with foreign_vehicle() as vehicle, tempfile.TemporaryDirectory() as folder:
         write_logs(Path(folder))
         assert vehicle.files is not None
-        vehicle.logs = [data[:900_000], data[:190_000], data[:8_100_000], data]
+        vehicle.logs[:] = [data[:900_000], data[:190_000], data[:8_100_000], data]
         vehicle.files.files = {"/crash_dump.bin": data[:98_000], "/fence.txt": b"# none", "/lights.lua": SCRIPT}
         async with program(size, [vehicle.endpoint], folder) as (app, pilot):
             await _until(pilot, app, lambda text: "rover 1" in text)

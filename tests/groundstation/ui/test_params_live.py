@@ -16,7 +16,8 @@ from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import ConsoleApp
 from groundstation.ui.params.model import ParamModel
 from groundstation.ui.screens.screen import ConsoleScreen
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignParam, ForeignVehicle, many_params
+from tests.fakes.params import Param, many_params
+from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.ptys import until
 
@@ -98,11 +99,10 @@ def station(kind: Kind, folder: Path) -> Iterator[StationClient]:
     with contextlib.ExitStack() as stack:
         endpoints = []
         if kind.autopilot is not None:
-            vehicle = stack.enter_context(ForeignVehicle(kind.autopilot))
-            vehicle.params = {
-                "FS_ACTION": ForeignParam(2, 2, 1), "STAT_BOOTCNT": ForeignParam(7, 4, read_only=True),
-                **dict(many_params(300)),
-            }  # fmt: skip
+            vehicle = stack.enter_context(foreign_vehicle(kind.autopilot))
+            vehicle.params["FS_ACTION"] = Param(2, 2, 1)
+            vehicle.params["STAT_BOOTCNT"] = Param(7, 4, read_only=True)
+            vehicle.params |= dict(many_params(300))
             endpoints = [vehicle.endpoint]
         docs = folder / "parameters.json"
         docs.write_text(json.dumps(DOCS))

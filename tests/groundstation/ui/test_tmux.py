@@ -20,10 +20,10 @@ from dialects import messages as m
 from dialects.enums import Command
 from groundstation.ui.terminal.tmux import RELEASE_AFTER, TmuxSession, count_clients
 from tests.e2e.programs import LET_GO
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.fakes.lines import on_line
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.held_key import GAP, event_times
-from tests.groundstation.line_vehicle import LineVehicle
 from tests.groundstation.ui.ptys import attach_pty
 
 PATIENCE = 60.0
@@ -196,7 +196,7 @@ def test_a_lost_client_means_neutral_then_control_is_released(
     rover: Callable[[], FakeVehicle], kill: bool, stack: ExitStack, tmp_path: Path
 ) -> None:
     vehicle = rover()
-    line = stack.enter_context(LineVehicle(vehicle, "udpin"))
+    line = stack.enter_context(on_line(vehicle, "udpin"))
     session = Session(tmp_path, line.endpoint)
     stack.callback(session.end)
     session.until(lambda: "DISARMED" in session.screen(), "a vehicle")

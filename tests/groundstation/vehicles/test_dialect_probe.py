@@ -7,8 +7,9 @@ import itertools
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
 from groundstation.vehicles.dialect_probe import LONGEST_RETRY
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit
 
 REQUEST = Command.REQUEST_MESSAGE
 STATUS = m.RoverDriveStatus(1, 0, 0, 0, [0, 0, 0, 0], 0, 0, 0)
@@ -21,11 +22,11 @@ class Kin(FakeVehicle):
         super().__init__()
         self.telling = False
 
-    def _obey(self, message: m.CommandLong, source: int) -> None:
-        super()._obey(message, source)
+    def _obey(self, message: m.CommandLong | m.CommandInt, source: int) -> bool:
         if message.command == REQUEST and message.param1 == m.RoverDriveInfo.id:
             self.telling = True
             self.send(m.RoverDriveInfo(2.0, 4.0, 0.4, 0.3, 450, 1, 0, 3, 0, 2))
+        return super()._obey(message, source)
 
     def tick(self, now: float) -> None:
         super().tick(now)

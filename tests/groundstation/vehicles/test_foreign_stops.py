@@ -15,8 +15,9 @@ from dialects.modes import Mode
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, Stop
 from groundstation.intents.session import Quit, ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm
-from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import LATCH, FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit
 
 FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 LEFT = DriveKeyDown(key="j", throttle=0, steering=-1)
@@ -150,7 +151,7 @@ def test_arming_waits_for_neutral_and_shows_why_it_was_refused() -> None:
 
 def test_a_vehicle_of_another_station_does_not_move_and_a_warning_names_that_station() -> None:
     vehicle = FakeArduPilot(station=252)
-    vehicle.parameters["MAV_GCS_SYSID"] = 252.0
+    vehicle.params["MAV_GCS_SYSID"] = 252.0
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
     assert cockpit.view.obeys == "obeys ground station 252 only and we are 255: use --system 252"
@@ -189,7 +190,7 @@ def test_what_the_driver_sees_of_it() -> None:
     ("vehicle", "words"),
     [
         (FakeVehicle(), "it stops by itself"),
-        (FakeVehicle(autopilot=Autopilot.PX4, driver=None), None),
+        (FakeVehicle(autopilot=Autopilot.PX4), None),
         (FakeVehicle(driver=255), None),
         (FakeArduPilot(), "by its settings it drives on for 3 s"),
     ],

@@ -7,9 +7,8 @@ import pytest
 from dialects import messages as m
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm
-from tests.groundstation.cockpits import FORWARD
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.fakes.rover import FakeArduPilot
+from tests.groundstation.cockpits import FORWARD, Cockpit
 
 FRAMES = {
     "ackermann": ({1: 26, 3: 70}, ["steering servo", "throttle servo"]),
@@ -22,7 +21,7 @@ FRAMES = {
 
 def cockpit(functions: dict[int, int]) -> tuple[Cockpit, FakeArduPilot]:
     vehicle = FakeArduPilot()
-    vehicle.parameters |= {f"SERVO{channel}_FUNCTION": float(each) for channel, each in functions.items()}
+    vehicle.params |= {f"SERVO{channel}_FUNCTION": float(each) for channel, each in functions.items()}
     vehicle.set_pulses("SERVO1", "SERVO3")
     made = Cockpit(vehicle)
     made.run(6.0)
@@ -57,7 +56,7 @@ def test_functions_are_read_again_after_a_restart_and_a_vehicle_without_them_is_
     asked = [each.param_id for _, each in vehicle.all(m.ParamRequestRead)]
     assert asked.count("SERVO1_FUNCTION") == 1
     assert asked.count("SERVO8_FUNCTION") == 3
-    vehicle.parameters |= {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
+    vehicle.params |= {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
     made.world.cut()
     made.run(4.0)
     made.world.cut(False)

@@ -8,15 +8,16 @@ import pytest
 
 from dialects.axes import AXIS_MAPS, NEUTRAL, PX4_FRAMES
 from dialects.enums import Autopilot
-from dialects.messages import ManualControl, ParamRequestRead, ParamValue
+from dialects.messages import ManualControl, ParamValue
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.vehicles.px4_checks import PX4
 from groundstation.vehicles.settings_check import SettingsCheck
 from link.core import Peer, Received
 from link.services.param.values import REAL32
-from tests.groundstation.cockpits import armed_cockpit
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.params import Param
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit, armed_cockpit
 
 ACKERMANN = 5
 """CA_AIRFRAME"""
@@ -50,20 +51,12 @@ def check_with(**values: float) -> SettingsCheck:
     return check
 
 
-class FakePx4(FakeVehicle):
-    """A PX4 rover with its parameters; it answers reads as PX4 does."""
-
-    def __init__(self, **changes: float) -> None:
-        super().__init__(autopilot=Autopilot.PX4, driver=None)
-        self.values = DEFAULTS | changes
-
-    def receive(self, received: Received, now: float) -> None:
-        """Answer reads; the rest as FakeVehicle."""
-        message = received.message
-        if isinstance(message, ParamRequestRead) and message.param_id in self.values:
-            answer = value(message.param_id, self.values[message.param_id]).message
-            self.send(answer)
-        super().receive(received, now)
+def px4(**changes: float) -> FakeVehicle:
+    """Return a PX4 rover with its parameters."""
+    vehicle = FakeVehicle(autopilot=Autopilot.PX4)
+    for name, number in (DEFAULTS | changes).items():
+        vehicle.params[name] = Param(number, REAL32 if name == "COM_RC_LOSS_T" else INT32)
+    return vehicle
 
 
 @pytest.mark.parametrize(
@@ -113,32 +106,32 @@ def test_what_a_lost_link_means(
 
 
 def test_a_rover_with_default_settings_is_read_and_warned_of() -> None:
-    cockpit = Cockpit(FakePx4())
+    cockpit = Cockpit(px4())
     cockpit.run(2.0)
     assert [warning.split(":")[0] for warning in cockpit.view.warnings] == ["NAV_RCL_ACT 2", "NAV_DLL_ACT 0"]
     assert cockpit.view.without_link == "by its settings it holds a place after 0.5 s, and drives home 5 s later"
 
 
 def test_settings_that_cannot_be_read_are_named_and_asked_for_again() -> None:
-    vehicle = FakePx4(NAV_RCL_ACT=6, NAV_DLL_ACT=1)
-    del vehicle.values["COM_RC_LOSS_T"]
+    vehicle = px4(NAV_RCL_ACT=6, NAV_DLL_ACT=1)
+    del vehicle.params["COM_RC_LOSS_T"]
     cockpit = Cockpit(vehicle)
     cockpit.run(5.0)
     assert list(cockpit.view.warnings) == ["could not read, trying again: COM_RC_LOSS_T"]
     assert cockpit.view.without_link is None
-    vehicle.values["COM_RC_LOSS_T"] = 0.5
+    vehicle.params["COM_RC_LOSS_T"] = 0.5
     cockpit.run(15.0)
     assert not cockpit.view.warnings
 
 
 def test_a_restart_reads_the_settings_again() -> None:
-    vehicle = FakePx4(NAV_RCL_ACT=6, NAV_DLL_ACT=1)
+    vehicle = px4(NAV_RCL_ACT=6, NAV_DLL_ACT=1)
     cockpit = Cockpit(vehicle)
     cockpit.run(2.0)
     assert not cockpit.view.warnings
     cockpit.world.cut()
     cockpit.run(4.0)
-    vehicle.values["COM_RC_LOSS_T"] = 35.0
+    vehicle.params["COM_RC_LOSS_T"] = 35.0
     cockpit.world.cut(False)
     cockpit.run(4.0)
     assert list(cockpit.view.warnings) == ["COM_RC_LOSS_T 35: drives on for 35 s when the link is lost; set it to 0.5"]
@@ -146,7 +139,7 @@ def test_a_restart_reads_the_settings_again() -> None:
 
 @pytest.mark.parametrize("frame", [*PX4_FRAMES, 0])
 def test_the_frame_selects_the_axes(frame: int) -> None:
-    cockpit = Cockpit(FakePx4(CA_AIRFRAME=frame))
+    cockpit = Cockpit(px4(CA_AIRFRAME=frame))
     cockpit.run(2.0)
     contact = cockpit.station.fleet.selected
     assert contact is not None
@@ -154,13 +147,13 @@ def test_the_frame_selects_the_axes(frame: int) -> None:
 
 
 def test_a_frame_that_is_read_while_driving_turns_the_steering_only_after_a_neutral_demand() -> None:
-    vehicle = FakePx4(CA_AIRFRAME=ACKERMANN)
-    del vehicle.values["CA_AIRFRAME"]
+    vehicle = px4(CA_AIRFRAME=ACKERMANN)
+    del vehicle.params["CA_AIRFRAME"]
     cockpit = armed_cockpit(vehicle)
     back_left = DriveKeyDown(key="m", throttle=-1, steering=1)
     cockpit.do(ReportKeyReleases(), back_left)
     cockpit.run(5.0)
-    vehicle.values["CA_AIRFRAME"] = ACKERMANN
+    vehicle.params["CA_AIRFRAME"] = Param(ACKERMANN, INT32)
     cockpit.run(15.0)
     assert "could not read" not in str(cockpit.view.warnings)
     sent = {message.y for _, message in vehicle.all(ManualControl) if message.z < 500}

@@ -6,8 +6,8 @@ from dialects.modes import Mode
 from groundstation.intents.vehicle import Arm, RequestControl, SetMode
 from groundstation.vehicles.message_log import STATE
 from groundstation.views.log import LogRequest
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.fakes.rover import FakeArduPilot
+from tests.groundstation.cockpits import Cockpit
 
 
 def changes(cockpit: Cockpit) -> list[str]:

@@ -14,8 +14,9 @@ from groundstation.vehicles.stream_requests import (
     StreamRequests,
     stream_rate,
 )
-from tests.groundstation.fake_ardupilot import FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+from tests.fakes.rover import FakeArduPilot
+from tests.fakes.vehicle import FakeVehicle
+from tests.groundstation.cockpits import Cockpit
 
 INTERVAL = Command.SET_MESSAGE_INTERVAL
 EXPECTED = {
@@ -108,13 +109,8 @@ def test_a_vehicle_that_does_not_answer_gets_group_requests() -> None:
 
 
 def test_a_refused_message_is_requested_by_its_group_alone() -> None:
-    class Picky(FakeArduPilot):
-        def _command(self, message: m.CommandLong, source: int) -> None:
-            refuses = message.command == INTERVAL and message.param1 == m.ServoOutputRaw.id
-            self.answers[INTERVAL] = Result.DENIED if refuses else Result.ACCEPTED
-            super()._command(message, source)
-
-    vehicle = Picky()
+    vehicle = FakeArduPilot()
+    vehicle.answers[INTERVAL] = lambda command: Result.DENIED if command.param1 == m.ServoOutputRaw.id else None
     Cockpit(vehicle).run(5.0)
     assert set(requested_rates(vehicle)) == streams(Autopilot.ARDUPILOT)
     assert groups(vehicle) == {DataStream.RC_CHANNELS: 5}

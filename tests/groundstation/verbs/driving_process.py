@@ -9,8 +9,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
-from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.fakes.lines import on_line
+from tests.fakes.rover import LATCH, FakeArduPilot
 from tests.groundstation.verbs.verb_runs import PATIENCE, wait_until
 from tests.ports import free_port
 
@@ -22,7 +22,7 @@ def driving(*words: str) -> Iterator[tuple[FakeArduPilot, subprocess.Popen[str]]
     core.armed = True
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "groundstation", *words, "-e", endpoint]
-    with UdpVehicle(endpoint, core), subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+    with on_line(core, endpoint=endpoint), subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         try:
             wait_until(lambda: core.moves, "the wheels do not turn")
             yield core, process

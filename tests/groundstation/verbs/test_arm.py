@@ -8,7 +8,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
 
 Capture = pytest.CaptureFixture[str]
@@ -27,22 +27,22 @@ def sys_status(*, ready: bool) -> mav.MAVLink_sys_status_message:
 
 @pytest.mark.parametrize(("autopilot", "neutral"), [(ARDUPILOT, (0, 0)), (PX4, (0, 500))])
 def test_neutral_then_manual_then_armed_then_neutral(capsys: Capture, autopilot: int, neutral: tuple[int, int]) -> None:
-    with ForeignVehicle(autopilot) as vehicle:
+    with foreign_vehicle(autopilot) as vehicle:
         vehicle.mode = 4 if autopilot == ARDUPILOT else 4 << 16
         armed = arm(capsys, vehicle, "--json")
         assert (armed.code, vehicle.armed) == (0, True), armed.err
         assert armed.records[-1]["armed"] is True
         assert "nobody drives it when this verb ends" in armed.err
-        sent = [each.get_type() for each in vehicle.received]
+        sent = [each.get_type() for each in vehicle.messages]
         assert sent.index("MANUAL_CONTROL") < next(
-            at for at, each in enumerate(vehicle.received) if getattr(each, "command", 0) in (MODE, ARM)
+            at for at, each in enumerate(vehicle.messages) if getattr(each, "command", 0) in (MODE, ARM)
         )
         assert {(each.y, each.z) for each in vehicle.of("MANUAL_CONTROL")} == {neutral}
         assert "MANUAL_CONTROL" in sent[-3:]  # the final ones
 
 
 def test_it_waits_for_the_pre_arm_bit(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.telemetry[1] = sys_status(ready=False)
         threading.Timer(READY_AFTER, lambda: vehicle.telemetry.update({1: sys_status(ready=True)})).start()
         armed = arm(capsys, vehicle)
@@ -51,16 +51,16 @@ def test_it_waits_for_the_pre_arm_bit(capsys: Capture) -> None:
 
 
 def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.telemetry[1] = sys_status(ready=False)
-        vehicle.acks[ARM] = (4, "PreArm: Compass not calibrated")
+        vehicle.answers[ARM] = (4, "PreArm: Compass not calibrated")
         refused = arm(capsys, vehicle, "--wait", "0.5")
         assert (refused.code, vehicle.armed) == (ExitCode.REFUSED, False)
         assert refused.err.endswith('arm: refused, FAILED (4), "PreArm: Compass not calibrated"\n')
 
 
 def test_an_acknowledged_arming_that_the_heartbeat_does_not_show(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.obeys = False
         refused = arm(capsys, vehicle)
         assert refused.code == ExitCode.REFUSED
@@ -68,7 +68,7 @@ def test_an_acknowledged_arming_that_the_heartbeat_does_not_show(capsys: Capture
 
 
 def test_an_interrupted_arming_disarms(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.obeys = False
         assert arm(capsys, vehicle, "--timeout", "2.5").code == ExitCode.NO_ANSWER
         wait_until(lambda: arms(vehicle) == [1.0, 0.0], "it was not disarmed")
@@ -79,7 +79,7 @@ def arms(vehicle: ForeignVehicle) -> list[float]:
 
 
 def test_no_answer(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.silent.add(76)
         silent = arm(capsys, vehicle)
         assert (silent.code, vehicle.armed) == (ExitCode.NO_ANSWER, False)

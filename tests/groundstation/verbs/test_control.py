@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import foreign_vehicle
 from tests.groundstation.verbs.verb_runs import run_verb
 
 REQUEST_CONTROL = 32100
@@ -13,8 +13,8 @@ REQUEST_CONTROL = 32100
 
 @pytest.mark.parametrize("words", [("request",), ("release",)])
 def test_a_vehicle_that_does_not_manage_control(capsys: pytest.CaptureFixture[str], words: tuple[str, ...]) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.acks = {REQUEST_CONTROL: (3, ""), 512: (3, "")}
+    with foreign_vehicle() as vehicle:
+        vehicle.answers = {REQUEST_CONTROL: (3, ""), 512: (3, "")}
         run = run_verb(capsys, "control", *words, "-e", vehicle.endpoint, "-v", "1")
         assert run.code == 0, run.err
         assert "does not manage control" in run.err
@@ -23,8 +23,8 @@ def test_a_vehicle_that_does_not_manage_control(capsys: pytest.CaptureFixture[st
 
 
 def test_a_refused_request(capsys: pytest.CaptureFixture[str]) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.acks[REQUEST_CONTROL] = (4, "not now")
+    with foreign_vehicle() as vehicle:
+        vehicle.answers[REQUEST_CONTROL] = (4, "not now")
         run = run_verb(capsys, "control", "request", "-e", vehicle.endpoint, "-v", "1")
         assert (run.code, "not now" in run.err) == (ExitCode.REFUSED, True)
 
@@ -32,7 +32,7 @@ def test_a_refused_request(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_vehicle_that_accepts_the_question_for_the_dialect_and_does_not_answer_it(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    with ForeignVehicle(autopilot=0) as vehicle:
+    with foreign_vehicle(autopilot=0) as vehicle:
         run = run_verb(capsys, "control", "request", "-e", vehicle.endpoint, "-v", "1")
         assert run.code == 0, run.err
         assert vehicle.of("COMMAND_LONG")[-1].command == REQUEST_CONTROL

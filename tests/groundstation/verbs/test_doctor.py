@@ -10,7 +10,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import PX4, ForeignParam, ForeignVehicle
+from tests.fakes.params import Param
+from tests.fakes.services import PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import run_verb, wait_until
 from tests.ports import free_port
 
@@ -25,8 +26,8 @@ SAFE = {
 
 @pytest.fixture
 def rover() -> Iterator[ForeignVehicle]:
-    with ForeignVehicle() as vehicle:
-        vehicle.params = {name: ForeignParam(float(value)) for name, value in SAFE.items()}
+    with foreign_vehicle() as vehicle:
+        vehicle.params.replace({name: Param(float(value)) for name, value in SAFE.items()})
         yield vehicle
 
 
@@ -40,7 +41,7 @@ def test_nothing_stops_you(capsys: Capture, rover: ForeignVehicle) -> None:
 
 def test_what_stops_you(capsys: Capture, rover: ForeignVehicle, tmp_path: Path) -> None:
     rover.params["FS_THR_ENABLE"].value = 0.0
-    rover.acks[CHECKS] = (0, "PreArm: Compass not calibrated")
+    rover.answers[CHECKS] = (0, "PreArm: Compass not calibrated")
     report = tmp_path / "report.txt"
     run = run_verb(capsys, "doctor", "-e", rover.endpoint, "--json", "--report", str(report))
     assert run.code == ExitCode.DIFFERS
@@ -69,7 +70,7 @@ def test_motor(capsys: Capture, rover: ForeignVehicle, answer: tuple[int, str] |
     if answer is None:
         rover.silent.add(76)
     else:
-        rover.acks[MOTOR_TEST] = answer
+        rover.answers[MOTOR_TEST] = answer
     run = run_verb(capsys, "motor", "2", "-12", "--for", "0.6", "-e", rover.endpoint)
     assert run.code == code, run.err
     sent = [message for message in rover.of("COMMAND_LONG") if message.command == MOTOR_TEST]
@@ -100,7 +101,7 @@ def test_a_motor_that_is_not_there(capsys: Capture, rover: ForeignVehicle) -> No
 
 
 def test_px4_gets_an_actuator_test(capsys: Capture) -> None:
-    with ForeignVehicle(PX4) as vehicle:
+    with foreign_vehicle(PX4) as vehicle:
         run = run_verb(capsys, "motor", "1", "10", "--for", "0.1", "-e", vehicle.endpoint)
         assert run.code == ExitCode.DONE, run.err
         first, *_, last = (message for message in vehicle.of("COMMAND_LONG") if message.command == ACTUATOR_TEST)
@@ -117,7 +118,7 @@ def test_calibrate(capsys: Capture, rover: ForeignVehicle, kind: str, parameter:
 
 
 def test_a_calibration_that_is_refused(capsys: Capture, rover: ForeignVehicle) -> None:
-    rover.acks[CALIBRATION] = (4, "Gyro cal failed")
+    rover.answers[CALIBRATION] = (4, "Gyro cal failed")
     run = run_verb(capsys, "calibrate", "gyro", "-e", rover.endpoint, "-v", "1")
     assert run.code == ExitCode.REFUSED
     assert "Gyro cal failed" in run.err

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignParam, ForeignVehicle
+from tests.fakes.params import Param
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.driving_process import check_signal, check_standstill
 from tests.groundstation.verbs.verb_runs import PATIENCE, VerbRun, run_verb, wait_until
 
@@ -40,12 +41,12 @@ def test_a_process_that_stands_still_leaves_no_demand_and_does_not_drive_on() ->
 
 @pytest.mark.parametrize(("airframe", "steering"), [(None, [(300, 350)]), (5, [(-300, 350)])])
 def test_the_axes_of_px4(airframe: int | None, steering: list[tuple[int, int]]) -> None:
-    with ForeignVehicle(PX4) as vehicle:
+    with foreign_vehicle(PX4) as vehicle:
         vehicle.armed, vehicle.mode = True, PX4_MANUAL
         if airframe is None:
             vehicle.silent.add(20)
         else:
-            vehicle.params["CA_AIRFRAME"] = ForeignParam(float(airframe), 6)
+            vehicle.params["CA_AIRFRAME"] = Param(float(airframe), 6)
         driven = drive(vehicle, "--throttle", "-30", "--steering", "30", "--for", "0.3")
         assert driven.code == 0, driven.err
         sent = [(each.y, each.z) for each in vehicle.of("MANUAL_CONTROL")]
@@ -57,7 +58,7 @@ def test_the_axes_of_px4(airframe: int | None, steering: list[tuple[int, int]]) 
 def test_a_script_with_an_ardupilot_that_is_armed_and_disarmed(tmp_path: Path) -> None:
     script = tmp_path / "run.keys"
     script.write_text("0.2 press comma\n0.4 press right\n0.6 release right\n0.8 release comma\n")
-    with ForeignVehicle(ARDUPILOT) as vehicle:
+    with foreign_vehicle(ARDUPILOT) as vehicle:
         driven = drive(vehicle, "--script", str(script), "--arm", "--speed", "0.4")
         assert (driven.code, vehicle.armed) == (0, False), driven.err
         assert "and is disarmed" in driven.err
@@ -68,7 +69,7 @@ def test_a_script_with_an_ardupilot_that_is_armed_and_disarmed(tmp_path: Path) -
 
 
 def test_it_needs_an_armed_vehicle_that_takes_demands() -> None:
-    with ForeignVehicle(PX4) as vehicle:
+    with foreign_vehicle(PX4) as vehicle:
         vehicle.mode = PX4_MISSION
         words = ("--throttle", "30", "--for", "2")
         disarmed = drive(vehicle, *words)
@@ -82,7 +83,7 @@ def test_it_needs_an_armed_vehicle_that_takes_demands() -> None:
 
 
 def test_it_ends_when_the_vehicle_disarms_itself() -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed = True
         command = [sys.executable, "-m", "groundstation", "drive", "--throttle", "30", "--for", "9"]
         words = [*command, "-e", vehicle.endpoint, "-v", "1"]

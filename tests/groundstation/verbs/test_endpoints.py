@@ -10,7 +10,7 @@ from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.recent.recent_file import RecentFile
 from groundstation.verbs import endpoints
 from groundstation.verbs.endpoints import choose_endpoints
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import foreign_vehicle
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
 
@@ -43,7 +43,7 @@ def test_a_broken_config_file_does_not_keep_a_verb_from_an_endpoint(recent: Rece
 def test_the_next_verb_finds_the_vehicle_where_the_last_one_did(
     recent: RecentFile, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         assert run_verb(capsys, "modes", "-e", vehicle.endpoint, "-v", "1").code == 0
         [entry] = recent.load().entries
         assert (entry.endpoint, entry.vehicle) == (vehicle.endpoint, "ArduPilot rover 1")

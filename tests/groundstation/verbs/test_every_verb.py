@@ -22,7 +22,8 @@ from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.table import VERBS
 from tests.e2e.programs import Vehicle
 from tests.e2e.relay import Relay
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignParam, ForeignVehicle
+from tests.fakes.params import Param
+from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.test_doctor import INTERVAL, MAG_CAL_START, channels, progress, report, send_all
 from tests.groundstation.verbs.test_examples import prepare
@@ -104,7 +105,7 @@ UNARMED_BY = ("disarm", "estop")
 PX4_MANUAL, PX4_LOITER, PX4_RTL = 1 << 16, 3 << 24 | 4 << 16, 5 << 24 | 4 << 16
 """custom_mode of modes of PX4."""
 STICKS = (channels(1100, 1500), channels(1900, 1500))
-MOTORS = {"SERVO1_FUNCTION": ForeignParam(73.0), "SERVO3_FUNCTION": ForeignParam(74.0)}
+MOTORS = {"SERVO1_FUNCTION": Param(73.0), "SERVO3_FUNCTION": Param(74.0)}
 
 
 def test_every_verb_has_a_line() -> None:
@@ -154,13 +155,13 @@ def _vehicle_of_others(
 ) -> Prepared:
     """Start one that answers as ArduPilot or PX4 does."""
     loss = LOSS if way == "lossy" else 0.0
-    vehicle = stack.enter_context(ForeignVehicle(OTHERS[name], loss=loss, loss_in=loss))
+    vehicle = stack.enter_context(foreign_vehicle(OTHERS[name], loss=loss, loss_in=loss))
     prepare(vehicle)
     vehicle.params |= MOTORS
     vehicle.on_command[MAG_CAL_START] = partial(send_all, vehicle, *(4 * (progress(40),)), *(4 * (report(4),)))
     vehicle.on_command[INTERVAL] = partial(send_all, vehicle, *(4 * STICKS))
     if OTHERS[name] == PX4:
-        vehicle.modes = [("MANUAL", PX4_MANUAL, 0), ("HOLD", PX4_LOITER, 0), ("RTL", PX4_RTL, 0)]
+        vehicle.modes[:] = [("MANUAL", PX4_MANUAL, 0), ("HOLD", PX4_LOITER, 0), ("RTL", PX4_RTL, 0)]
         vehicle.on_command[192] = partial(vehicle.change_mode, PX4_LOITER)
         vehicle.on_command[20] = partial(vehicle.change_mode, PX4_RTL)
     options = _options(stack, way, vehicle.endpoint)

@@ -12,7 +12,8 @@ from groundstation.verbs.command_doc import update
 from groundstation.verbs.examples import AUTOPILOT_EXAMPLES, EXAMPLES
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.table import ONLY, VERBS
-from tests.groundstation.foreign_vehicle import ForeignParam, ForeignVehicle
+from tests.fakes.params import Param
+from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.verb_runs import run_verb
 
@@ -57,7 +58,7 @@ def test_each_example_runs(capsys: pytest.CaptureFixture[str], tmp_path: Path, m
     monkeypatch.chdir(tmp_path)
     Path("a.lua").write_text("-- a script\n")
     failed = []
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         prepare(vehicle)
         for words in RUN:
             vehicle.armed = words[0] in ("goto", "home", "mission", "speed")
@@ -75,10 +76,9 @@ def test_each_example_runs(capsys: pytest.CaptureFixture[str], tmp_path: Path, m
 def prepare(vehicle: ForeignVehicle) -> None:
     """Give the vehicle what the examples ask for."""
     vehicle.beat_period = 0.05
-    vehicle.params |= {name: ForeignParam(1.0) for name in ("FS_TIMEOUT", "FS_ACTION")}
-    vehicle.modes = [("MANUAL", 0, 0), ("HOLD", 4, 0), ("AUTO", 10, 0), ("RTL", 11, 0), ("GUIDED", 15, 0)]
-    vehicle.logs = [b"log" * 50]
-    vehicle.answers_timesync = True
+    vehicle.params |= {name: Param(1.0) for name in ("FS_TIMEOUT", "FS_ACTION")}
+    vehicle.modes[:] = [("MANUAL", 0, 0), ("HOLD", 4, 0), ("AUTO", 10, 0), ("RTL", 11, 0), ("GUIDED", 15, 0)]
+    vehicle.logs[:] = [b"log" * 50]
     vehicle.telemetry[33] = mav.MAVLink_global_position_int_message(0, -353632620, 1491652370, 0, 0, 0, 0, 0, 0)
     vehicle.telemetry[242] = mav.MAVLink_home_position_message(0, 0, 0, 0, 0, 0, [1.0, 0.0, 0.0, 0.0], 0, 0, 0)
     vehicle.on_command[192] = lambda: vehicle.change_mode(15)

@@ -9,7 +9,7 @@ import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.table import VERBS
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.test_examples import RUN, prepare
 from tests.groundstation.verbs.verb_runs import run_verb
@@ -33,7 +33,7 @@ COMMANDS = {
 
 @pytest.fixture(params=[ARDUPILOT, PX4], ids=["ardupilot", "px4"])
 def vehicle(request: pytest.FixtureRequest) -> Iterator[ForeignVehicle]:
-    with ForeignVehicle(request.param) as running:
+    with foreign_vehicle(request.param) as running:
         prepare(running)
         yield running
 
@@ -63,7 +63,7 @@ def test_refused(capsys: Capture, vehicle: ForeignVehicle) -> None:
     vehicle.armed = True
     codes = {}
     for words, command in COMMANDS.items():
-        vehicle.acks = {command: (4, "not now")}
+        vehicle.answers = {command: (4, "not now")}
         codes[words] = run_verb(capsys, *words, "-e", vehicle.endpoint, "-v", "1").code
     assert {words: code for words, code in codes.items() if code != ExitCode.REFUSED} == {}
 

@@ -13,7 +13,7 @@ import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
 from link.services.ftp.protocol import crc32
-from tests.groundstation.foreign_vehicle import PX4, ForeignVehicle
+from tests.fakes.services import PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -23,10 +23,10 @@ DATA = random.Random(5).randbytes(60_000)
 
 @pytest.fixture
 def vehicle() -> Iterator[ForeignVehicle]:
-    with ForeignVehicle() as running:
+    with foreign_vehicle() as running:
         assert running.files is not None
         running.files.files = {"/logs/1.bin": DATA, "/logs/2.bin": b"", "/scripts/a.lua": b"-- a"}
-        running.logs = [DATA[:5000], DATA]
+        running.logs[:] = [DATA[:5000], DATA]
         yield running
 
 
@@ -127,14 +127,14 @@ def test_logs(capsys: Capture, vehicle: ForeignVehicle, here: Path) -> None:
 
 
 def test_logs_over_a_link_that_loses(capsys: Capture, here: Path) -> None:
-    with ForeignVehicle(loss=0.03) as vehicle:
-        vehicle.logs = [DATA[:20_000]]
+    with foreign_vehicle(loss=0.03) as vehicle:
+        vehicle.logs[:] = [DATA[:20_000]]
         assert verb(capsys, vehicle, "log", "get", "1").code == 0
         assert (here / "1-00001.bin").read_bytes() == DATA[:20_000]
 
 
 def test_a_vehicle_without_files_and_logs(capsys: Capture, here: Path) -> None:
-    with ForeignVehicle(PX4, ftp=False) as vehicle:
+    with foreign_vehicle(PX4, ftp=False) as vehicle:
         vehicle.silent.add(117)
         none = verb(capsys, vehicle, "log", "list")
         assert (none.code, "list logs: no answer, after 12 tries" in none.err) == (ExitCode.NO_ANSWER, True)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -21,13 +23,14 @@ def verb(capsys: Capture, vehicle: ForeignVehicle, *words: str) -> VerbRun:
     return run_verb(capsys, *words, "-e", vehicle.endpoint, "-v", "1")
 
 
-def armed(autopilot: int = ARDUPILOT) -> ForeignVehicle:
-    """An armed vehicle that changes its mode when it is sent somewhere."""
-    vehicle = ForeignVehicle(autopilot)
-    vehicle.armed = True
-    vehicle.on_command[REPOSITION] = lambda: vehicle.change_mode(GUIDED[autopilot])
-    vehicle.on_command[RETURN] = lambda: vehicle.change_mode(RTL[autopilot])
-    return vehicle
+@contextmanager
+def armed(autopilot: int = ARDUPILOT) -> Iterator[ForeignVehicle]:
+    """Run an armed vehicle that changes its mode when it is sent somewhere."""
+    with foreign_vehicle(autopilot) as vehicle:
+        vehicle.armed = True
+        vehicle.on_command[REPOSITION] = lambda: vehicle.change_mode(GUIDED[autopilot])
+        vehicle.on_command[RETURN] = lambda: vehicle.change_mode(RTL[autopilot])
+        yield vehicle
 
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
@@ -121,7 +124,7 @@ def test_heartbeats_that_are_lost(capsys: Capture, beat_period: float, code: int
 
 def test_refusals(capsys: Capture) -> None:
     with armed() as vehicle:
-        vehicle.acks[REPOSITION] = (4, "Outside fence")
+        vehicle.answers[REPOSITION] = (4, "Outside fence")
         refused = verb(capsys, vehicle, "goto", "1", "2")
         assert (refused.code, "Outside fence" in refused.err) == (ExitCode.REFUSED, True)
         vehicle.change_mode(0, armed=False)

@@ -18,7 +18,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.groundstation.foreign_vehicle import ForeignParam, ForeignVehicle
+from tests.fakes.params import Param
+from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.test_doctor import (
     MAG_CAL_ACCEPT,
@@ -33,7 +34,7 @@ from tests.groundstation.verbs.verb_runs import run_verb, wait_until
 
 Capture = pytest.CaptureFixture[str]
 DATA = random.Random(8).randbytes(2_000_000)
-MOTORS = {"SERVO1_FUNCTION": ForeignParam(73.0), "SERVO3_FUNCTION": ForeignParam(74.0)}
+MOTORS = {"SERVO1_FUNCTION": Param(73.0), "SERVO3_FUNCTION": Param(74.0)}
 
 
 def leaves_the_plan(vehicle: ForeignVehicle, killed: bool) -> None:
@@ -103,11 +104,11 @@ def test_it_is_ended(
     Path("patrol.plan").write_text(as_text(document()))
     Path("rover.param").write_text("FS_TIMEOUT 2\nFS_ACTION 2\n")
     case = CASES[name]
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         prepare(vehicle)
         vehicle.params |= MOTORS
         vehicle.armed = name == "goto"
-        vehicle.logs = [DATA]
+        vehicle.logs[:] = [DATA]
         assert vehicle.files is not None
         vehicle.files.files["/1.bin"] = DATA
         vehicle.silent |= case.silent

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignParam, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -19,11 +22,12 @@ def verb(capsys: Capture, vehicle: ForeignVehicle, *arguments: str) -> VerbRun:
     return run_verb(capsys, *arguments, "-e", vehicle.endpoint, "-v", "1")
 
 
-def copter(autopilot: int = ARDUPILOT, *, armed: bool = False) -> ForeignVehicle:
-    vehicle = ForeignVehicle(autopilot)
-    vehicle.kind, vehicle.modes, vehicle.armed = QUADROTOR, LISTED, armed
-    vehicle.params = {"SERVO1_FUNCTION": ForeignParam(33.0)}
-    return vehicle
+@contextmanager
+def copter(autopilot: int = ARDUPILOT, *, armed: bool = False) -> Iterator[ForeignVehicle]:
+    with foreign_vehicle(autopilot) as vehicle:
+        vehicle.kind, vehicle.modes, vehicle.armed = QUADROTOR, LISTED, armed
+        vehicle.params["SERVO1_FUNCTION"] = 33.0
+        yield vehicle
 
 
 def moved(vehicle: ForeignVehicle) -> list[object]:
@@ -79,7 +83,7 @@ def test_its_own_modes_are_listed_and_set(capsys: Capture) -> None:
 
 def test_without_a_list_no_mode_is_set(capsys: Capture) -> None:
     with copter(armed=True) as vehicle:
-        vehicle.acks[512] = (3, "")
+        vehicle.answers[512] = (3, "")
         refused = verb(capsys, vehicle, "mode", "LAND")
         assert refused.code == ExitCode.REFUSED
         assert f"{WHY}, and it lists no modes itself" in refused.err

@@ -10,7 +10,8 @@ import pytest
 
 from groundstation.verbs.exit_codes import ExitCode, worst_code
 from groundstation.verbs.table import VERBS
-from tests.groundstation.foreign_vehicle import PX4, ForeignParam, ForeignVehicle
+from tests.fakes.params import Param
+from tests.fakes.services import PX4, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -22,8 +23,8 @@ class Vehicles:
     """Three ArduRovers with the ids 1 to 3 and a PX4 rover with the id 4."""
 
     def __init__(self, folder: Path, capsys: Capture, stack: ExitStack) -> None:
-        make = [ForeignVehicle(system=1), ForeignVehicle(system=2), ForeignVehicle(system=3)]
-        self.all = [stack.enter_context(each) for each in [*make, ForeignVehicle(PX4, system=4)]]
+        make = [foreign_vehicle(system=1), foreign_vehicle(system=2), foreign_vehicle(system=3)]
+        self.all = [stack.enter_context(each) for each in [*make, foreign_vehicle(PX4, system=4)]]
         self._capsys = capsys
         self._config = folder / "groundstation.toml"
         self._config.write_text(CONFIG)
@@ -49,7 +50,7 @@ def vehicles(tmp_path: Path, capsys: Capture) -> Iterator[Vehicles]:
 
 def test_all_at_once_with_a_table_of_the_results_and_the_worst_code(vehicles: Vehicles) -> None:
     vehicles.arm()
-    vehicles.all[1].acks[DISARM] = (4, "not now")
+    vehicles.all[1].answers[DISARM] = (4, "not now")
     run = vehicles.verb("disarm", "--all")
     assert (run.code, vehicles.armed) == (ExitCode.REFUSED, [2])
     assert run.out.splitlines() == [
@@ -80,7 +81,7 @@ def test_a_vehicle_that_is_named_and_not_heard_is_in_the_table(vehicles: Vehicle
 
 def test_data_of_each_vehicle(vehicles: Vehicles) -> None:
     for number, each in enumerate(vehicles.all):
-        each.params = {"FS_TIMEOUT": ForeignParam(1.5 + number)}
+        each.params.replace({"FS_TIMEOUT": Param(1.5 + number)})
     run = vehicles.verb("param", "get", "FS_TIMEOUT", "--all", "--json")
     assert run.code == 0, run.err
     values = {each["vehicle"]: each["data"][0]["param_value"] for each in run.records}

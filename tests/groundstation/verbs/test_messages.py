@@ -13,7 +13,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.waits import Waits
 
@@ -47,7 +47,7 @@ def streaming(vehicle: ForeignVehicle) -> Iterator[None]:
 
 
 def test_messages_with_their_rates(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle, streaming(vehicle):
+    with foreign_vehicle() as vehicle, streaming(vehicle):
         [record] = verb(capsys, vehicle, "messages", "vfr*", "--for", "0.5", "--json").records
         assert (record["system"], record["name"]) == (1, "VFR_HUD")
         assert 30 < record["rate"] < 60
@@ -57,7 +57,7 @@ def test_messages_with_their_rates(capsys: Capture) -> None:
 
 
 def test_watch_until_a_condition_holds(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle, streaming(vehicle):
+    with foreign_vehicle() as vehicle, streaming(vehicle):
         reached = verb(capsys, vehicle, "watch", "VFR_HUD.groundspeed", "--until", ">=1.5", "--timeout", "20")
         assert (reached.code, float(reached.out.splitlines()[-1]) >= 1.5) == (0, True)
         whole = verb(capsys, vehicle, "watch", "vfr_hud", "--until", "heading == 90", "--json").records
@@ -68,7 +68,7 @@ def test_watch_until_a_condition_holds(capsys: Capture) -> None:
 
 
 def test_watch_as_csv_and_by_the_name_of_an_enum(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle, streaming(vehicle):
+    with foreign_vehicle() as vehicle, streaming(vehicle):
         lines = verb(capsys, vehicle, "watch", "VFR_HUD", "--csv", "--timeout", "0.2").out.splitlines()
         assert lines[0] == "time,airspeed,groundspeed,heading,throttle,alt,climb"
         assert lines[1].split(",")[3:] == ["90", "0", "1.5", "0"]
@@ -77,27 +77,27 @@ def test_watch_as_csv_and_by_the_name_of_an_enum(capsys: Capture) -> None:
 
 
 def test_watch_says_that_nothing_comes(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         quiet = verb(capsys, vehicle, "watch", "ATTITUDE.roll", "--until", ">0", "--timeout", "2.2")
         assert quiet.code == ExitCode.DIFFERS
         assert "`groundstation rate ATTITUDE 2` requests it" in quiet.err
 
 
 def test_request_prints_a_message(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.telemetry[74] = hud(1.25)
         assert "groundspeed  1.25 m/s\n" in verb(capsys, vehicle, "request", "VFR_HUD").out
         vehicle.telemetry[251] = mav.MAVLink_named_value_float_message(0, b"depth", 2.5)
         [record] = verb(capsys, vehicle, "request", "NAMED_VALUE_FLOAT", "--json").records[:1]
         assert record == {"name": "NAMED_VALUE_FLOAT", "fields": {"time_boot_ms": 0, "name": "depth", "value": 2.5}}
-        vehicle.acks[512] = (3, "")
+        vehicle.answers[512] = (3, "")
         assert verb(capsys, vehicle, "request", "ATTITUDE").code == ExitCode.REFUSED
-        vehicle.acks.clear()
+        vehicle.answers.clear()
         assert verb(capsys, vehicle, "request", "ATTITUDE").code == ExitCode.NO_ANSWER
 
 
 def test_a_rate_is_read_back(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.on_command[510] = lambda: vehicle.send(mav.MAVLink_message_interval_message(30, 125000))
         done = verb(capsys, vehicle, "rate", "ATTITUDE", "10", "--json")
         assert (done.code, done.records[0]["rate"]) == (0, 8.0)
@@ -108,8 +108,8 @@ def test_a_rate_is_read_back(capsys: Capture) -> None:
 
 
 def test_a_command_by_name_and_number(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.acks[183] = (4, "no servo 7")
+    with foreign_vehicle() as vehicle:
+        vehicle.answers[183] = (4, "no servo 7")
         assert verb(capsys, vehicle, "command", "do_set_home", "1", "0", "nan").code == 0
         refused = verb(capsys, vehicle, "command", "183", "7", "1500")
         assert (refused.code, "no servo 7" in refused.err) == (ExitCode.REFUSED, True)
@@ -118,26 +118,25 @@ def test_a_command_by_name_and_number(capsys: Capture) -> None:
 
 
 def test_verbs_that_only_look_never_have_the_ids_of_a_driver(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         for words, component in ((("request", "VFR_HUD"), 25), (("command", "RUN_PREARM_CHECKS"), 190)):
-            vehicle.received.clear()
+            vehicle.senders.clear()
             verb(capsys, vehicle, *words)
-            assert {each.get_srcComponent() for each in list(vehicle.received)} == {component}
+            assert {sender for _, sender in vehicle.senders} == {component}
 
 
 def test_ping(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.answers_timesync = True
+    with foreign_vehicle() as vehicle:
         trips = verb(capsys, vehicle, "ping", "--count", "3", "--interval", "0.01", "--json").records
         assert [each["number"] for each in trips] == [1, 2, 3]
         assert all(0 < each["round_trip"] < 1 for each in trips)
-        vehicle.answers_timesync = False
+        vehicle.silent.add(111)  # TIMESYNC
         assert verb(capsys, vehicle, "ping", "--count", "1").code == ExitCode.NO_ANSWER
 
 
 @pytest.mark.parametrize("words", [("watch", "VFR_HUD"), ("status", "--watch")])
 def test_a_reader_that_is_gone_is_one_line(words: tuple[str, ...]) -> None:
-    with ForeignVehicle() as vehicle, streaming(vehicle):
+    with foreign_vehicle() as vehicle, streaming(vehicle):
         command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -26,7 +26,7 @@ def run(capsys: Capture, vehicle: ForeignVehicle, *words: str) -> VerbRun:
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_start_and_pause_are_changes_of_mode(capsys: Capture, autopilot: int) -> None:
-    with ForeignVehicle(autopilot) as vehicle:
+    with foreign_vehicle(autopilot) as vehicle:
         vehicle.mode = 1 << 16 if autopilot == PX4 else 0
         disarmed = run(capsys, vehicle, "mission", "start")
         assert disarmed.code == ExitCode.REFUSED
@@ -39,7 +39,7 @@ def test_start_and_pause_are_changes_of_mode(capsys: Capture, autopilot: int) ->
 
 
 def test_start_with_an_item_jumps_there_first(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed = True
         assert run(capsys, vehicle, "mission", "start", "3").code == 0
         sent = [
@@ -49,9 +49,9 @@ def test_start_with_an_item_jumps_there_first(capsys: Capture) -> None:
 
 
 def test_a_refused_jump_starts_nothing(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed = True
-        vehicle.acks[SET_CURRENT] = (4, "Mission: no such item")
+        vehicle.answers[SET_CURRENT] = (4, "Mission: no such item")
         for words in (("start", "9"), ("jump", "9")):
             refused = run(capsys, vehicle, "mission", *words)
             assert refused.code == ExitCode.REFUSED
@@ -63,7 +63,7 @@ def test_a_refused_jump_starts_nothing(capsys: Capture) -> None:
 def test_check_compares_by_content(capsys: Capture, tmp_path: Path) -> None:
     file = tmp_path / "square.waypoints"
     file.write_text(WAYPOINTS)
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         empty = run(capsys, vehicle, "mission", "check", str(file))
         assert empty.code == ExitCode.DIFFERS
         assert empty.err.endswith(f"2 items differ from {file}\n")
@@ -78,9 +78,9 @@ def test_check_compares_by_content(capsys: Capture, tmp_path: Path) -> None:
 
 
 def test_the_fence_is_switched_on_and_off(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         assert run(capsys, vehicle, "fence", "on").code == 0
-        vehicle.acks[FENCE_ENABLE] = (3, "")
+        vehicle.answers[FENCE_ENABLE] = (3, "")
         refused = run(capsys, vehicle, "fence", "off")
         assert refused.code == ExitCode.REFUSED
         assert [each.param1 for each in vehicle.of("COMMAND_LONG") if each.command == FENCE_ENABLE] == [1.0, 0.0]

@@ -7,7 +7,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -20,8 +20,8 @@ def verb(capsys: Capture, vehicle: ForeignVehicle, *arguments: str) -> VerbRun:
 
 
 def test_modes_as_the_vehicle_lists_them(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.modes = SHORT
+    with foreign_vehicle() as vehicle:
+        vehicle.modes[:] = SHORT
         assert verb(capsys, vehicle, "modes").out == (
             "> MANUAL                0\n  STEERING              3\n  HOLD                  4\n"
             "  AUTO                 10  not now\n"
@@ -32,8 +32,8 @@ def test_modes_as_the_vehicle_lists_them(capsys: Capture) -> None:
 
 @pytest.mark.parametrize(("autopilot", "name"), [(ARDUPILOT, "GUIDED"), (PX4, "AUTO_MISSION")])
 def test_modes_by_autopilot_and_type(capsys: Capture, autopilot: int, name: str) -> None:
-    with ForeignVehicle(autopilot) as vehicle:
-        vehicle.acks[512] = (3, "")  # REQUEST_MESSAGE is not supported
+    with foreign_vehicle(autopilot) as vehicle:
+        vehicle.answers[512] = (3, "")  # REQUEST_MESSAGE is not supported
         listed = verb(capsys, vehicle, "modes")
         assert listed.code == 0
         assert name in listed.out.split()
@@ -42,8 +42,8 @@ def test_modes_by_autopilot_and_type(capsys: Capture, autopilot: int, name: str)
 
 @pytest.mark.parametrize(("autopilot", "custom"), [(ARDUPILOT, 4), (PX4, 3 << 24 | 4 << 16)])
 def test_a_change_is_done_when_the_heartbeat_reports_it(capsys: Capture, autopilot: int, custom: int) -> None:
-    with ForeignVehicle(autopilot) as vehicle:
-        vehicle.acks[512] = (3, "")
+    with foreign_vehicle(autopilot) as vehicle:
+        vehicle.answers[512] = (3, "")
         name = "hold" if autopilot == ARDUPILOT else "auto_loiter"
         changed = verb(capsys, vehicle, "mode", name, "--json")
         assert changed.code == 0, changed.err
@@ -53,16 +53,16 @@ def test_a_change_is_done_when_the_heartbeat_reports_it(capsys: Capture, autopil
 
 
 def test_a_usual_mode_does_not_wait_for_the_list(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.modes = SHORT
+    with foreign_vehicle() as vehicle:
+        vehicle.modes[:] = SHORT
         assert verb(capsys, vehicle, "mode", "HOLD").code == 0
         assert vehicle.mode == 4
-        wanted = [each.param1 for each in vehicle.received if getattr(each, "command", 0) == Command.REQUEST_MESSAGE]
+        wanted = [each.param1 for each in vehicle.messages if getattr(each, "command", 0) == Command.REQUEST_MESSAGE]
         assert m.AvailableModes.id not in wanted
 
 
 def test_a_mode_that_is_accepted_and_not_reported_is_not_done(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.modes, vehicle.obeys = SHORT, False
         changed = verb(capsys, vehicle, "mode", "HOLD")
         assert changed.code == ExitCode.REFUSED
@@ -70,16 +70,16 @@ def test_a_mode_that_is_accepted_and_not_reported_is_not_done(capsys: Capture) -
 
 
 def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.modes, vehicle.acks[176] = SHORT, (4, "No Mission. Can't set AUTO.")
+    with foreign_vehicle() as vehicle:
+        vehicle.modes, vehicle.answers[176] = SHORT, (4, "No Mission. Can't set AUTO.")
         refused = verb(capsys, vehicle, "mode", "auto")
         assert refused.code == ExitCode.REFUSED
         assert refused.err.endswith('mode AUTO: refused, FAILED, "No Mission. Can\'t set AUTO."\n')
 
 
 def test_a_mode_that_moves_the_vehicle_is_named(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.modes = SHORT
+    with foreign_vehicle() as vehicle:
+        vehicle.modes[:] = SHORT
         assert "may move by itself in AUTO" in verb(capsys, vehicle, "mode", "AUTO").err
         assert verb(capsys, vehicle, "mode", "STEERING").err == ""
 
@@ -93,7 +93,7 @@ def hold_of_px4(vehicle: ForeignVehicle) -> None:
 
 
 def test_px4_modes_have_names_and_none_is_listed_twice(capsys: Capture) -> None:
-    with ForeignVehicle(PX4) as vehicle:
+    with foreign_vehicle(PX4) as vehicle:
         hold_of_px4(vehicle)
         records = verb(capsys, vehicle, "modes", "--json").records
         assert [each["name"] for each in records] == [
@@ -113,7 +113,7 @@ def test_px4_modes_have_names_and_none_is_listed_twice(capsys: Capture) -> None:
     ],
 )
 def test_a_mode_of_px4_is_told_as_it_is(capsys: Capture, name: str, custom: int, told: str) -> None:
-    with ForeignVehicle(PX4) as vehicle:
+    with foreign_vehicle(PX4) as vehicle:
         hold_of_px4(vehicle)
         vehicle.mode = 1 << 16
         changed = verb(capsys, vehicle, "mode", name)
@@ -123,8 +123,8 @@ def test_a_mode_of_px4_is_told_as_it_is(capsys: Capture, name: str, custom: int,
 
 
 def test_a_mode_that_does_not_exist(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
-        vehicle.modes = SHORT
+    with foreign_vehicle() as vehicle:
+        vehicle.modes[:] = SHORT
         unknown = verb(capsys, vehicle, "mode", "FLY")
         assert unknown.code == ExitCode.REFUSED
         assert "no such mode; there are: MANUAL, STEERING, HOLD, AUTO" in unknown.err

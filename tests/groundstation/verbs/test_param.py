@@ -9,27 +9,28 @@ from pathlib import Path
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignParam, ForeignVehicle, many_params
+from tests.fakes.params import Param, many_params
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.waits import Waits
 
 Capture = pytest.CaptureFixture[str]
 
 
-def some_params() -> dict[str, ForeignParam]:
+def some_params() -> dict[str, Param]:
     return {
-        "FS_ACTION": ForeignParam(2, 2, 1),
-        "FS_TIMEOUT": ForeignParam(1.5),
-        "INS_GYR_ID": ForeignParam(-1234567, 6),
-        "RC_OPTIONS": ForeignParam(32, 6, 0),
-        "STAT_BOOTCNT": ForeignParam(7, 4, read_only=True),
+        "FS_ACTION": Param(2, 2, 1),
+        "FS_TIMEOUT": Param(1.5),
+        "INS_GYR_ID": Param(-1234567, 6),
+        "RC_OPTIONS": Param(32, 6, 0),
+        "STAT_BOOTCNT": Param(7, 4, read_only=True),
     }
 
 
 @pytest.fixture(params=[ARDUPILOT, PX4], ids=["ardupilot", "px4"])
 def vehicle(request: pytest.FixtureRequest) -> Iterator[ForeignVehicle]:
-    with ForeignVehicle(request.param) as running:
-        running.params = some_params()
+    with foreign_vehicle(request.param) as running:
+        running.params.replace(some_params())
         yield running
 
 
@@ -153,8 +154,8 @@ def test_changed_saves_what_is_not_at_its_default(capsys: Capture, vehicle: Fore
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_a_thousand_parameters_over_a_lossy_list(capsys: Capture, autopilot: int) -> None:
-    with ForeignVehicle(autopilot, loss=0.05, ftp=False) as vehicle:
-        vehicle.params = dict(many_params(1200))
+    with foreign_vehicle(autopilot, loss=0.05, ftp=False) as vehicle:
+        vehicle.params.replace(dict(many_params(1200)))
         got = param(capsys, vehicle, "get", "--json")
         assert got.code == 0, got.err
         values = {record["param_id"]: record["param_value"] for record in got.records}
@@ -162,23 +163,18 @@ def test_a_thousand_parameters_over_a_lossy_list(capsys: Capture, autopilot: int
 
 
 def test_integers_of_px4_are_exact(capsys: Capture) -> None:
-    with ForeignVehicle(PX4) as vehicle:
-        vehicle.params = {"A": ForeignParam(2_000_000_001, 6), "B": ForeignParam(-1, 6), "C": ForeignParam(4e9 + 7, 5)}
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.params.replace({"A": Param(2_000_000_001, 6), "B": Param(-1, 6), "C": Param(4e9 + 7, 5)})
         assert param(capsys, vehicle, "get").out.split() == ["A", "2000000001", "B", "-1", "C", "4000000007"]
         assert param(capsys, vehicle, "set", "A", "-2000000001").code == 0
         assert vehicle.params["A"].value == -2_000_000_001
 
 
 def test_a_list_with_a_hole_is_printed_and_the_hole_named(capsys: Capture) -> None:
-    with ForeignVehicle(PX4) as vehicle:
-        vehicle.params = {name: ForeignParam(1.0) for name in ("A", "B", "C")}
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.params.replace({name: Param(1.0) for name in ("A", "B", "C")})
         vehicle.silent.add(20)  # PARAM_REQUEST_READ
-        hidden = vehicle._value
-
-        def without_b(name: str, index: int) -> object:
-            return hidden("A", 0) if name == "B" else hidden(name, index)
-
-        vehicle._value = without_b  # type: ignore[method-assign]
+        vehicle.params.withheld.add("B")
         got = param(capsys, vehicle, "get")
         assert got.code == ExitCode.PARTLY
         assert [line.split()[0] for line in got.out.splitlines()] == ["A", "C"]
@@ -189,7 +185,7 @@ def test_a_list_with_a_hole_is_printed_and_the_hole_named(capsys: Capture) -> No
 
 
 def test_a_vehicle_without_parameters(capsys: Capture) -> None:
-    with ForeignVehicle(PX4, ftp=False) as vehicle:
+    with foreign_vehicle(PX4, ftp=False) as vehicle:
         vehicle.silent |= {20, 21, 76}
         got = param(capsys, vehicle, "get")
         assert got.code == ExitCode.NO_ANSWER
@@ -197,9 +193,9 @@ def test_a_vehicle_without_parameters(capsys: Capture) -> None:
 
 
 def test_two_vehicles_need_a_choice_before_a_change(capsys: Capture) -> None:
-    with ForeignVehicle(ARDUPILOT) as one, ForeignVehicle(ARDUPILOT) as two:
-        two._link.srcSystem = 2
-        one.params, two.params = some_params(), some_params()
+    with foreign_vehicle(ARDUPILOT) as one, foreign_vehicle(ARDUPILOT, system=2) as two:
+        for each in (one, two):
+            each.params |= some_params()
         both = ["-e", one.endpoint, "-e", two.endpoint]
         chosen = run_verb(capsys, "param", "set", "FS_ACTION", "1", *both)
         assert chosen.code == ExitCode.USAGE
@@ -264,7 +260,7 @@ def test_store_and_reset_are_commands_and_reset_wants_yes(capsys: Capture, vehic
     refused = param(capsys, vehicle, "reset")
     assert refused.code == ExitCode.USAGE
     assert refused.err.endswith("this resets ALL parameters of the vehicle; --yes does it\n")
-    vehicle.acks[245] = (4, "Disarm first")
+    vehicle.answers[245] = (4, "Disarm first")
     refused = param(capsys, vehicle, "reset", "--yes")
     assert refused.code == ExitCode.REFUSED
     assert 'reset the parameters: refused, FAILED, "Disarm first"' in refused.err

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.formats.test_waypoint_file import MISSION_PLANNER
 from tests.groundstation.verbs.verb_runs import VerbRun, run_until_answered, run_verb
@@ -19,7 +19,7 @@ Capture = pytest.CaptureFixture[str]
 
 @pytest.fixture(params=[ARDUPILOT, PX4], ids=["ardupilot", "px4"])
 def vehicle(request: pytest.FixtureRequest) -> Iterator[ForeignVehicle]:
-    with ForeignVehicle(request.param) as running:
+    with foreign_vehicle(request.param) as running:
         yield running
 
 
@@ -100,7 +100,7 @@ def test_a_vehicle_without_missions(capsys: Capture, vehicle: ForeignVehicle) ->
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_a_plan_over_a_link_that_loses(capsys: Capture, autopilot: int, plan_file: str, tmp_path: Path) -> None:
-    with ForeignVehicle(autopilot, loss=0.2) as vehicle:
+    with foreign_vehicle(autopilot, loss=0.2) as vehicle:
         for words in (("put", plan_file), ("get", str(tmp_path / "b.plan"))):
             run = run_until_answered(capsys, "mission", *words, "-e", vehicle.endpoint, "-v", "1")
             assert run.code == 0, run.err

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import foreign_vehicle
 from tests.groundstation.verbs.verb_runs import run_verb
 
 REBOOT = 246
@@ -21,11 +21,11 @@ REBOOT = 246
     ],
 )
 def test_how_it_ends(capsys: pytest.CaptureFixture[str], answer: tuple[int, str] | None, code: int, words: str) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         if answer is None:
             vehicle.silent.add(76)  # COMMAND_LONG
         else:
-            vehicle.acks[REBOOT] = answer
+            vehicle.answers[REBOOT] = answer
         run = run_verb(capsys, "reboot", "-e", vehicle.endpoint, "-v", "1")
         assert run.code == code, run.err
         assert words in run.err

@@ -16,7 +16,7 @@ from dialects.messages import StatusText
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.record import FileRecording
 from link.tlog.tlog import read_records
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import foreign_vehicle
 from tests.groundstation.screen import until
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.link.frames import heartbeat
@@ -33,7 +33,7 @@ def ids(path: Path) -> set[tuple[int, int, int]]:
 
 def test_what_is_heard_and_sent_is_in_the_file(capsys: Capture, tmp_path: Path) -> None:
     out = tmp_path / "out.tlog"
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         ended = run_verb(capsys, "record", str(out), "--for", "1.2", "-e", vehicle.endpoint, "--json")
     assert ended.code == ExitCode.DONE
     assert {(1, 1, 0), (254, 25, 0)} <= ids(out), "its HEARTBEAT and ours"
@@ -45,7 +45,7 @@ def test_what_is_heard_and_sent_is_in_the_file(capsys: Capture, tmp_path: Path) 
 def test_a_file_that_exists_is_kept_without_yes(capsys: Capture, tmp_path: Path) -> None:
     out = tmp_path / "out.tlog"
     out.write_bytes(b"drive of yesterday")
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         words = ("record", str(out), "--for", "0.6", "-e", vehicle.endpoint)
         refused = run_verb(capsys, *words)
         assert (refused.code, out.read_bytes()) == (ExitCode.USAGE, b"drive of yesterday")
@@ -55,7 +55,7 @@ def test_a_file_that_exists_is_kept_without_yes(capsys: Capture, tmp_path: Path)
 
 
 def test_a_full_disk_is_one_line_and_a_code(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         ended = run_verb(capsys, "record", "/dev/full", "--yes", "-e", vehicle.endpoint)
     assert ended.code == ExitCode.PARTLY
     assert ended.err.splitlines()[1:] == ["groundstation: /dev/full: No space left on device; nothing was recorded"]
@@ -81,7 +81,7 @@ def test_when_nothing_is_heard_there_is_no_file(capsys: Capture, tmp_path: Path)
 
 def test_ctrl_c_ends_it_in_order(tmp_path: Path) -> None:
     out = tmp_path / "out.tlog"
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         command = [sys.executable, "-m", "groundstation", "record", str(out), "-e", vehicle.endpoint]
         program = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         until(lambda: out.exists() and out.stat().st_size > 0)

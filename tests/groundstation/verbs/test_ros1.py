@@ -14,7 +14,7 @@ import pytest
 
 from dialects import messages as m
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.ros1.stand_in import StandIn
 from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb, wait_until
 
@@ -71,7 +71,7 @@ class Verb:
 
 @contextmanager
 def running(folder: Path, *options: str) -> Iterator[Verb]:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed = not options
         verb = Verb(folder, vehicle, *options)
         try:
@@ -95,7 +95,7 @@ def test_words_and_twists_become_demands_and_telemetry_is_published(tmp_path: Pa
         verb.node.word("left", sender="/a\x1b[2J")
         verb.node.word("nonsense")
         verb.says("refused: 'nonsense' is none of forward")
-        verb.vehicle.send_ours(m.Attitude(1000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+        verb.vehicle.send(m.Attitude(1000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
         wait_until(lambda: [each["topic"] for each in verb.node.told()] == ["imu"], "no telemetry")
         assert verb.node.told()[0]["type"] == "sensor_msgs/Imu"
         verb.process.send_signal(signal.SIGTERM)
@@ -151,7 +151,7 @@ def test_it_arms_only_with_a_master_and_disarms(tmp_path: Path) -> None:
 
 
 def test_without_rospy_it_says_what_to_install(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         words = ("-e", vehicle.endpoint, *GIVEN)
         missing = run_verb(capsys, "ros1", "--python", sys.executable, *words)
         assert missing.code == ExitCode.USAGE

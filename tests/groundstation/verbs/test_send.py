@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from tests.groundstation.foreign_vehicle import PX4, ForeignVehicle
+from tests.fakes.services import PX4, foreign_vehicle
 from tests.groundstation.verbs.driving_process import check_signal, check_standstill
 from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb
 
@@ -26,7 +26,7 @@ def test_a_process_that_stands_still_leaves_no_demand_and_does_not_drive_on() ->
 
 
 def test_a_demand_begins_and_ends_with_neutral_in_the_axes_of_the_vehicle() -> None:
-    with ForeignVehicle(PX4) as vehicle:
+    with foreign_vehicle(PX4) as vehicle:
         vehicle.armed = True
         words = ["send", "MANUAL_CONTROL", "z=700", "--rate", "20", "--for", "0.3", "--yes", "-v", "1"]
         command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
@@ -38,7 +38,7 @@ def test_a_demand_begins_and_ends_with_neutral_in_the_axes_of_the_vehicle() -> N
 
 
 def test_overridden_channels_are_centred_and_given_back() -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         words = ["send", "RC_CHANNELS_OVERRIDE", "chan3_raw=1600", "--yes", "-v", "1"]
         command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
         assert subprocess.run(command, timeout=PATIENCE).returncode == 0
@@ -47,7 +47,7 @@ def test_overridden_channels_are_centred_and_given_back() -> None:
 
 
 def test_other_messages_are_sent_as_written(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         words = ("-e", vehicle.endpoint, "-v", "1")
         assert run_verb(capsys, "send", "STATUSTEXT", "severity=INFO", "text=hello", *words).code == 0
         assert run_verb(capsys, "send", "PARAM_REQUEST_READ", "param_index=3", *words).code == 0

@@ -10,13 +10,16 @@ from pathlib import Path
 
 import pytest
 
+from dialects.enums import Autopilot
 from groundstation.verbs.exit_codes import ExitCode
 from link.signing.key_file import load_keys, save_keys, station_key_file
 from link.signing.keys import KeyRing, SigningKey, new_key
 from link.signing.role import Role
 from tests.e2e.cable import SerialCable
 from tests.e2e.programs import Vehicle
-from tests.groundstation.verbs.signing_autopilot import SigningAutopilot
+from tests.fakes.lines import on_line
+from tests.fakes.vehicle import FakeVehicle
+from tests.fakes.wires import PymavlinkWire
 from tests.groundstation.verbs.verb_runs import run_until_answered, run_verb, wait_until
 
 pytestmark = pytest.mark.xdist_group("verbs that sign")
@@ -163,24 +166,20 @@ def test_an_ardupilot_gets_the_key_and_is_known_by_its_signature(
 ) -> None:
     monkeypatch.setattr("groundstation.verbs.sign_setup.TRIES", 2)
     run_verb(capsys, "sign", "new", "copter")
-    autopilot = SigningAutopilot(str(tmp_path / "tty-one"), listens=listens)
-    try:
+    wire = PymavlinkWire(listens=listens)
+    with on_line(FakeVehicle(autopilot=Autopilot.ARDUPILOT), endpoint=str(tmp_path / "tty-one"), wire=wire):
         run = run_verb(capsys, "sign", "setup", "-e", cable.two)
-    finally:
-        autopilot.close()
     assert run.code == code
-    assert autopilot.key == (key_of("copter").secret if listens else None)
+    assert wire.key == (key_of("copter").secret if listens else None)
     assert ("has the key" if listens else "has not answered") in run.err
 
 
 def test_an_ardupilot_whose_key_is_lost_gets_another_one(capsys: Capture, tmp_path: Path, cable: SerialCable) -> None:
     run_verb(capsys, "sign", "new", "copter")
-    autopilot = SigningAutopilot(str(tmp_path / "tty-one"), key=bytes(range(1, 33)))
-    try:
+    wire = PymavlinkWire(key=bytes(range(1, 33)), listens=True)
+    with on_line(FakeVehicle(autopilot=Autopilot.ARDUPILOT), endpoint=str(tmp_path / "tty-one"), wire=wire):
         unheard = run_verb(capsys, "sign", "setup", "-e", cable.two, "--wait", "1")
         run = run_verb(capsys, "sign", "setup", "--unsigned", "-e", cable.two)
-    finally:
-        autopilot.close()
     assert unheard.code == ExitCode.NO_VEHICLE
     assert run.code == ExitCode.DONE
-    assert autopilot.key == key_of("copter").secret
+    assert wire.key == key_of("copter").secret

@@ -13,7 +13,7 @@ from groundstation.verbs.contact import VehicleContact
 from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.output import Output
 from groundstation.verbs.status_changes import ChangePrinter
-from tests.groundstation.foreign_vehicle import ForeignVehicle
+from tests.fakes.services import foreign_vehicle
 from tests.groundstation.vehicles.test_vehicle_state import heartbeat, received
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
@@ -23,7 +23,7 @@ PREARM = 0x10000000
 
 
 def test_status_requests_what_the_vehicle_does_not_send_by_itself(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed, vehicle.mode = True, 15
         vehicle.telemetry = {
             1: mav.MAVLink_sys_status_message(PREARM, PREARM, 0, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0),
@@ -77,7 +77,7 @@ def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) ->
 
 
 def test_plain_prints_changes_in_place_of_a_screen(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.mode = 4
         [line] = run_verb(capsys, "--plain", "--for", "0.3", vehicle.endpoint).out.splitlines()
         shown = line.partition(": ")[2]
@@ -88,7 +88,7 @@ def test_plain_prints_changes_in_place_of_a_screen(capsys: Capture) -> None:
 
 
 def test_vehicles_lists_every_vehicle_on_all_links(capsys: Capture) -> None:
-    with ForeignVehicle() as one, ForeignVehicle(system=7) as other:
+    with foreign_vehicle() as one, foreign_vehicle(system=7) as other:
         listed = run_verb(capsys, "vehicles", "-e", one.endpoint, "-e", other.endpoint)
         assert [line.split()[0] for line in listed.out.splitlines()] == ["id", "1", "7"]
         records = run_verb(capsys, "vehicles", "--json", "-e", one.endpoint, "-e", other.endpoint).records
@@ -96,7 +96,7 @@ def test_vehicles_lists_every_vehicle_on_all_links(capsys: Capture) -> None:
 
 
 def test_links_show_what_arrives_with_and_without_a_vehicle(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         silent = f"udpin:127.0.0.1:{free_port()}"
         both = run_verb(capsys, "links", "--for", "1.1", "-e", vehicle.endpoint, "-e", silent)
         states = [line.split("  ")[-1] for line in both.out.splitlines()[1:]]
@@ -106,7 +106,7 @@ def test_links_show_what_arrives_with_and_without_a_vehicle(capsys: Capture) -> 
 
 
 def test_a_vehicle_is_chosen_by_its_printed_name(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         assert run_verb(capsys, "status", "-v", "ArduPilot rover 1", "-e", vehicle.endpoint).code == 0
         wrong = run_verb(capsys, "status", "-v", "Rover", "--wait", "2", "-e", vehicle.endpoint)
         assert (wrong.code, "no vehicle Rover on" in wrong.err) == (ExitCode.NO_VEHICLE, True), wrong.err

@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
-from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -25,7 +25,7 @@ def sent(vehicle: ForeignVehicle, command: int) -> list[tuple[float, float]]:
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_disarm_and_stop_are_done_when_the_heartbeat_reports_it(capsys: Capture, autopilot: int) -> None:
-    with ForeignVehicle(autopilot) as vehicle:
+    with foreign_vehicle(autopilot) as vehicle:
         vehicle.armed = True
         stopped = verb(capsys, vehicle, "stop", "--json")
         assert (stopped.code, vehicle.mode, vehicle.armed) == (0, HOLD[autopilot], True), stopped.err
@@ -37,8 +37,8 @@ def test_disarm_and_stop_are_done_when_the_heartbeat_reports_it(capsys: Capture,
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_an_emergency_stop_disarms_by_force(capsys: Capture, autopilot: int) -> None:
-    with ForeignVehicle(autopilot) as vehicle:
-        vehicle.armed, vehicle.acks[SWITCH] = True, (3, "")
+    with foreign_vehicle(autopilot) as vehicle:
+        vehicle.armed, vehicle.answers[SWITCH] = True, (3, "")
         stopped = verb(capsys, vehicle, "estop")
         assert (stopped.code, vehicle.armed) == (0, False), stopped.err
         assert sent(vehicle, DISARM)[0] == (0.0, 21196.0)
@@ -46,7 +46,7 @@ def test_an_emergency_stop_disarms_by_force(capsys: Capture, autopilot: int) -> 
 
 
 def test_an_answer_alone_is_no_stop_and_it_is_sent_again(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed, vehicle.obeys = True, False
         threading.Timer(1.0, lambda: setattr(vehicle, "obeys", True)).start()
         disarmed = verb(capsys, vehicle, "disarm")
@@ -55,7 +55,7 @@ def test_an_answer_alone_is_no_stop_and_it_is_sent_again(capsys: Capture) -> Non
 
 
 def test_a_stop_that_is_accepted_and_not_done_is_refused_in_the_end(capsys: Capture) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed, vehicle.obeys = True, False
         disarmed = verb(capsys, vehicle, "disarm", "--timeout", "1")
         assert disarmed.code == ExitCode.REFUSED
@@ -63,8 +63,8 @@ def test_a_stop_that_is_accepted_and_not_done_is_refused_in_the_end(capsys: Capt
 
 
 def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
-    with ForeignVehicle(PX4) as vehicle:
-        vehicle.armed, vehicle.acks[DISARM] = True, (2, "Disarming denied: not landed")
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.armed, vehicle.answers[DISARM] = True, (2, "Disarming denied: not landed")
         refused = verb(capsys, vehicle, "disarm")
         assert (refused.code, vehicle.armed) == (ExitCode.REFUSED, True)
         assert refused.err.endswith('disarm: refused, DENIED (2), "Disarming denied: not landed"\n')
@@ -72,7 +72,7 @@ def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
 
 @pytest.mark.parametrize("name", ["disarm", "stop", "estop"])
 def test_without_an_answer_it_is_repeated_to_the_end(capsys: Capture, name: str) -> None:
-    with ForeignVehicle() as vehicle:
+    with foreign_vehicle() as vehicle:
         vehicle.armed = True
         vehicle.silent.add(76)  # COMMAND_LONG
         silent = verb(capsys, vehicle, name, "--timeout", "1.5")
@@ -80,11 +80,11 @@ def test_without_an_answer_it_is_repeated_to_the_end(capsys: Capture, name: str)
 
 
 def test_without_a_vehicle_chosen_all_of_them_stop(capsys: Capture) -> None:
-    with ForeignVehicle() as one, ForeignVehicle(system=2) as other:
+    with foreign_vehicle() as one, foreign_vehicle(system=2) as other:
         one.armed = other.armed = True
         both = run_verb(capsys, "disarm", "-e", one.endpoint, "-e", other.endpoint)
         assert (both.code, one.armed, other.armed) == (0, False, False)
         one.armed = other.armed = True
-        other.acks[DISARM] = (4, "no")
+        other.answers[DISARM] = (4, "no")
         assert run_verb(capsys, "disarm", "-e", one.endpoint, "-e", other.endpoint).code == ExitCode.PARTLY
         assert (one.armed, other.armed) == (False, True)

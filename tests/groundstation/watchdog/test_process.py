@@ -12,8 +12,8 @@ import pytest
 
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import Quit, RenewLease
-from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
-from tests.groundstation.line_vehicle import LINES, LineVehicle
+from tests.fakes.lines import LINES, on_line
+from tests.fakes.rover import LATCH, FakeArduPilot
 from tests.groundstation.screen import FORWARD, Screen, children, running, until
 from tests.waits import Waits
 
@@ -29,7 +29,7 @@ class Drive:
 
     def __init__(self, line: str, stack: ExitStack) -> None:
         self.rover = FakeArduPilot()
-        vehicle = stack.enter_context(LineVehicle(self.rover, line))
+        vehicle = stack.enter_context(on_line(self.rover, line))
         self.screen = stack.enter_context(Screen(vehicle.endpoint))
         self.station = self.screen.client.pid
         self.screen.hold_forward()

@@ -12,7 +12,7 @@ from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.intents.watch import Watch
 from groundstation.views.base import View
 from groundstation.views.charts import STATION, FieldId, FieldsPage, FieldsRequest, SeriesPage, SeriesRequest
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.cockpits import Cockpit
 
 VOLTS = FieldId(1, 1, False, "SYS_STATUS", "voltage_battery")
 TYPE = FieldId(1, 1, False, "HEARTBEAT", "type")

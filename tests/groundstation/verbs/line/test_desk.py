@@ -16,7 +16,8 @@ from groundstation.views.line import ASKS, DONE, FAILED, RUNNING, LineRequest, L
 from groundstation.views.log import LogRequest
 from link.links import open_links
 from link.runner import Runner
-from tests.groundstation.foreign_vehicle import ForeignParam, ForeignVehicle
+from tests.fakes.params import Param
+from tests.fakes.services import ForeignVehicle, foreign_vehicle
 
 PATIENCE = 60.0
 
@@ -120,14 +121,14 @@ def test_lines_run_verbs_for_the_vehicle() -> None:
         assert ":mode HOLD" in lines.logged
         assert "FS_ACTION        2" in lines.logged
 
-    with ForeignVehicle() as vehicle:
-        vehicle.params["FS_ACTION"] = ForeignParam(2.0)
+    with foreign_vehicle() as vehicle:
+        vehicle.params["FS_ACTION"] = Param(2.0)
         with_station(vehicle, use)
 
 
 def test_refusals_and_mistakes_are_one_line() -> None:
     async def use(lines: Lines) -> None:
-        vehicle.acks[42428] = (3, "")
+        vehicle.answers[42428] = (3, "")
         refused = await lines.run("command DO_REPOSITION 1", confirmed=True)
         assert refused.state == FAILED
         assert "refused" in refused.note
@@ -138,8 +139,8 @@ def test_refusals_and_mistakes_are_one_line() -> None:
         late = await lines.run("param get MISSING --timeout 0.3")
         assert (late.state, "not done within 0.3 s" in late.note) == (FAILED, True)
 
-    with ForeignVehicle() as vehicle:
-        vehicle.acks[192] = (3, "")
+    with foreign_vehicle() as vehicle:
+        vehicle.answers[192] = (3, "")
         vehicle.silent.add(20)
         with_station(vehicle, use)
 
@@ -154,9 +155,9 @@ def test_a_hostile_name_of_a_vehicle_completes_no_line() -> None:
         assert "$(LS)" not in view.words
         assert all(word.isidentifier() or word.startswith("--") for word in view.words)
 
-    with ForeignVehicle() as vehicle:
-        vehicle.params["FS_ACTION"] = ForeignParam(2.0)
-        vehicle.params["$(LS)"] = ForeignParam(2.0)
+    with foreign_vehicle() as vehicle:
+        vehicle.params["FS_ACTION"] = Param(2.0)
+        vehicle.params["$(LS)"] = Param(2.0)
         with_station(vehicle, use)
 
 
@@ -168,6 +169,6 @@ def test_modes_and_parameters_of_the_vehicle_complete_a_line() -> None:
         view = await lines.until(lambda view: bool(view.words), LineRequest(0, "mode SMART"))
         assert view.words == ("SMART_RTL",)
 
-    with ForeignVehicle() as vehicle:
-        vehicle.params["FS_ACTION"] = ForeignParam(2.0)
+    with foreign_vehicle() as vehicle:
+        vehicle.params["FS_ACTION"] = Param(2.0)
         with_station(vehicle, use)

@@ -1,4 +1,4 @@
-"""A vehicle that behaves as ArduRover 4.7 did in measurements: it holds the last demand for 3 s."""
+"""A vehicle that behaves as ArduRover 4.7 did in measurements: it drives, and holds the last demand for 3 s."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dialects.messages import INVALID_AXIS, boot_ms
 from dialects.modes import Mode
 from groundstation.vehicles.stream_requests import STREAM_RATES
 from link.core import Received
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.fakes.vehicle import PX4_MANUAL, FakeVehicle
 
 LATCH = 3.0
 """RC_OVERRIDE_TIME, s."""
@@ -26,10 +26,10 @@ NOT_KNOWN = (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STAT
 class FakeArduPilot(FakeVehicle):
     """Axes y and z, one ground station by its system id, no arming with throttle, telemetry on request."""
 
-    def __init__(self, *, station: int = 255, mode: Mode = Mode.MANUAL, autopilot: int = Autopilot.ARDUPILOT) -> None:
-        super().__init__(autopilot=autopilot, driver=None, mode=mode)
-        self.answers = dict.fromkeys(NOT_KNOWN, Result.UNSUPPORTED)
-        self.parameters = {"RC_OVERRIDE_TIME": LATCH, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0}
+    def __init__(self, *, station: int = 255, mode: int | None = None, autopilot: int = Autopilot.ARDUPILOT) -> None:
+        super().__init__(autopilot=autopilot, mode=mode)
+        self.answers |= dict.fromkeys(NOT_KNOWN, Result.UNSUPPORTED)
+        self.params |= {"RC_OVERRIDE_TIME": LATCH, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0}
         self.streams = [number for number, wanted in STREAM_RATES.items() if wanted.only in (None, autopilot)]
         """Messages that it has."""
         self.rates = dict.fromkeys(self.streams, 1.0)
@@ -86,9 +86,9 @@ class FakeArduPilot(FakeVehicle):
 
     def set_pulses(self, *channels: str) -> None:
         """Give channels, such as "SERVO1", their limits, and the sticks their channels."""
-        self.parameters |= RC_MAP
+        self.params |= RC_MAP
         for channel in channels:
-            self.parameters |= {f"{channel}_{name}": value for name, value in PULSES.items()}
+            self.params |= {f"{channel}_{name}": value for name, value in PULSES.items()}
 
     def servo(self, value: int) -> int:
         """The pulse for -1000..1000, us."""
@@ -96,19 +96,18 @@ class FakeArduPilot(FakeVehicle):
 
     def _allow_arming(self) -> None:
         if self._throttle:
-            self.answers[Command.COMPONENT_ARM_DISARM] = Result.FAILED
-            self.reasons[Command.COMPONENT_ARM_DISARM] = b"Arm: Throttle (RC3) is not neutral"
+            self.answers[Command.COMPONENT_ARM_DISARM] = Result.FAILED, "Arm: Throttle (RC3) is not neutral"
         else:
             self.answers.pop(Command.COMPONENT_ARM_DISARM, None)
 
-    def _obey(self, message: m.CommandLong, source: int) -> None:
-        if message.command == Command.SET_MESSAGE_INTERVAL:
-            self.rates[int(message.param1)] = 1e6 / message.param2
-        else:
-            super()._obey(message, source)
+    def _obey(self, message: m.CommandLong | m.CommandInt, source: int) -> bool:
+        if message.command != Command.SET_MESSAGE_INTERVAL:
+            return super()._obey(message, source)
+        self.rates[int(message.param1)] = 1e6 / message.param2
+        return False
 
     def _drive(self, now: float) -> None:
-        drives = self.armed and self.mode is Mode.MANUAL
+        drives = self.armed and self.mode == (PX4_MANUAL if self.autopilot == Autopilot.PX4 else Mode.MANUAL)
         outputs = (self._steering, self._throttle) if drives else (0, 0)
         if not self.turning or self.turning[-1][1:] != outputs:
             self.turning.append((now, *outputs))

@@ -1,65 +1,15 @@
-"""A scripted vehicle with real servers of files and logs, and a cockpit whose disk jobs run at once, on real files."""
+"""A cockpit with requests, whose disk jobs run at once, on real files."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from groundstation.disk.desk import run_job
 from groundstation.intents.services import ServiceIntent
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.requests import RequestLine, RequestsRequest
-from link.core import LinkReport, Outgoing, Received
-from link.services.ftp.files import FileTree, MemoryFolder
-from link.services.ftp.server import FtpServer
-from link.services.log.server import LogServer
-from link.services.pacing import BulkPacer
-from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
-
-
-class FileVehicle(FakeVehicle):
-    """`rate` in bytes/s is what its servers send. `ftp`: it has a file service."""
-
-    def __init__(self, *, rate: float = 50_000.0, ftp: bool = True, autopilot: int = 0) -> None:
-        super().__init__(autopilot=autopilot)
-        self.logs = MemoryFolder()
-        self.scripts = MemoryFolder(accept=lambda name, data: None)
-        self.cut = False
-        """Nothing arrives and nothing leaves."""
-        pacer = BulkPacer(lambda peer: rate)
-        tree = FileTree(MemoryFolder(), {"logs": self.logs, "scripts": self.scripts})
-        self._ftp = FtpServer(tree, system=1, component=1, pacer=pacer) if ftp else None
-        self._log_server = LogServer(
-            self.logs, system=1, component=1, pacer=pacer, when=lambda name: 1_700_000_000, erase=self._erase
-        )
-        self.erasable = True
-
-    def _erase(self, received: Received, now: float) -> None:
-        if self.erasable:
-            self.logs.files.clear()
-
-    def receive(self, received: Received, now: float) -> None:
-        """Pass it on to the servers."""
-        if self.cut:
-            return
-        super().receive(received, now)
-        for server in (self._ftp, self._log_server):
-            if server is not None:
-                self.outbox += server.receive(received, now)
-
-    def tick(self, now: float) -> None:
-        """Let the servers send."""
-        super().tick(now)
-        for server in (self._ftp, self._log_server):
-            if server is not None:
-                self.outbox += server.tick(now)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return nothing while the line is cut."""
-        outbox = super().messages_to_send()
-        return [] if self.cut else outbox
-
-    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Ignore the reports."""
+from tests.fakes.served import FileVehicle
+from tests.groundstation.cockpits import Cockpit
 
 
 class FileCockpit:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, ModeFlag, Result, SystemState
+from dialects.enums import Autopilot, Command, ModeFlag, Result
 from dialects.mode_tables import COPTER
 from link.core import Received
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.fakes.vehicle import AnyCommand, FakeVehicle
 
 QUADROTOR = 2
 HOVER = 500
@@ -25,14 +25,13 @@ class FakeCopter(FakeVehicle):
     """Altitude is ground truth. In the air it refuses to disarm unless that is forced, and then it falls."""
 
     def __init__(self, *, autopilot: int = Autopilot.ARDUPILOT, kind: int = QUADROTOR, lists: bool = True) -> None:
-        super().__init__(autopilot=autopilot, driver=None)
+        super().__init__(autopilot=autopilot, driver=None, mode=0)
         self.kind = kind
-        self.custom_mode = 0
         self.lists = lists
         self.altitude = self.climb = self.highest = 0.0
         self.hit_ground_at = 0.0
         """m/s of its hardest landing."""
-        self.answers = dict.fromkeys(
+        self.answers |= dict.fromkeys(
             (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STATE), Result.UNSUPPORTED
         )
         self._throttle = 0
@@ -62,33 +61,31 @@ class FakeCopter(FakeVehicle):
 
     def lift(self, altitude: float) -> None:
         """Let its own pilot fly it: armed, in LOITER, at this altitude."""
-        self.armed, self.altitude, self.custom_mode, self._throttle = True, altitude, 5, HOVER
+        self.armed, self.altitude, self.mode, self._throttle = True, altitude, 5, HOVER
         self._demand_at = float("inf")
         self.beat()
 
-    def beat(self) -> None:
-        """HEARTBEAT of a copter."""
-        flags = ModeFlag.CUSTOM | (ModeFlag.ARMED if self.armed else 0)
-        status = SystemState.ACTIVE if self.armed else SystemState.STANDBY
-        self.send(m.Heartbeat(self.kind, self.autopilot, flags, self.custom_mode, status, 3))
+    def _flags(self) -> int:
+        return ModeFlag.CUSTOM | (ModeFlag.ARMED if self.armed else 0)
 
-    def _obey(self, message: m.CommandLong, source: int) -> None:
+    def _obey(self, message: AnyCommand, source: int) -> bool:
         if message.command == Command.DO_SET_MODE:
-            self.custom_mode = int(message.param2)
+            self.mode = int(message.param2)
         elif message.command == Command.COMPONENT_ARM_DISARM:
             self.armed = message.param1 == 1
             self._throttle = self._throttle if self.armed else 0
         elif message.command == Command.REQUEST_MESSAGE and message.param1 == m.AvailableModes.id:
             self._list_modes()
+        return message.command in (Command.DO_SET_MODE, Command.COMPONENT_ARM_DISARM)
 
-    def _command(self, message: m.CommandLong, source: int) -> None:
+    def _command(self, message: AnyCommand, received: Received) -> None:
         if message.command == Command.COMPONENT_ARM_DISARM:
             in_air = not message.param1 and message.param2 != FORCED and self.altitude > 0.0
             self.answers[message.command] = Result.FAILED if in_air else Result.ACCEPTED
         if message.command == Command.REQUEST_MESSAGE:
             has = self.lists and message.param1 == m.AvailableModes.id
             self.answers[message.command] = Result.ACCEPTED if has else Result.UNSUPPORTED
-        super()._command(message, source)
+        super()._command(message, received)
 
     def _list_modes(self) -> None:
         for index, number in enumerate(LISTED, 1):
