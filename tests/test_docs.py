@@ -120,7 +120,7 @@ README_COMMAND = "&& pytest -n auto --dist loadgroup\n"
 def test_ci_types_the_lines_of_the_readme_and_runs_the_rest() -> None:
     assert README_COMMAND in (ROOT / "README.md").read_text()
     lines = (ROOT / ".ci/run").read_text().splitlines()
-    assert "python3 -m tests.stranger --no-skips" in lines
+    assert any(line.startswith("python3 -m tests.stranger --no-skips ") for line in lines)
     [command] = [line for line in lines if ".venv/bin/pytest" in line]
     suite, again, failed = command.split(" || ")
     assert suite.endswith(".venv/bin/pytest -n 8 --dist loadgroup --suite rest")

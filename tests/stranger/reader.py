@@ -24,12 +24,13 @@ KEY_EVERY = 0.03
 ARM_WITHIN = 60.0
 COLLECT = "pytest --suite all --collect-only -q -p no:cacheprovider | tail -n 1; (exit ${PIPESTATUS[0]})"
 """Import every test, those of the long suite too: they may need no package that README does not install."""
-WARNING = re.compile(r"^.*\bwarnings?\b.*$", re.IGNORECASE | re.MULTILINE)
+WARNING = re.compile(r"^(?!WARNING: Retrying ).*\bwarnings?\b.*$", re.IGNORECASE | re.MULTILINE)
+"""Of anything but a slow package index."""
 SKIPPED = re.compile(r"^=.*\b(\d+ skipped)\b.*=$", re.MULTILINE)
 PROGRESS = "━"
 """In the bars that pip draws one over the other."""
-TAIL = 12
-"""Lines of a command's output that are shown."""
+TAIL, WIDTH = 12, 200
+"""Lines of a command's output that are shown, and characters of each."""
 
 
 class Reader:
@@ -73,7 +74,7 @@ class Reader:
         if code is None:
             printed = printed.partition(FIRST_SCREEN)[0]
             code = _drive(terminal)
-        shown = "\n".join([each for each in printed.rstrip().splitlines() if PROGRESS not in each][-TAIL:])
+        shown = "\n".join([each[-WIDTH:] for each in printed.rstrip().splitlines() if PROGRESS not in each][-TAIL:])
         took, cpu = time.monotonic() - began, _cpu(terminal) - before
         print(f"{shown}\n# exit code {code}, {took:.0f} s, {cpu:.0f} s of CPU", flush=True)
         self._judge(line, printed, code)
