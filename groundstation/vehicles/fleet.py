@@ -228,7 +228,7 @@ class Fleet:
     def _check_settings(self, contact: Contact) -> None:
         """Read the settings that matter for a stop, of an autopilot for which they are known."""
         state = contact.state
-        if state.autopilot in SETTINGS:
+        if state.autopilot in SETTINGS and state.model.is_driven:
             rules, target = SETTINGS[state.autopilot], (state.system, state.component)
             contact.settings_check = SettingsCheck(rules, *self._own_id, target=target)
 

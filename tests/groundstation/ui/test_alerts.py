@@ -66,6 +66,12 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     ),
     (snapshot(vehicle=vehicle(limits=("slew", "neutral first"))), {}, AlertLevel.WARNING, "neutral first: release"),
     (snapshot(recording=RecordingView(problem="not recording: disk full")), {}, AlertLevel.WARNING, "not recording: d"),
+    (
+        snapshot(vehicle=vehicle(stop_question=3.2)),
+        {},
+        AlertLevel.QUESTION,
+        "Rover 1 is in the air and falls without power: ! again cuts it (3 s)",
+    ),
     (snapshot(vehicle=vehicle(limits=("stale",))), {}, AlertLevel.WARNING, "stale: the vehicle has no recent command"),
     (
         snapshot(vehicle=vehicle(refusal="arm denied: PreArm: battery low")),
@@ -241,6 +247,8 @@ HINTS: list[tuple[Snapshot, str]] = [
         "g asks for control · SPACE stops, ! cuts the motors",
     ),
     (snapshot(vehicle=vehicle(obeys="obeys ground station 250 only")), "SPACE stops, ! cuts the motors"),
+    (snapshot(vehicle=vehicle(undriven="keys do not drive it")), "keys do not drive it · ! cuts the motors"),
+    (snapshot(vehicle=vehicle(undriven="it flies", may_fall=True)), "it flies · ! asks, then cuts the motors"),
 ]
 
 

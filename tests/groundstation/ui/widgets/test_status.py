@@ -101,7 +101,8 @@ def test_a_vehicle_that_obeys_another_station_is_not_driven_by_us() -> None:
     [
         ({}, "you drive"),
         ({"mode": "HOLD", "drivable": False}, "you are in control"),
-        ({"mode": "AUTO", "drivable": False}, "you are in control"),
+        ({"mode": "AUTO", "drivable": False, "drives_itself": True}, "AUTO drives"),
+        ({"undriven": "keys do not drive a copter", "in_control": False}, "only shown"),
         ({"armed": False}, "you are in control"),
         ({"emergency_stop": True}, ""),
         ({"in_control": False, "driver": 254}, "driven by 254"),
