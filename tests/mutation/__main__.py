@@ -28,8 +28,8 @@ _VEHICLE_TESTS = (
 ROOMS: dict[str, tuple[str, ...]] = {
     "vehicle/drive": _VEHICLE_TESTS,
     "vehicle/safety": _VEHICLE_TESTS,
-    "link/protocol": ("tests/link/protocol",),
-    "link/signing": ("tests/link/signing", "tests/link/protocol/test_signing_guard.py"),
+    "link/protocol": ("tests/link/protocol", "tests/test_bounds.py"),
+    "link/signing": ("tests/link/signing", "tests/link/protocol/test_signing_guard.py", "tests/test_bounds.py"),
 }
 """Folders to mutate, those that decide whether the wheels turn and which frames count -> tests to run against them."""
 DESELECTED = ("tests/vehicle/safety/test_estop_button.py",)

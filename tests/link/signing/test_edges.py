@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import codec
-from dialects.messages import RoverOperatorPresence, boot_ms
+from dialects.messages import RoverOperatorPresence
 from link.signing.clock import FOLLOWED_MAX, TICKS, SigningClock, to_stamp
 from link.signing.signature import STAMP_MAX, SecretHash, is_signed, strip_signature
 from link.signing.signing import FrameSigner, Signing, SigningMemory
@@ -231,7 +231,7 @@ def test_mavlink_1_is_never_signed() -> None:
 
 
 def test_the_signature_of_a_message_with_a_large_id_is_stripped() -> None:
-    message = RoverOperatorPresence(boot_ms(1.0), 0, 0, 0, 0, 0, 0, 0)
+    message = RoverOperatorPresence(1, 1, 1, 1, 1, 1, 1, 1)
     number = type(message).id
     assert number > 255
     plain = codec.frame(number, codec.encode_payload(message), 0, 255, 190)
