@@ -21,6 +21,8 @@ WHEELS = re.compile(r"left wheel [^\n]*\+[1-9]\d*%")
 QUIT = "\x11"
 KEY_EVERY = 0.03
 """s between two repeats of a held key."""
+HELD, RESTED = 6.0, 2.0
+"""s for which a key is held and then released, in turn."""
 ARM_WITHIN = 60.0
 COLLECT = "pytest --suite all --collect-only -q -p no:cacheprovider | tail -n 1; (exit ${PIPESTATUS[0]})"
 """Import every test, those of the long suite too: they may need no package that README does not install."""
@@ -105,11 +107,14 @@ def _drive(terminal: Terminal) -> int | None:
 
 
 def _hold(terminal: Terminal, key: str, until: re.Pattern[str]) -> None:
-    start, deadline = len(terminal.read()), time.monotonic() + ARM_WITHIN
+    """Hold a key until a text is on the screen, with rests: a busy screen asks to release the keys. Raises LineError."""
+    start, began = len(terminal.read()), time.monotonic()
     while not until.search(terminal.read()[start:]):
-        if time.monotonic() > deadline:
+        passed = time.monotonic() - began
+        if passed > ARM_WITHIN:
             raise LineError(f"{key!r} held for {ARM_WITHIN:.0f} s, and no {until.pattern!r} on the screen")
-        terminal.type(key)
+        if passed % (HELD + RESTED) < HELD:
+            terminal.type(key)
         terminal.wait(KEY_EVERY)
 
 
