@@ -22,21 +22,24 @@ from tests.stranger.reader import Reader
 
 ROOT = Path(__file__).parents[2]
 INSIDE = "MAVHELM_STRANGER"
+"""Set to the folder for a bare Debian, in the process that has mounts of its own."""
 
 
 def main(argv: list[str] | None = None) -> int:
     """Return 0 if every line did what README says."""
     words = sys.argv[1:] if argv is None else argv
     asked = _parser().parse_args(words)
-    if asked.bare and INSIDE not in os.environ:  # what it starts and mounts ends with that process
-        command = [*namespaces(), sys.executable, "-m", "tests.stranger", *words]
-        return subprocess.run(command, env={**os.environ, INSIDE: "1"}, cwd=ROOT).returncode
+    settings = dict(each.split("=", 1) for each in asked.env)
+    if INSIDE in os.environ:
+        return _read_readme(
+            BareDebian(Path(os.environ[INSIDE]), ROOT, settings, asked.bare, asked.cache), asked.no_skips
+        )
     with tempfile.TemporaryDirectory(prefix="mavhelm-stranger-") as folder:
-        settings = dict(each.split("=", 1) for each in asked.env)
-        computer: Computer = ThisComputer(Path(folder), ROOT, settings)
-        if asked.bare:
-            computer = BareDebian(Path(folder), ROOT, settings, asked.bare, asked.cache)
-        return _read_readme(computer, asked.no_skips)
+        if not asked.bare:
+            return _read_readme(ThisComputer(Path(folder), ROOT, settings), asked.no_skips)
+        # What is mounted there ends with that process: the folder is removed by this one, which never sees /dev in it.
+        command = [*namespaces(), sys.executable, "-m", "tests.stranger", *words]
+        return subprocess.run(command, env={**os.environ, INSIDE: folder}, cwd=ROOT).returncode
 
 
 def _read_readme(computer: Computer, no_skips: bool) -> int:

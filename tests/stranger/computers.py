@@ -35,8 +35,11 @@ class Computer(Protocol):
 
 
 def namespaces() -> list[str]:
-    """Return a command that runs another one with mounts and processes of its own, which end with it."""
-    return ["unshare", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
+    """Return a command that runs another one with mounts and processes of its own, which end with it.
+
+    Its mounts are seen nowhere else, so that nobody who removes the folder of a BareDebian reaches /dev or /sys.
+    """
+    return ["unshare", "--mount", "--propagation=private", "--pid", "--fork", "--kill-child", "--mount-proc"]
 
 
 class ThisComputer:

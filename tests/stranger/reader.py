@@ -107,7 +107,7 @@ def _drive(terminal: Terminal) -> int | None:
 
 
 def _hold(terminal: Terminal, key: str, until: re.Pattern[str]) -> None:
-    """Hold a key until a text is on the screen, with rests: a busy screen asks to release the keys. Raises LineError."""
+    """Hold a key until a text is shown, with rests: a busy screen asks to release the keys. Raises LineError."""
     start, began = len(terminal.read()), time.monotonic()
     while not until.search(terminal.read()[start:]):
         passed = time.monotonic() - began
