@@ -187,6 +187,12 @@ class OperatorFlag(IntFlag):
     AXES = rover.ROVER_OPERATOR_FLAGS_AXES
 
 
+class Rejection(IntEnum):
+    """ROVER_REJECTION: result_param2 of a COMMAND_ACK that rejects temporarily."""
+
+    NO_PROOF = rover.ROVER_REJECTION_NO_PROOF
+
+
 class ControlFlag(IntFlag):
     """ROVER_CONTROL_FLAGS of ROVER_CONTROL."""
 

@@ -396,7 +396,7 @@ def test_commands_and_setpoints_of_a_late_link_are_refused() -> None:
         driver.step(NEUTRAL)
         late.send(late.build(AHEAD, age=2.0))
         wires.wait(0.05)
-    assert late.set_mode(Mode.GUIDED) is Result.FAILED
+    assert late.set_mode(Mode.GUIDED) is Result.TEMPORARILY_REJECTED
     assert late.text("this link is 2.0 s late")
     assert wires.mode is Mode.MANUAL
     assert not driver.text("Another program")

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from enum import Enum
+from typing import Any
 
-from dialects.enums import Result, Severity, command_name
-from link.core import Received
+from dialects.enums import Rejection, Result, Severity, command_name
+from dialects.messages import Message
+from link.core import Outgoing, Received
 from link.services.command.jobs import CommandJob
 from link.services.command.request import CommandRequest
 from link.services.command.server import CommandReply
@@ -27,6 +30,8 @@ ALTITUDE_MAX = 1e5
 
 CommandResult = Result | CommandReply | CommandJob
 """What the handler of a command returns."""
+Handle = Callable[[Received, Any, float], Sequence[Outgoing] | None]
+"""Handles a message, with the time; returns the replies."""
 
 
 class Access(Enum):
@@ -91,6 +96,33 @@ class CommandAccess:
     def denial_reason(self, sender: Received | CommandRequest, now: float) -> str | None:
         """Return why a sender may not command the vehicle, or None."""
         return self._ownership.denial_reason(sender, now) if sender.introduced else "no HEARTBEAT received"
+
+    def soften(self, result: CommandResult, request: CommandRequest, now: float) -> CommandResult:
+        """Let a sender whose session is in control repeat what was refused for want of a proof.
+
+        It may prove again soon: one of both programs was late, or a few frames were lost. Its reason has been sent.
+        """
+        failed = result.result if isinstance(result, CommandReply) else result
+        if failed is not Result.FAILED or self._ownership.missing_proof(request, now) is None:
+            return result
+        return CommandReply(Result.TEMPORARILY_REJECTED, why=Rejection.NO_PROOF)
+
+    def await_proof(self, handle: Handle) -> Handle:
+        """Return a handler of a message that its sender repeats until it is answered.
+
+        A link of the driver's session without a proof gets no answer but the reason: the repeat counts if the session
+        is proven by then.
+        """
+
+        def run(received: Received, message: Message, now: float) -> Sequence[Outgoing] | None:
+            reason = self._ownership.missing_proof(received, now)
+            if reason is None:
+                return handle(received, message, now)
+            text = f"GCS {received.system}: {message.msgname} not answered: {reason}"
+            self._texts.reply(received, Severity.WARNING, text, now)
+            return None
+
+        return run
 
     def reject(self, request: CommandRequest, reason: str, now: float) -> Result:
         """Send the reason as STATUSTEXT and return FAILED: the command may work later."""

@@ -79,7 +79,7 @@ def _checked(row: CommandSpec, access: CommandAccess) -> RunCommand:
         if row.stops is None or not row.stops(request.params):
             denial = access.deny_role(row.needed_role, request, now) or access.deny(row.access, request, now)
             if denial is not None:
-                return denial
-        return row.run(request, now)
+                return access.soften(denial, request, now)
+        return access.soften(row.run(request, now), request, now)
 
     return run

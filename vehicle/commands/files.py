@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dialects import messages as m
-from link.core import Outgoing
+from link.core import Outgoing, Received
 from link.services import metadata
 from link.services.ftp.files import FileTree, Folder, GeneratedFolder, Query
 from link.services.ftp.server import FtpServer
@@ -18,6 +18,7 @@ from link.signing.role import Role
 from vehicle.commands.access import Access
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
+from vehicle.drive.ownership import Ownership
 from vehicle.storage.logbook import Logbook
 from vehicle.telemetry.build_status import VERSION
 from vehicle.telemetry.view import TelemetryView
@@ -39,9 +40,7 @@ class FileServices:
             system=system,
             component=component,
             pacer=context.file_pacer,
-            allowed=lambda received, now: (
-                received.role >= Role.SET_UP and context.control.ownership.denial_reason(received, now) is None
-            ),
+            allowed=lambda received, now: _may_write(received, context.control.ownership, now),
         )
         self._log = LogServer(
             logbook.recording.folder,
@@ -72,6 +71,13 @@ class FileServices:
     def message_builders(self) -> dict[int, Callable[[TelemetryView], m.Message]]:
         """Return builders of what REQUEST_MESSAGE may ask for, by message id."""
         return {m.ComponentMetadata.id: lambda view: self._metadata.message(view.boot_ms)}
+
+
+def _may_write(received: Received, ownership: Ownership, now: float) -> bool | None:
+    """Return whether a sender may write; None: it is the driver, but its proof is missing at the moment."""
+    if received.role < Role.SET_UP:
+        return False
+    return None if ownership.missing_proof(received, now) else ownership.denial_reason(received, now) is None
 
 
 def _constant(data: bytes) -> Callable[[Query], bytes]:

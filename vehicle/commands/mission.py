@@ -96,10 +96,11 @@ class MissionService:
         items = (m.MissionItemInt, m.MissionItem)
         item = "item of an upload; current 2: drives there in GUIDED"
         serve = from_server(self._server.receive)
+        change = self._access.await_proof(serve)
         return (
             *(InboundMessage(message, Access.CONNECTED, text, serve) for message, text in reads),
-            *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, text, serve) for message, text in writes),
-            *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, item, serve, Effect.MOTION) for message in items),
+            *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, text, change) for message, text in writes),
+            *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, item, change, Effect.MOTION) for message in items),
             InboundMessage(m.MissionAck, Access.INTRODUCED, "ends an upload of its sender", serve),
         )
 

@@ -35,6 +35,7 @@ class ParamService:
         """When a failed save is tried again; None while everything is saved."""
         self._changed_by: dict[str, int] = {}
         """Safety parameter -> the ground station that has set it in this cycle."""
+        self._await_proof = context.access.await_proof
         context.params.pop_unannounced()
         system, component = context.ids
         self._server = ParamServer(
@@ -56,7 +57,7 @@ class ParamService:
             InboundMessage(m.ParamRequestList, Access.CONNECTED, "all PARAM_VALUE, paced", serve),
             InboundMessage(m.ParamRequestRead, Access.CONNECTED, "PARAM_VALUE, or PARAM_ERROR", serve),
             InboundMessage(m.ParamSet, Access.DRIVER_OR_UNCLAIMED,
-                           "PARAM_VALUE, after a PARAM_ERROR if it is refused", serve),
+                           "PARAM_VALUE, after a PARAM_ERROR if it is refused", self._await_proof(serve)),
         )  # fmt: skip
 
     def tick(self, now: float) -> list[Outgoing]:

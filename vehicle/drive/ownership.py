@@ -138,16 +138,28 @@ class Ownership:
         age = driver.session.setpoint_age(Conversation.of(sender), now)
         return "older than OPR_ECHO_MAX on arrival" if age > self._params["OPR_ECHO_MAX"] else None
 
+    def missing_proof(self, sender: Sender, now: float) -> str | None:
+        """Return why a link of the driver's own session may not command for the moment, or None.
+
+        It may again with its next good proof, so that its sender need only repeat what it has sent.
+        """
+        driver = self.driver
+        if driver is None or driver.session is None or sender.role < Role.DRIVE or self._is_excluded(sender):
+            return None
+        link = driver.session.links.get(Conversation.of(sender))
+        if link is None or driver.is_sender(sender, now):
+            return None
+        if link.age > self._params["OPR_ECHO_MAX"]:
+            return f"this link is {link.age:.1f} s late"
+        return f"no proof on this link for {now - link.proven_at:.1f} s"
+
     def _is_excluded(self, sender: Sender) -> bool:
         return self._params["MAV_GCS_SYSID"] not in (0, sender.system)
 
     def _other_reason(self, driver: Driver, sender: Sender, now: float) -> str:
         """Return why a sender that is not the driver may not command."""
-        link = driver.session.links.get(Conversation.of(sender)) if driver.session else None
-        if link is not None and link.age > self._params["OPR_ECHO_MAX"]:
-            return f"this link is {link.age:.1f} s late"
-        if link is not None:
-            return f"no proof on this link for {now - link.proven_at:.1f} s"
+        if reason := self.missing_proof(sender, now):
+            return reason
         if self.has_driver_ids(sender):
             return f"another program with your ids {driver.name} is in control, use other ids"
         return f"GCS {driver.conversation.system} is in control"

@@ -1,14 +1,15 @@
 """Client half of the command protocol: sends COMMAND_LONG or COMMAND_INT and repeats it until COMMAND_ACK.
 
 Rules (https://mavlink.io/en/services/command.html): repeats of a COMMAND_LONG have a rising `confirmation`, COMMAND_INT
-has none; IN_PROGRESS extends the timeout.
+has none; IN_PROGRESS extends the timeout. Our vehicle rejects what comes over a link of the driver that was not proven
+in the last second (ROVER_REJECTION_NO_PROOF): it is repeated likewise, because proofs go on.
 """
 
 from __future__ import annotations
 
 import msgspec
 
-from dialects.enums import Result
+from dialects.enums import Rejection, Result
 from dialects.messages import CommandAck, CommandInt, CommandLong, Message
 from link.core import Outgoing, Received
 from link.services.command.request import PROGRESS_TIMEOUT, Params
@@ -52,6 +53,8 @@ class _Waiting(msgspec.Struct):
     place: CommandPlace | None = None
     """Of a COMMAND_INT."""
     sent: int = 0
+    rejected: bool = False
+    """Its sender's proof was missing at its last try."""
     progress: int | None = None
     """% of a command that is IN_PROGRESS; None: not reported."""
 
@@ -117,6 +120,9 @@ class CommandClient:
             waiting.sent, waiting.due = 1, now + PROGRESS_TIMEOUT
             waiting.progress = message.progress if message.progress <= 100 else waiting.progress
             return
+        if _wants_proof(message):
+            waiting.rejected = True  # repeated when it is due; the proofs of the session go on meanwhile
+            return
         del self._waiting[received.system, message.command]
         known = Result(message.result) if message.result in Result._value2member_map_ else Result.FAILED
         self._outcomes.append(CommandOutcome(waiting.command, waiting.params, received.system, known, message.result))
@@ -137,7 +143,8 @@ class CommandClient:
                 continue
             if waiting.sent >= TRIES:
                 del self._waiting[key]
-                self._outcomes.append(CommandOutcome(waiting.command, waiting.params, key[0], None))
+                result = Result.TEMPORARILY_REJECTED if waiting.rejected else None
+                self._outcomes.append(CommandOutcome(waiting.command, waiting.params, key[0], result, result))
             else:
                 self._transmit(waiting, now)
 
@@ -153,8 +160,13 @@ class CommandClient:
 
     def _transmit(self, waiting: _Waiting, now: float) -> None:
         self._outbox.append(Outgoing(_message(waiting)))
-        waiting.sent += 1
+        waiting.sent, waiting.rejected = waiting.sent + 1, False
         waiting.due = now + REPEAT_AFTER
+
+
+def _wants_proof(answer: CommandAck) -> bool:
+    """Return whether our vehicle takes the same command once the session has been proven again."""
+    return answer.result == Result.TEMPORARILY_REJECTED and answer.result_param2 == Rejection.NO_PROOF
 
 
 def _message(waiting: _Waiting) -> Message:

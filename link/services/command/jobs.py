@@ -118,9 +118,9 @@ class CommandJobs:
         return ack(request, result)
 
 
-def ack(request: CommandRequest, result: Result, progress: int = 0) -> Outgoing:
-    """Return COMMAND_ACK to the sender of a request."""
-    answer = CommandAck(request.command, result, progress, 0, request.system, request.component)
+def ack(request: CommandRequest, result: Result, progress: int = 0, *, why: int = 0) -> Outgoing:
+    """Return COMMAND_ACK to the sender of a request. `why`: its result_param2."""
+    answer = CommandAck(request.command, result, progress, why, request.system, request.component)
     return Outgoing(answer, request.peer)
 
 

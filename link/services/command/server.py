@@ -25,6 +25,8 @@ class CommandReply(NamedTuple):
 
     result: Result
     messages: tuple[Outgoing, ...] = ()
+    why: int = 0
+    """result_param2 of the acknowledgement: a dialect's reason for the result."""
 
 
 RunCommand = Callable[[CommandRequest, float], Result | CommandReply | CommandJob]
@@ -85,5 +87,5 @@ class CommandServer:
         if isinstance(result, Result):
             return [ack(request, result)]
         if isinstance(result, CommandReply):
-            return [ack(request, result.result), *result.messages]
+            return [ack(request, result.result, why=result.why), *result.messages]
         return [self._jobs.begin(request, result, now)]

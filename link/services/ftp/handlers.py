@@ -22,8 +22,8 @@ class FtpRequest(msgspec.Struct):
 
     client: FtpClientId
     packet: FtpPacket
-    allowed: bool
-    """Whether this client may write."""
+    allowed: bool | None
+    """Whether this client may write; None: not known at the moment, and the client repeats its request."""
     content: Content | None = None
     crc: int = 0
     offset: int = 0
@@ -158,7 +158,7 @@ class FtpHandlers:
         place = self._tree.find(request.packet.data)
         if place is None or not place.name or place.query:
             return FtpError.NOT_FOUND
-        return (place.folder.remove(place.name) if request.allowed else FtpError.PROTECTED) or b""
+        return (place.folder.remove(place.name) if _may_write(request) else FtpError.PROTECTED) or b""
 
     def _protected(self, request: FtpRequest, now: float) -> FtpReply:
         """Reject a change of the folders."""
@@ -168,7 +168,7 @@ class FtpHandlers:
         place = self._tree.find(request.packet.data)
         if place is None or not place.name or place.query:
             return FtpError.NOT_FOUND
-        return place if place.folder.writable(place.name) and request.allowed else FtpError.PROTECTED
+        return place if place.folder.writable(place.name) and _may_write(request) else FtpError.PROTECTED
 
     def _existing(self, request: FtpRequest) -> tuple[Location, Content] | FtpError:
         """Return the file that the client may write, and what it holds."""
@@ -183,6 +183,13 @@ def _line(entry: Entry) -> bytes:
     """Return a line of a listing: F, name, tab, size; or D, name."""
     text = f"D{entry.name}" if entry.size is None else f"F{entry.name}\t{entry.size}"
     return text.encode("ascii", "replace") + b"\0"
+
+
+def _may_write(request: FtpRequest) -> bool:
+    """Return whether the client may write. Raises NotReadyError if that is not known at the moment."""
+    if request.allowed is None:
+        raise NotReadyError
+    return request.allowed
 
 
 _HANDLERS: dict[int, Callable[[FtpHandlers, FtpRequest, float], FtpReply]] = {

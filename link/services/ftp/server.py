@@ -35,7 +35,10 @@ _OPENING = (FtpOpcode.OPEN, FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE)
 
 
 class FtpServer:
-    """Answers for one system and component. `allowed` returns whether the sender may write."""
+    """Answers for one system and component.
+
+    `allowed` returns whether the sender may write; while it returns None the sender is not answered, and repeats.
+    """
 
     def __init__(
         self,
@@ -44,7 +47,7 @@ class FtpServer:
         system: int,
         component: int,
         pacer: BulkPacer,
-        allowed: Callable[[Received, float], bool] = lambda received, now: True,
+        allowed: Callable[[Received, float], bool | None] = lambda received, now: True,
     ) -> None:
         self._ids = (system, component)
         self._pacer = pacer
@@ -65,7 +68,7 @@ class FtpServer:
         if packet.op in (FtpOpcode.ACK, FtpOpcode.NAK):
             return []
         again = self._stored_reply(client, packet, now)
-        allowed = received.introduced and self._allowed(received, now)
+        allowed = self._allowed(received, now) if received.introduced else False
         return again or self._attempt(FtpRequest(client, packet, allowed), now)
 
     def tick(self, now: float) -> list[Outgoing]:

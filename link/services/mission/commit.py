@@ -52,8 +52,9 @@ class PlanChange(msgspec.Struct):
     """New plans that take effect together: one of an upload, or all that are cleared at once."""
 
     plans: Mapping[MissionType, Items]
-    allowed: Callable[[float], MissionResult]
-    """Whether the change may be made now; checked before the write and again after it."""
+    allowed: Callable[[], MissionResult]
+    """Whether the change may be made now, by the sender as it was when its last message arrived: a write may take
+    longer than a proof of the sender is valid. Checked before the write and again after it."""
     build_reply: Callable[[MissionResult, float], list[Outgoing]] = lambda verdict, now: []
     """Builds the reply."""
     sender: Sender | None = None
@@ -86,7 +87,7 @@ class PlanChanges:
     def begin(self, change: PlanChange, now: float) -> list[Outgoing]:
         """Start to write a change; return the reply if it is known at once."""
         change.began = now
-        verdict = change.allowed(now)
+        verdict = change.allowed()
         if verdict is not MissionResult.ACCEPTED:
             change.verdict = verdict
             return change.build_reply(verdict, now)
@@ -109,7 +110,7 @@ class PlanChanges:
     def _end(self, change: PlanChange, now: float) -> MissionResult:
         problems = (each.problem if each.done else "the disk does not answer" for each in change.writes)
         reason = next(filter(None, problems), None)
-        verdict = MissionResult.ERROR if reason else change.allowed(now)
+        verdict = MissionResult.ERROR if reason else change.allowed()
         for kind, items in change.plans.items():
             if verdict is MissionResult.ACCEPTED:
                 self._plans.set(kind, items)

@@ -118,7 +118,7 @@ class MissionServer:
             return None
         change = PlanChange(
             {kind: tuple(items) for kind, items in plans.items()},
-            lambda now: MissionResult.ACCEPTED if all(map(allowed, plans)) else MissionResult.DENIED,
+            lambda: MissionResult.ACCEPTED if all(map(allowed, plans)) else MissionResult.DENIED,
         )
         self._changes.begin(change, self._now)  # has no reply
         return change
@@ -260,7 +260,7 @@ class MissionServer:
         # The vehicle may have started to use the old plan since the upload began.
         change = PlanChange(
             {kind: upload.items},
-            lambda now: self._backend.authorize_write(received, kind, now),
+            lambda: self._backend.authorize_write(received, kind, now),
             reply,
             upload.sender,
             message,
@@ -287,7 +287,7 @@ class MissionServer:
         sender = sender_of(received)
         change = PlanChange(
             dict.fromkeys(kinds, ()),
-            lambda now: _first_refusal(self._backend.authorize_write(received, kind, now) for kind in kinds),
+            lambda: _first_refusal(self._backend.authorize_write(received, kind, now) for kind in kinds),
             lambda verdict, now: [ack(sender, message.mission_type, verdict)],
             sender,
             message,

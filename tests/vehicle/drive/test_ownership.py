@@ -101,6 +101,24 @@ class TestQuestions:
         assert scene.ownership.denial_reason(GCS, scene.now) is None
         assert scene.ownership.denial_reason(GCS, scene.now + 1.5) == "no proof on this link for 1.5 s"
 
+    def test_only_a_link_of_the_drivers_session_misses_a_proof(self) -> None:
+        scene = Scene(None)
+        missing = scene.ownership.missing_proof
+        assert missing(GCS, scene.now) is None
+        scene.prove(GCS)
+        scene.ownership.take(GCS, scene.now)
+        assert missing(GCS, scene.now + 1.0) is None
+        assert missing(GCS, scene.now + 1.5) == "no proof on this link for 1.5 s"
+        assert missing(OTHER, scene.now + 1.5) is missing(TWIN, scene.now + 1.5) is None
+        scene.prove(TWIN, PROOF._replace(age=2.04), good=False)
+        assert missing(TWIN, scene.now) == "this link is 2.0 s late"
+        scene.prove(GCS)
+        assert missing(GCS, scene.now) is None
+
+    def test_a_driver_without_sessions_misses_no_proof(self) -> None:
+        scene = Scene()
+        assert scene.ownership.missing_proof(GCS, scene.now + 1.5) is None
+
     def test_a_link_with_proofs_as_old_as_may_be_is_not_late(self) -> None:
         scene = Scene(None)
         scene.prove(GCS, PROOF._replace(age=0.45))

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from dialects.enums import Command, Result
+from dialects.enums import Command, Rejection, Result
 from dialects.messages import CommandAck, CommandInt, CommandLong
 from link.core import Outgoing, Received
 from link.services.command.client import REPEAT_AFTER, TRIES, CommandClient, CommandPlace
@@ -113,3 +113,30 @@ def test_a_command_with_a_place_is_a_command_int_and_repeats_without_confirmatio
     assert first.to_dict() == again.to_dict()
     client.receive(ack(192, Result.ACCEPTED), 0.5)
     assert [each.result for each in client.outcomes()] == [Result.ACCEPTED]
+
+
+def rejected_for_want_of_a_proof() -> Received:
+    answer = CommandAck(400, Result.TEMPORARILY_REJECTED, 0, Rejection.NO_PROOF, 255, 190)
+    return received(answer, 1, 1)
+
+
+def test_a_command_that_lacks_a_proof_is_repeated() -> None:
+    client = CommandClient(255, 190)
+    client.send(Command.COMPONENT_ARM_DISARM, 1.0, target_system=1, now=0.0)
+    client.receive(rejected_for_want_of_a_proof(), 0.1)
+    client.tick(REPEAT_AFTER)
+    assert [each.confirmation for each in sent(client)] == [0, 1]
+    client.receive(ack(400, Result.ACCEPTED), 0.5)
+    assert [each.result for each in client.outcomes()] == [Result.ACCEPTED]
+
+
+def test_a_command_that_lacks_a_proof_to_the_end_is_rejected() -> None:
+    client, now = CommandClient(255, 190), 0.0
+    client.send(Command.COMPONENT_ARM_DISARM, 1.0, target_system=1, now=now)
+    while not (outcomes := client.outcomes()):
+        for _ in sent(client):
+            client.receive(rejected_for_want_of_a_proof(), now)
+        now += 0.05
+        client.tick(now)
+    assert [(each.result, each.number) for each in outcomes] == [(Result.TEMPORARILY_REJECTED, 1)]
+    assert now == pytest.approx(TRIES * REPEAT_AFTER, abs=0.5)
