@@ -12,6 +12,8 @@ LARGEST_ID = 255
 SYNTAX = 'system ids, ranges and patterns of names with commas between them, as "1-20,31" or "*boat*"'
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 """Of a group; ids, ranges and patterns look different."""
+WILD = re.compile(r"[*?\[]")
+"""Of a pattern; a text without it is a name."""
 _RANGE = re.compile(r"(\d{1,3})(?:-(\d{1,3}))?")
 _PATTERN = re.compile(r"[^,]*[A-Za-z*?][^,]*")
 
@@ -29,6 +31,11 @@ class VehicleGroup(msgspec.Struct, frozen=True):
     """System ids of ranges: of these, those that are heard."""
     patterns: tuple[str, ...]
     """Of names, in lower case, as "*boat*"."""
+
+    @property
+    def named(self) -> frozenset[str]:
+        """The names that are written out, as "rover1", in lower case: these vehicles are waited for."""
+        return frozenset(each for each in self.patterns if not WILD.search(each))
 
     def has(self, system: int, *names: str) -> bool:
         """Return whether a vehicle belongs to it. It has a name in its fleet, as "rover1", and one as "Rover 1"."""

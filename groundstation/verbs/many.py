@@ -90,7 +90,7 @@ class ManyVehicles:
         core, now = self._session.core, self._session.now
         known = len(core.contacts)
         quiet = STATION_TELLS_WITHIN if core.has_heard_all else ALONE_AFTER
-        if self._missing and not core.has_heard_all:
+        if (self._missing or self._unheard_names) and not core.has_heard_all:
             quiet = max(quiet, self._session.began + self._options.wait - now)
         if known >= MAX_VEHICLES:
             return False
@@ -99,6 +99,13 @@ class ManyVehicles:
     @property
     def _missing(self) -> set[int]:
         return set(self._group.listed) - self._begun
+
+    @property
+    def _unheard_names(self) -> frozenset[str]:
+        """The names of the group that no vehicle has, of a fleet or as a model, in lower case."""
+        states = [contact.state for contact in self._session.core.contacts.values()]
+        heard = {name.lower() for state in states for name in (state.fleet_name, state.kind_name)}
+        return self._group.named - heard
 
     def _add_missing(self) -> None:
         for system in self._missing:

@@ -16,6 +16,7 @@ def test_ids_ranges_and_patterns() -> None:
     assert EVERYBODY.has(1, "")
     assert parse_group("Rover1, gps*").has(9, "rover1", "Rover 9"), "the name in the fleet, and kind and system id"
     assert not parse_group("rover1").has(1, "", "Rover 1")
+    assert parse_group("Rover1, gps*, 7").named == {"rover1"}, "vehicles to wait for, unlike those of a pattern"
 
 
 @pytest.mark.parametrize("text", ["", "0", "256", "5-3", "1,,2", "1-2-3", "-"])
