@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.intents.driving import DriveKeyUp, Stop
+from groundstation.intents.driving import Stop
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.snapshot import Snapshot
 from tests.e2e.programs import Vehicle
@@ -35,8 +35,7 @@ class Twins:
 
     def see_wheels_turn(self) -> None:
         """Press the key again if the machine held the driver up for so long that it has to be pressed anew."""
-        press = (DriveKeyUp(key="i"), FORWARD)
-        self.driver.insist(lambda: self.driver.client.send(*press), lambda _: self.vehicle.turning())
+        self.driver.turn_wheels(self.vehicle.turning)
 
 
 @pytest.fixture
@@ -68,4 +67,4 @@ def test_after_the_driver_is_killed_the_twin_drives_once_its_key_is_pressed_anew
     until(twins.vehicle.stands)
     twins.twin.see(in_control)
     assert not twins.vehicle.turning()  # the key that was held all along
-    twins.twin.insist(lambda: twins.twin.client.send(DriveKeyUp(key="i"), FORWARD), lambda _: twins.vehicle.turning())
+    twins.twin.turn_wheels(twins.vehicle.turning)

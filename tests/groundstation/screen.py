@@ -14,7 +14,7 @@ from typing import Any
 from groundstation.client import StationClient
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
-from groundstation.intents.vehicle import Arm
+from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import Snapshot
 from tests.fakes.vehicle import FakeVehicle
 from tests.ports import free_port
@@ -94,6 +94,19 @@ class Screen:
         )
         self.see(lambda snapshot: snapshot.operator.gate_open)
         self.insist(lambda: self.client.send(DriveKeyUp(key="i"), FORWARD), lambda seen: seen.operator.throttle > 0)
+
+    def turn_wheels(self, turning: Callable[[], bool]) -> None:
+        """Press `i` until the wheels turn; what a failsafe has ended meanwhile on a late machine is begun anew."""
+
+        def press() -> None:
+            vehicle = self.snapshot.vehicle
+            if vehicle is not None and not vehicle.armed:
+                self.client.send(Arm(held=1.0))
+            if vehicle is not None and vehicle.mode == "HOLD":
+                self.client.send(SetMode("MANUAL"))
+            self.client.send(DriveKeyUp(key="i"), FORWARD)
+
+        self.insist(press, lambda _: turning())
 
     def insist(self, act: Callable[[], None], condition: Callable[[Snapshot], bool]) -> None:
         """Do it again until it shows."""
