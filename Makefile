@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak vm aarch64 mutate release
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 mutate release
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -45,6 +45,9 @@ bench:  ## Measure; ARGS=--quick, or the names of benchmarks.
 
 soak:  ## Drive for an hour over a bad network with programs killed in between; ARGS="--minutes 10 --seed 2".
 	.venv/bin/python -m tests.soak $(ARGS)
+
+stress:  ## Run the tests of real programs and sockets 5 times with all cores busy; ARGS="--rounds 1 tests/e2e".
+	.venv/bin/python -m tests.stress $(ARGS)
 
 vm:  ## Test pins, I2C, the service and a serial line against Debian's kernel in a virtual machine; needs root once.
 	.venv/bin/python -m tests.vm $(ARGS)
