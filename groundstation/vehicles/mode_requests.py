@@ -5,6 +5,7 @@ A vehicle of a kind that is not driven is only sent a mode that it lists itself:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 
 import msgspec
@@ -22,6 +23,8 @@ from link.services.command.client import TRIES, CommandOutcome
 
 CONFIRM_WITHIN = 3.0
 """s for the heartbeat to report the mode that was accepted: three heartbeats."""
+SILENT_WITHIN = 5.0
+"""s more for a heartbeat, if none came in that time: only one that comes can report another mode."""
 
 
 class VehicleMode(msgspec.Struct, frozen=True):
@@ -65,6 +68,7 @@ class ModeRequests:
         """Requests that wait for the list."""
         self.current: int | None = None
         """custom_mode of the newest HEARTBEAT."""
+        self._heard_at = -math.inf
 
     @property
     def modes(self) -> tuple[VehicleMode, ...]:
@@ -102,7 +106,7 @@ class ModeRequests:
     def receive(self, received: Received, now: float) -> None:
         """Take the mode of a HEARTBEAT of the vehicle."""
         if isinstance(received.message, m.Heartbeat) and received.component == self._commands.target[1]:
-            self.current = received.message.custom_mode
+            self.current, self._heard_at = received.message.custom_mode, now
             self._confirm()
 
     def tick(self, now: float) -> None:
@@ -112,10 +116,7 @@ class ModeRequests:
                 self._book.accept(number, "" if self._identity.modes else "not listed by the vehicle")
             self._lists.clear()
         self._begin(now)
-        change = self._change
-        if change is not None and change.accepted_at is not None and now - change.accepted_at > CONFIRM_WITHIN:
-            self._change = None
-            self._book.refuse(change.number, "accepted, but its heartbeat reports another mode", now)
+        self._give_up(now)
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
         """Take how DO_SET_MODE ended."""
@@ -131,6 +132,18 @@ class ModeRequests:
             self._book.fail(change.number, f"after {TRIES} tries")
         else:
             self._book.refuse(change.number, result_name(outcome.number).upper().replace(" ", "_"), now)
+
+    def _give_up(self, now: float) -> None:
+        """End a change that was accepted and is not confirmed in time."""
+        change = self._change
+        if change is None or change.accepted_at is None or now - change.accepted_at <= CONFIRM_WITHIN:
+            return
+        if self._heard_at >= change.accepted_at:
+            self._change = None
+            self._book.refuse(change.number, "accepted, but its heartbeat reports another mode", now)
+        elif now - change.accepted_at > CONFIRM_WITHIN + SILENT_WITHIN:
+            self._change = None
+            self._book.fail(change.number, f"accepted, but no heartbeat came for {CONFIRM_WITHIN + SILENT_WITHIN:g} s")
 
     def _begin(self, now: float) -> None:
         """Send the change once its mode is known, or refuse it once it will not be."""
