@@ -29,7 +29,7 @@ STAYS = (
     Stays(r"groundstation (?:attach|replay)\b", "F1.*F10|Drive", CTRL_Q),
     Stays(r"groundstation keys\b", "q", "q"),
     Stays(r"groundstation serve --web\b", r"http://127\.0\.0\.1:\d+/\?token=\w+"),
-    Stays(r"groundstation serve --headless\b", "groundstation: "),
+    Stays(r"groundstation serve --headless\b", r"station \d+ on "),
     Stays(r"groundstation ros1\b", "publish to command or cmd_vel", codes=(130,)),
     Stays(r"groundstation ros2\b", "node /mavhelm_1 at", codes=(130,)),
     Stays(r"groundstation watch (?!.*--(?:until|for|count)\b)", r"\d", codes=(0, 130)),
