@@ -42,6 +42,8 @@ class Endpoint(msgspec.Struct, frozen=True):
     fleet: str = ""
     vehicle: str = ""
     """Its name in the fleet; empty for all of them."""
+    device: str = ""
+    """Network interface to which its sockets are bound, given by the program that trusts it; empty: any."""
     side: Side | None = None
     """Given by the program that opens the endpoint; None: what the endpoint names."""
 

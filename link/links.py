@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 from link.endpoint import Side
@@ -28,10 +28,12 @@ def open_links(
     sent: SentFrames | None = None,
     places: int = MAX_PEERS,
     side: Side | None = None,
+    devices: Mapping[str, str] | None = None,
 ) -> list[Link]:
     """Open all endpoints, or none. Raises EndpointError or LinkError.
 
     `wanted`, `sent`, `places`: see Channel. `side`: which end this program is; a ground station downloads files.
+    `devices`: see open_transports().
     """
     build = partial(
         build_link,
@@ -43,7 +45,7 @@ def open_links(
         first_sequence=int(time.monotonic() * SEQUENCES_PER_SECOND) & 0xFF if side is Side.GROUND_STATION else 0,
         downloads=side is Side.GROUND_STATION,
     )
-    return [build(transport, index) for index, transport in enumerate(open_transports(endpoints, side))]
+    return [build(transport, index) for index, transport in enumerate(open_transports(endpoints, side, devices))]
 
 
 def build_link(

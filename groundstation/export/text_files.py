@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import csv
 import io
 import json
 import math
@@ -15,6 +14,7 @@ from groundstation.export.exporter import ExportError, LogInfo
 from groundstation.export.log_time import iso_time
 from groundstation.export.sample import Sample
 from groundstation.export.values import field_values
+from groundstation.formats.csv_row import csv_row
 from link.tlog.tlog import encode_record
 
 _HEAD = ("time", "seconds", "system", "component")
@@ -87,7 +87,7 @@ class CsvExport:
         ]  # fmt: skip
         for _, value in values:
             cells += value if isinstance(value, list) else [value]
-        csv.writer(file, lineterminator="\n").writerow(cells)
+        file.write(csv_row(cells) + "\n")
         self.count += 1
 
     def finish(self) -> None:
@@ -110,7 +110,7 @@ class CsvExport:
         titles = list(_HEAD)
         for field, value in field_values(message):
             titles += [f"{field}[{at}]" for at in range(len(value))] if isinstance(value, list) else [field]
-        csv.writer(file, lineterminator="\n").writerow(titles)
+        file.write(csv_row(titles) + "\n")
         self._files[name] = file
         return file
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import deque
 from typing import Any
 
 from dialects.messages import Message, printable
+from groundstation.formats.csv_row import csv_row
 from groundstation.station.charts.fields import array_length
 from groundstation.station.message_fields import field_value
 from groundstation.station.message_traffic import MessageTraffic, Place
@@ -47,14 +46,14 @@ class MessageCapture:
             return None
         lines = self._lines(new, now, wall)
         lost = new[0][0] - after - 1
-        return CapturePage(_line(_titles(type(new[0][2]))), lines, new[len(lines) - 1][0], request.after, lost)
+        return CapturePage(csv_row(_titles(type(new[0][2]))), lines, new[len(lines) - 1][0], request.after, lost)
 
     def _lines(self, new: list[tuple[int, float, Message]], now: float, wall: float) -> tuple[str, ...]:
         """Return the lines that fit in a page."""
         lines: list[str] = []
         size = 0
         for _, at, message in new:
-            lines.append(_line([f"{wall - (now - at):.6f}", *_values(message)]))
+            lines.append(csv_row([f"{wall - (now - at):.6f}", *_values(message)]))
             size += len(lines[-1])
             if size >= PAGE:
                 break
@@ -95,14 +94,7 @@ def _values(message: Message) -> list[Any]:
 
 
 def _text(value: str | bytes) -> str:
-    """Return text without control characters; a text that spreadsheets would calculate gets a quote before it."""
+    """Return text without control characters."""
     if isinstance(value, bytes):
         value = value.split(b"\0", 1)[0].decode("utf-8", "replace")
-    text = printable(value)
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@") else text
-
-
-def _line(values: list[Any]) -> str:
-    out = io.StringIO()
-    csv.writer(out, lineterminator="").writerow(values)
-    return out.getvalue()
+    return printable(value)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import csv
 import fnmatch
-import io
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
@@ -15,6 +13,7 @@ import msgspec
 from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
 from dialects.field_values import field_value
 from dialects.messages import Message
+from groundstation.formats.csv_row import csv_row
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.message_values import (
     Condition,
@@ -152,9 +151,7 @@ class _Watcher:
         return [self._path] if self._path is not None else [FieldPath(name) for name in self._kind.fieldnames]
 
     def _write_csv(self, cells: Sequence[str]) -> None:
-        text = io.StringIO()
-        csv.writer(text, lineterminator="").writerow(cells)
-        self._output.line(text.getvalue())
+        self._output.line(csv_row(cells))
 
     def _say_quiet(self) -> None:
         name = self._kind.msgname

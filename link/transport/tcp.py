@@ -15,6 +15,7 @@ from link.runtime.worker import Worker
 from link.transport.address import bind_error_text, resolve
 from link.transport.backoff import Backoff
 from link.transport.connection import Connection
+from link.transport.device import DeviceWatch, bind_to_device, watch_device
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 MAX_CONNECTIONS = 16
@@ -41,6 +42,7 @@ class TcpServerTransport:
         self._connections: dict[Hashable, Connection] = {}
         self._dropped = 0
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._watch: DeviceWatch | None = None
         self._on_receive: ReceiveCallback = lambda _: None
         self._on_disconnect: DisconnectCallback = lambda _: None
 
@@ -55,6 +57,7 @@ class TcpServerTransport:
         """Accept connections."""
         self._loop, self._on_receive, self._on_disconnect = loop, on_receive, on_disconnect
         loop.add_reader(self._socket, self._accept)
+        self._watch = watch_device(self.endpoint, loop, lambda: self._renew(loop))
 
     def send(self, data: bytes, address: Hashable) -> None:
         """Send one frame to one connection, if it still exists."""
@@ -69,11 +72,26 @@ class TcpServerTransport:
 
     def close(self) -> None:
         """End all connections and free the port."""
+        if self._watch:
+            self._watch.close()
         if self._loop:
             self._loop.remove_reader(self._socket)
         for connection in list(self._connections.values()):
             connection.close()
         self._socket.close()
+
+    def _renew(self, loop: asyncio.AbstractEventLoop) -> bool:
+        """Open the port again; False if that failed. Connections over the old interface end by their own timeout."""
+        loop.remove_reader(self._socket)
+        self._socket.close()
+        try:
+            self._socket = _open_listener(self.endpoint)
+        except LinkError as error:
+            self.problem = str(error)
+            return False
+        self.problem = None
+        loop.add_reader(self._socket, self._accept)
+        return True
 
     def _accept(self) -> None:
         try:
@@ -171,7 +189,10 @@ class TcpClientTransport:
         sock.setblocking(False)
         self._timer = loop.call_later(CONNECT_TIMEOUT, self._refused, loop, "no answer")
         try:
+            bind_to_device(sock, self.endpoint)
             sock.connect(address)
+        except LinkError as error:
+            self._refused(loop, str(error).removeprefix(f"{self.endpoint.text}: "))
         except BlockingIOError:
             loop.add_writer(sock, self._connected, loop, sock)
         except OSError as error:
@@ -226,9 +247,14 @@ class TcpClientTransport:
 
 def open_tcpin(endpoint: Endpoint) -> TcpServerTransport:
     """Open the port. Raises LinkError."""
+    return TcpServerTransport(endpoint, _open_listener(endpoint))
+
+
+def _open_listener(endpoint: Endpoint) -> socket.socket:
     address, family = resolve(endpoint, socket.SOCK_STREAM)
     sock = socket.socket(family, socket.SOCK_STREAM)
     sock.setblocking(False)
+    bind_to_device(sock, endpoint)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # or a restart waits a minute for its own port
     try:
         sock.bind(address)
@@ -236,7 +262,7 @@ def open_tcpin(endpoint: Endpoint) -> TcpServerTransport:
     except OSError as error:
         sock.close()
         raise LinkError(bind_error_text(endpoint, error)) from error
-    return TcpServerTransport(endpoint, sock)
+    return sock
 
 
 def open_tcpout(endpoint: Endpoint) -> TcpClientTransport:

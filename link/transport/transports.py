@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 
 from msgspec.structs import replace
@@ -18,11 +18,19 @@ def load_factory(scheme: Scheme) -> TransportFactory:
     return factory
 
 
-def open_transports(endpoints: Sequence[str], side: Side | None = None) -> list[Transport]:
-    """Open all endpoints, or none. Raises EndpointError or LinkError. `side`: which end this program is."""
+def open_transports(
+    endpoints: Sequence[str], side: Side | None = None, devices: Mapping[str, str] | None = None
+) -> list[Transport]:
+    """Open all endpoints, or none. Raises EndpointError or LinkError.
+
+    `side`: which end this program is. `devices`: endpoint -> network interface, for those bound to one.
+    """
     transports: list[Transport] = []
     try:
-        parsed = [replace(each, side=side) for each in parse_endpoints(endpoints)]
+        parsed = [
+            replace(each, side=side, device=(devices or {}).get(text, ""))
+            for text, each in zip(endpoints, parse_endpoints(endpoints), strict=True)
+        ]
         transports.extend(load_factory(SCHEMES[each.scheme])(each) for each in parsed)
     except LinkError:
         for transport in transports:

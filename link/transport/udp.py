@@ -8,6 +8,7 @@ from collections.abc import Hashable
 
 from link.endpoint import Endpoint
 from link.transport.address import bind_error_text, resolve
+from link.transport.device import DeviceWatch, bind_to_device, watch_device
 from link.transport.receive_buffer import ReceiveBuffer
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
@@ -36,6 +37,7 @@ class UdpTransport:
         self._socket = sock
         self._buffer = ReceiveBuffer(BUFFER)
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._watch: DeviceWatch | None = None
 
     def start(
         self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
@@ -43,6 +45,7 @@ class UdpTransport:
         """Pass arriving datagrams to `on_receive` in batches. UDP never calls `on_disconnect`."""
         self._loop = loop
         loop.add_reader(self._socket, self._readable, on_receive)
+        self._watch = watch_device(self.endpoint, loop, lambda: self._renew(loop, on_receive))
 
     def send(self, data: bytes, address: Hashable) -> None:
         """Send one datagram, or drop it."""
@@ -65,9 +68,24 @@ class UdpTransport:
 
     def close(self) -> None:
         """Stop listening and free the port."""
+        if self._watch:
+            self._watch.close()
         if self._loop:
             self._loop.remove_reader(self._socket)
         self._socket.close()
+
+    def _renew(self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback) -> bool:
+        """Open the socket again; False if that failed."""
+        loop.remove_reader(self._socket)
+        self._socket.close()
+        try:
+            self._socket = _open_socket(self.endpoint)
+        except LinkError as error:
+            self.problem = str(error)
+            return False
+        self.problem = None
+        loop.add_reader(self._socket, self._readable, on_receive)
+        return True
 
     def _readable(self, on_receive: ReceiveCallback) -> None:
         batch: list[tuple[bytes, Hashable]] = []
@@ -86,9 +104,14 @@ class UdpTransport:
 
 def open_udp(endpoint: Endpoint) -> UdpTransport:
     """Open the socket. Raises LinkError."""
+    return UdpTransport(endpoint, _open_socket(endpoint))
+
+
+def _open_socket(endpoint: Endpoint) -> socket.socket:
     address, family = resolve(endpoint, socket.SOCK_DGRAM)
     sock = socket.socket(family, socket.SOCK_DGRAM)
     sock.setblocking(False)
+    bind_to_device(sock, endpoint)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER)
     try:
         if endpoint.scheme == "udpout":
@@ -98,4 +121,4 @@ def open_udp(endpoint: Endpoint) -> UdpTransport:
     except OSError as error:
         sock.close()
         raise LinkError(bind_error_text(endpoint, error)) from error
-    return UdpTransport(endpoint, sock)
+    return sock

@@ -6,6 +6,7 @@ import msgspec
 
 from link.protocol.signing_guard import SigningPolicy
 from link.signing.role import Role
+from link.transport.reach import is_interface_name
 
 
 class SigningSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -15,7 +16,10 @@ class SigningSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Drop all that is not signed, on every link: who has no key cannot even watch. Needs a key."""
     allow_unsigned: bool = False
     """Let everybody in the network drive who has no key. Without it they may watch and stop only, unless they come
-    from this computer, a serial port or a tunnel."""
+    from this computer, a serial port, WireGuard or an interface of `private`."""
+    private: tuple[str, ...] = ()
+    """Network interfaces, as `ip link` shows them, behind which nobody is who may not drive, e.g. ["tailscale0"]. An
+    endpoint at an address of one needs no keys, and is bound to it. Never a mobile modem: others are behind it, too."""
     open_stops: bool = True
     """Obey a stop (disarm, emergency stop, HOLD, pause) whoever sends it. False needs `required`: then a ground station
     that has lost its key cannot stop the vehicle."""
@@ -23,6 +27,8 @@ class SigningSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def find_problems(settings: SigningSettings) -> list[str]:
     """Return one line for each contradiction."""
+    if wrong := [name for name in settings.private if not is_interface_name(name)]:
+        return [f"signing.private: {wrong[0]!r} is no name of a network interface; write each as `ip link` shows it"]
     if settings.required and settings.allow_unsigned:
         return ["signing: required and allow_unsigned contradict each other; remove one of them"]
     if not settings.open_stops and not settings.required:

@@ -163,7 +163,7 @@ def parameter_help(parameter: Parameter) -> str:
 
 
 def _value(value: Any) -> str:
-    if isinstance(value, str | list):
+    if isinstance(value, str | list | tuple):
         return json.dumps(value)
     if isinstance(value, bool):
         return str(value).lower()

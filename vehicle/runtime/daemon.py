@@ -167,7 +167,12 @@ async def _serve(settings: RunSettings) -> int:
         log_tap = recorder.log_tap if recorder else None
         try:
             links = open_links(
-                settings.endpoints, system=system, component=COMPONENT, wanted=rover.message_ids, side=Side.VEHICLE
+                settings.endpoints,
+                system=system,
+                component=COMPONENT,
+                wanted=rover.message_ids,
+                side=Side.VEHICLE,
+                devices=guards.devices,
             )
             guards.attach(links)
             if guards.warning:
@@ -175,7 +180,7 @@ async def _serve(settings: RunSettings) -> int:
             if settings.announce:
                 announce(settings.endpoints, system, opened)
             status = f"system {system}, {', '.join(settings.endpoints)}"
-            return await _drive(control_loop, links, status, notifier, cycles, log_tap)
+            return await _drive(control_loop, links, status, guards.notes, notifier, cycles, log_tap)
         except BaseException as error:
             control_loop.abort(error, loop.time())
             raise
@@ -187,6 +192,7 @@ async def _drive(
     control_loop: ControlLoop,
     links: Sequence[Link],
     status: str,
+    notes: Sequence[str],
     notifier: Notifier,
     cycles: CycleObserver,
     log_tap: LogTap | None,
@@ -197,5 +203,7 @@ async def _drive(
     shutdown.install_handlers(asyncio.get_running_loop())
     startup_gc.resume()
     log.info("ready, %s", status)
+    for note in notes:
+        log.info("%s", note)
     notifier.ready(status)
     return await shutdown.wait()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from link.endpoint import parse_endpoint
@@ -11,7 +11,7 @@ from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.keys import KeyRing
 from link.signing.role import Role
 from link.signing_keeper import SigningKeeper
-from link.transport.reach import is_private
+from link.transport.reach import find_trust, missing_interfaces
 from link.transport.transport import Link
 from vehicle.config.run_settings import SettingsError
 from vehicle.config.signing import SigningSettings, build_policy
@@ -24,6 +24,8 @@ PERIOD = 1.0
 
 NOBODY = "everybody in the network can send here, so nobody may drive: {}, or set allow_unsigned = true under [signing]"
 """What is said of a link that is open to a network, while there is neither a key nor a permission."""
+
+MISSING = "signing.private: there is no interface {} now; when it has come, restart the vehicle to trust it"
 
 NEW_KEY = "make a key with `vehicle key new NAME --state {}`"
 NO_STATE = "run the simulation with `--state FOLDER` and " + NEW_KEY.format("FOLDER")
@@ -46,9 +48,12 @@ class LinkGuards:
         self._new_key = NO_STATE if keys is None else NEW_KEY.format(keys.folder)
         if settings.required and not ring.keys:
             raise SettingsError(f"signing.required: there is no key; {self._new_key}")
-        private = [is_private(parse_endpoint(text)) for text in endpoints]
-        self._policies = [build_policy(settings, private=each) for each in private]
-        self._open = [text for text, each in zip(endpoints, private, strict=True) if not (each or settings.required)]
+        found = [find_trust(parse_endpoint(text), settings.private) for text in endpoints]
+        self._policies = [build_policy(settings, private=each is not None) for each in found]
+        self._trusts = {text: each for text, each in zip(endpoints, found, strict=True) if each is not None}
+        self._open = [text for text in endpoints if text not in self._trusts and not settings.required]
+        self._required = settings.required
+        self._missing = missing_interfaces(settings.private)
         self._allowed = settings.allow_unsigned
         self._keeper = SigningKeeper(ring, memory, now)
         self._links: Sequence[Link] = ()
@@ -60,6 +65,17 @@ class LinkGuards:
     def arming_note(self) -> str | None:
         """What is said at each arming, or None."""
         return "Unsigned links: anybody in the network may drive" if self._open and self._allowed else None
+
+    @property
+    def devices(self) -> Mapping[str, str]:
+        """Endpoint -> the interface to which it must be bound, because it is trusted for that."""
+        return {text: trust.device for text, trust in self._trusts.items() if trust.device}
+
+    @property
+    def notes(self) -> list[str]:
+        """What is said at the start of each trusted endpoint, and of names in the file that are not there."""
+        trusted = [] if self._required else [f"{text}: needs no key, {t.reason}" for text, t in self._trusts.items()]
+        return [*trusted, *(MISSING.format(name) for name in self._missing)]
 
     @property
     def warning(self) -> str | None:

@@ -16,7 +16,7 @@ from link.fleet.config import LEASE, THREADS, THREADS_VARIABLE, load_config, loa
 from link.fleet.transport import open_fleet
 from link.runtime.install_hint import install_command
 from link.signing.role import Role
-from link.transport.reach import is_private
+from link.transport.reach import find_trust
 from link.transport.transport import LinkError
 
 TLS = dict.fromkeys(
@@ -71,11 +71,12 @@ def test_a_file_says_who_and_what(tmp_path: Path) -> None:
 def test_only_a_router_with_certificates_is_trusted_without_keys(
     tmp_path: Path, content: dict[str, Any], private: bool
 ) -> None:
-    assert is_private(parse_endpoint(f"zenoh:{write(tmp_path, **content)}/farm/rover1")) is private
+    trust = find_trust(parse_endpoint(f"zenoh:{write(tmp_path, **content)}/farm/rover1"))
+    assert (trust is not None) is private
 
 
 def test_a_bare_router_is_a_network_also_on_this_computer() -> None:
-    assert not is_private(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm/rover1"))
+    assert not find_trust(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm/rover1"))
 
 
 @pytest.mark.parametrize(
@@ -118,7 +119,7 @@ def test_without_the_package_one_line_says_how_to_install_it(monkeypatch: pytest
     expected = f"fleets need the package eclipse-zenoh: {install_command('fleet')}"
     with pytest.raises(LinkError, match=f"^{re.escape(expected)}$"):
         open_fleet(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
-    assert not is_private(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
+    assert not find_trust(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
 
 
 def test_an_end_has_one_pool_of_threads_unless_the_user_chooses_others(monkeypatch: pytest.MonkeyPatch) -> None:

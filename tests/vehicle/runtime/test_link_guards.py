@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import socket
 from pathlib import Path
 
 import pytest
 
-from link.endpoint import parse_endpoint
 from link.links import open_links
 from link.signing.key_actions import make_key
 from link.signing.key_file import FILE
 from link.signing.memory_file import load_memory
 from link.signing.role import Role
-from link.transport.reach import is_private
 from tests.link.frames import heartbeat
 from tests.link.signing.signed import ARM, HERE, STRANGER, signed
 from tests.ports import free_port
@@ -23,25 +20,6 @@ from vehicle.config.run_settings import SettingsError
 from vehicle.config.signing import SigningSettings, build_policy
 from vehicle.runtime.key_keeper import KeyKeeper
 from vehicle.runtime.link_guards import NO_STATE, NOBODY, LinkGuards
-
-
-@pytest.mark.parametrize(
-    ("endpoint", "private"),
-    [
-        ("serial:/dev/ttyAMA0:57600", True),
-        ("udpin:127.0.0.1:14550", True),
-        ("tcpin:[::1]:5760", True),
-        ("udpout:127.3.0.1:14550", True),
-        ("udpout:localhost:14550", True),
-        ("udpin:0.0.0.0:14550", False),
-        ("tcpin:[::]:5760", False),
-        ("udpin:192.0.2.7:14550", False),
-        ("udpout:no-such-host.invalid:14550", False),
-        ("udpout:\udcff:14550", False),
-    ],
-)
-def test_what_a_network_reaches(endpoint: str, private: bool) -> None:
-    assert is_private(parse_endpoint(endpoint)) is private
 
 
 def guards(settings: SigningSettings, endpoint: str, keys: KeyKeeper | None = None) -> LinkGuards:
@@ -56,6 +34,22 @@ def test_the_start_says_what_to_do_in_one_line() -> None:
     for settings in (SigningSettings(), SigningSettings(allow_unsigned=True)):
         assert guards(settings, "udpin:127.0.0.1:14550").warning is None
         assert guards(settings, "udpin:127.0.0.1:14550").arming_note is None
+
+
+def test_the_start_says_which_endpoint_is_trusted_and_why() -> None:
+    made = LinkGuards(
+        SigningSettings(private=("wg9",)),
+        ["serial:/dev/ttyS0:57600", "udpin:127.0.0.1:1", "udpin:0.0.0.0:2"],
+        None,
+        None,
+        0,
+    )
+    assert made.notes == [
+        "serial:/dev/ttyS0:57600: needs no key, a cable",
+        "udpin:127.0.0.1:1: needs no key, only this computer",
+        "signing.private: there is no interface wg9 now; when it has come, restart the vehicle to trust it",
+    ]
+    assert str(made.warning).startswith("udpin:0.0.0.0:2: ")
 
 
 def test_signing_that_is_required_without_a_key_does_not_start() -> None:
@@ -96,6 +90,11 @@ def test_what_it_says_to_do_closes_the_network(tmp_path: Path) -> None:
         ("required = true\nallow_unsigned = true", "required and allow_unsigned contradict each other"),
         ("open_stops = false", "false needs required = true"),
         ("open = true", "unknown key"),
+        ('private = ["wg*"]', "signing.private: 'wg.' is no name of a network interface"),
+        ('private = ["wg0", "a/b"]', "'a/b' is no name"),
+        ('private = [""]', "'' is no name"),
+        ('private = ["tailscale0-too-long"]', "write each as `ip link` shows it"),
+        ('private = "wg0"', "private"),
         ("required = 1", "required"),
     ],
 )
@@ -126,14 +125,3 @@ def test_without_keys_a_trusted_link_costs_nothing_and_the_first_key_guards_it(t
         for link in links:
             link.close()
         keys.close()
-
-
-def test_the_address_of_a_tunnel_is_private(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """The computer's own interfaces, one of them declared a tunnel by its kind."""
-    name = next(name for _, name in socket.if_nameindex() if name == "lo")
-    (tmp_path / name).mkdir()
-    (tmp_path / name / "type").write_text("65534\n")
-    monkeypatch.setattr("link.transport.reach.INTERFACES", tmp_path)
-    monkeypatch.setattr("link.transport.reach.is_loopback", lambda host: False)
-    assert is_private(parse_endpoint("udpin:127.0.0.1:14550"))
-    assert not is_private(parse_endpoint("udpin:0.0.0.0:14550"))

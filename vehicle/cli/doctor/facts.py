@@ -63,6 +63,10 @@ class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     signing: SigningSettings = msgspec.field(default_factory=SigningSettings)
     open_links: tuple[str, ...] = ()
     """Endpoints that a whole network reaches."""
+    trusted_links: Mapping[str, str] = msgspec.field(default_factory=dict)
+    """Endpoints that need no key -> why."""
+    missing_interfaces: tuple[str, ...] = ()
+    """Those of signing.private that this computer does not have now."""
     keys: tuple[str, ...] = ()
     """Keys for signing: name, role, fingerprint."""
     key_problem: str = ""

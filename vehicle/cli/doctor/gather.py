@@ -19,7 +19,7 @@ from typing import Any
 from link.endpoint import parse_endpoint
 from link.runtime.toml_file import read_toml
 from link.signing.key_file import FILE, KeyFileError, load_keys
-from link.transport.reach import is_private
+from link.transport.reach import find_trust, missing_interfaces
 from link.transport.serial_ports import find_holders
 from vehicle.cli.check import run_checks
 from vehicle.cli.doctor.facts import Clock, Device, DoctorFacts, Space
@@ -62,6 +62,7 @@ def _of_file(path: str, state: str | None) -> dict[str, Any]:
     logs = Path(config.log.tlog) if config.log.tlog else effective.folder / LOGS
     ports = list(dict.fromkeys(name for name in taken if name.startswith("/")))
     buses = sorted({f"/dev/i2c-{found[1]}" for name in taken if (found := _BUS.search(name))})
+    trusts = {text: find_trust(parse_endpoint(text), config.signing.private) for text in config.endpoints}
     return {
         "pins": tuple(name for name in taken if name.startswith("GPIO ")),
         "simulated_pins": os.environ.get("GPIOZERO_PIN_FACTORY") == "mock",
@@ -69,7 +70,9 @@ def _of_file(path: str, state: str | None) -> dict[str, Any]:
         "buses": tuple(_device(each) for each in buses),
         "serial": read_ports(ports),
         "signing": config.signing,
-        "open_links": tuple(text for text in config.endpoints if not is_private(parse_endpoint(text))),
+        "open_links": tuple(text for text, trust in trusts.items() if trust is None),
+        "trusted_links": {text: trust.reason for text, trust in trusts.items() if trust is not None},
+        "missing_interfaces": tuple(missing_interfaces(config.signing.private)),
         **_keys(effective.folder / FILE),
         "params": {name: effective.params[name] for name in ("FS_PI_TEMP", "LOG_FILE_MB_FREE")},
         "spaces": tuple(_space(each) for each in (effective.folder, logs)),

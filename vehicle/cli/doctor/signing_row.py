@@ -7,6 +7,7 @@ from vehicle.cli.doctor.check_rows import AFTER_CONFIG
 from vehicle.cli.doctor.facts import DoctorFacts
 
 NEW_KEY = "vehicle key new NAME, then install it at the ground station (docs/security.md)"
+SHOWN = "write each name under [signing] private as `ip link` shows it, and restart after the tunnel has come up"
 CLOSE = "remove allow_unsigned; each ground station then needs a key (docs/security.md)"
 
 
@@ -19,8 +20,11 @@ def signing(facts: DoctorFacts) -> Finding:
     keys = f"keys: {', '.join(facts.keys)}" if facts.keys else "no key"
     if facts.signing.required:
         return ok(f"{keys}; nothing unsigned is obeyed") if facts.keys else fault("required, but no key", NEW_KEY)
+    if facts.missing_interfaces:
+        return warn(f"private names no interface of now: {', '.join(facts.missing_interfaces)}", SHOWN)
     if not facts.open_links:
-        return ok(f"{keys}; no link is open to a network")
+        reasons = ", ".join(dict.fromkeys(facts.trusted_links.values()))
+        return ok(f"{keys}; no link is open to a network: {reasons}")
     links = ", ".join(facts.open_links)
     if facts.signing.allow_unsigned:
         return warn(f"{links}: everybody in the network may drive (allow_unsigned)", CLOSE)
