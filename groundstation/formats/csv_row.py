@@ -9,12 +9,15 @@ from collections.abc import Iterable
 FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 """How a cell begins that spreadsheets calculate (OWASP, CSV injection)."""
 
+END = "\r\n"
+
 
 def csv_row(cells: Iterable[object]) -> str:
     """Return one line without its end. A text that a spreadsheet would calculate gets a quote before it."""
     out = io.StringIO()
-    csv.writer(out, lineterminator="").writerow([_plain(cell) if isinstance(cell, str) else cell for cell in cells])
-    return out.getvalue()
+    writer = csv.writer(out, lineterminator=END)  # it quotes a cell with a character of the end of a line
+    writer.writerow([_plain(cell) if isinstance(cell, str) else cell for cell in cells])
+    return out.getvalue().removesuffix(END)
 
 
 def _plain(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 
 import pytest
 from hypothesis import given
@@ -15,7 +16,7 @@ from groundstation.formats.csv_row import FORMULAS, csv_row
     "text", ['=HYPERLINK("http://evil")', "=cmd|' /C calc'!A0", "@SUM(1)", "-2+3", "+1-1", "\t=1", "\r=1", "-", "=1"]
 )
 def test_a_formula_of_a_vehicle_is_a_text(text: str) -> None:
-    assert next(csv.reader([csv_row([text])])) == [f"'{text}"]
+    assert next(csv.reader(io.StringIO(csv_row([text]), newline=""))) == [f"'{text}"]
 
 
 @pytest.mark.parametrize("number", [-2, -0.5, "-2", "+3.5", "-1e-07", "-inf", "nan"])
