@@ -108,4 +108,7 @@ class VerbPort:
 def _heard(received: Received) -> HeardMessage:
     place = (received.system, received.component, received.sequence, received.peer.link)
     payload = codec.encode_payload(received.message)
-    return HeardMessage(type(received.message).id, *place, payload, received.peer.name)
+    address = received.peer.address
+    where = f"{address[0]}:{address[1]}" if isinstance(address, tuple) else str(address)
+    name, numbering = received.peer.name, received.numbering
+    return HeardMessage(type(received.message).id, *place, payload, name, where, numbering, received.clash)

@@ -73,6 +73,10 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """The vehicle reports an emergency stop, or we have requested one."""
     emergency_progress: EmergencyProgress | None = None
     """Our request, while the vehicle does not report an emergency stop itself; else None."""
+    stop_doubt: str = ""
+    """Which sender of its id does not report that our emergency stop is done, in words."""
+    twins: str = ""
+    """Senders that use its id and are several vehicles, in words."""
     position: tuple[float, float] | None = None
     """North, east of the origin, m."""
     home: tuple[float, float] | None = None
@@ -268,6 +272,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """One line for each vehicle that this station armed and would leave armed if it ended now."""
     id_conflict: str | None = None
     """Another ground station that uses our system id, as a text for the driver."""
+    blind_stop: str = ""
+    """What is known of a stop that goes to vehicles that are not heard; "" while none does."""
     handover: HandoverNotice | None = None
     """A request of another ground station that waits for the operator's answer."""
     operator: OperatorView = OperatorView()

@@ -6,8 +6,8 @@ import math
 
 from dialects.enums import Command, Result, Severity, result_name
 from groundstation.snapshot.log_origin import LogOrigin
-from groundstation.station.emergency import DANGEROUS
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.stop_commands import DANGEROUS
 from link.services.command.client import CommandOutcome
 
 REASON_WITHIN = 1.0

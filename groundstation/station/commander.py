@@ -7,13 +7,16 @@ import msgspec
 from dialects.enums import Command, Result, Severity
 from dialects.kinds import MANUAL
 from dialects.messages import Message
+from dialects.mode_tables import HOLD
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.arming import ArmSequence, ArmStep, send_mode
 from groundstation.station.claims import Claims
 from groundstation.station.command_results import CommandResults
-from groundstation.station.emergency import DANGEROUS, EmergencyLock
+from groundstation.station.emergency import EmergencyLock
 from groundstation.station.stop_questions import FALLS, StopQuestions
+from groundstation.vehicles.blind_stop import BlindStop
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.stop_commands import DANGEROUS, DISARM, StopKind, hold_command, send_stop
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -23,6 +26,10 @@ QUERY_COMMANDS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
 
 DISARM_RETRY, DISARM_TIMEOUT = 1.5, 6.0
 """s after which disarm is repeated while the heartbeat reports armed, and after which that is reported as a failure."""
+
+
+BLIND_FOR = 30.0
+"""s for which a blind stop is repeated, as one of a verb: a radio link may be cut for some seconds."""
 
 
 class _Disarm(msgspec.Struct):
@@ -43,6 +50,12 @@ class Commander:
         self._locks: dict[int, EmergencyLock] = {}
         self._claims = Claims()
         self._stop_questions = StopQuestions()
+        self._ids = (system, component)
+        self._blind: BlindStop | None = None
+        self._blind_until = 0.0
+        self._late: set[int] = set()
+        """Vehicles that were heard while the blind stop was sent."""
+        self._outbox: list[Outgoing] = []
         self._vehicles: dict[int, VehicleState] = {}
         """Vehicles that were sent a command, by system id."""
         self._query_outcomes: list[CommandOutcome] = []
@@ -71,7 +84,8 @@ class Commander:
         """Disarm, and repeat until the heartbeat agrees: the vehicle may still act on an earlier arm command."""
         self._arming = None
         self._disarms[vehicle.system] = _Disarm(vehicle, now + DISARM_RETRY, now + DISARM_TIMEOUT)
-        self._send(vehicle, now, Command.COMPONENT_ARM_DISARM, 0)
+        self._vehicles[vehicle.system] = vehicle
+        send_stop(self._client, vehicle, DISARM, now)
 
     def release_control(self, vehicle: VehicleState, now: float, *, station: int = 0) -> None:
         """Release control: at once as far as we are concerned, and with a command for a vehicle that manages it.
@@ -83,7 +97,10 @@ class Commander:
 
     def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
         """Change the mode to the one of this name (dialects/kinds.py); refused if its kind has no such mode."""
-        if send_mode(self._client, vehicle, name, now):
+        hold = hold_command(vehicle) if name == HOLD else None
+        if hold is not None:
+            send_stop(self._client, vehicle, hold, now)
+        if hold is not None or send_mode(self._client, vehicle, name, now):
             self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {name}")
             return
         why = vehicle.model.refusal or f"it has no mode {name}"
@@ -100,8 +117,37 @@ class Commander:
         self._locks[vehicle.system] = EmergencyLock(vehicle, now)
         self.tick(now)
 
+    def stop_blindly(self, now: float, kind: StopKind = StopKind.EMERGENCY) -> None:
+        """Stop all vehicles, also those that are not heard: they may hear us without having a place for us."""
+        if self._blind is None or self._blind.kind is not StopKind.EMERGENCY:
+            self._log.add(now, "station", f"{kind.value.upper()} sent to all vehicles (system 0)", Severity.EMERGENCY)
+            self._blind, self._late = BlindStop(kind, 0, self._ids, now), set()
+        self._blind_until = now + BLIND_FOR
+        self.tick(now)
+
+    @property
+    def blind_stop(self) -> BlindStop | None:
+        """The stop that goes to vehicles that are not heard, while it is sent."""
+        return self._blind
+
+    def stop_late(self, vehicle: VehicleState, now: float) -> None:
+        """Stop a vehicle that is heard after the stop of all, in its own form, until it reports it."""
+        kind = self._blind.kind if self._blind is not None and vehicle.system not in self._late else None
+        self._late.add(vehicle.system)
+        if kind is StopKind.EMERGENCY and vehicle.system not in self._locks:
+            self.emergency_stop(vehicle, now)
+        elif kind is StopKind.DISARM:
+            self.disarm(vehicle, now)
+        elif kind is StopKind.HOLD:
+            self.set_mode(vehicle, HOLD, now)
+
+    def describe_blind_stop(self) -> str:
+        """Return what is known of the stop of vehicles that are not heard; "" while none is sent."""
+        return f"{self._blind.kind.value.upper()} {self._blind.describe()}" if self._blind is not None else ""
+
     def clear_emergency_stop(self, vehicle: VehicleState, now: float) -> None:
         """Release the lock; it stays until the vehicle has accepted."""
+        self._blind = None
         if vehicle.system in self._locks or vehicle.emergency_stop:
             self._locks.setdefault(vehicle.system, _answered_lock(vehicle, now)).clear(self._client, now)
 
@@ -142,7 +188,8 @@ class Commander:
     @property
     def busy(self) -> bool:
         """Whether a command is under way or is to be repeated."""
-        return self._arming is not None or bool(self._disarms or self._locks) or self._client.busy
+        stopping = self._disarms or self._locks or self._blind
+        return self._arming is not None or bool(stopping) or self._client.busy
 
     def is_pending(self, command: Command, vehicle: VehicleState) -> bool:
         """Return whether this vehicle has not acknowledged a command of this kind yet."""
@@ -173,6 +220,11 @@ class Commander:
         self._client.receive(received, now)
         self._handle_outcomes(now)
 
+    def receive_of_unheard(self, received: Received) -> None:
+        """Take an answer to a blind stop."""
+        if self._blind is not None:
+            self._blind.receive(received)
+
     def handle_refused(self, message: Message, why: str, now: float) -> None:
         """End the command whose message is not sent, because our role does not allow it."""
         self._client.refuse(message, why)
@@ -187,6 +239,7 @@ class Commander:
         self._claims.update(now)
         for lock in self._locks.values():
             lock.tick(self._client, now)
+        self._send_blind_stop(now)
         if self._arming is not None:
             self._arming.tick(self._client, now)
             self._end_arming(self._arming, now)
@@ -197,7 +250,8 @@ class Commander:
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""
-        return self._client.messages_to_send()
+        outbox, self._outbox = self._outbox, []
+        return outbox + self._client.messages_to_send()
 
     # ---- results ----
 
@@ -208,14 +262,24 @@ class Commander:
 
     def _retry_disarm(self, disarm: _Disarm, now: float) -> None:
         vehicle = disarm.vehicle
-        if not vehicle.armed:
+        doubt = vehicle.senders.find_doubt(now)
+        if not doubt:
             del self._disarms[vehicle.system]
         elif now >= disarm.until:
             del self._disarms[vehicle.system]
-            self._results.add_refusal(vehicle.system, f"disarm: {vehicle.name} still reports armed", now)
+            self._results.add_refusal(vehicle.system, f"disarm: {vehicle.name}: {doubt}", now)
         elif now >= disarm.due and not self.is_pending(Command.COMPONENT_ARM_DISARM, vehicle):
             disarm.due = now + DISARM_RETRY
-            self._send(vehicle, now, Command.COMPONENT_ARM_DISARM, 0)
+            send_stop(self._client, vehicle, DISARM, now)
+
+    def _send_blind_stop(self, now: float) -> None:
+        if self._blind is not None and now >= self._blind_until:
+            self._log.add(now, "station", self.describe_blind_stop(), Severity.CRITICAL)
+            self._blind = None
+        elif self._blind is not None:
+            self._outbox += [
+                Outgoing(message) for message in self._blind.tick(now, heard=bool(self._late or self._vehicles))
+            ]
 
     def _end_arming(self, arming: ArmSequence, now: float) -> None:
         if arming.step is ArmStep.DONE and self._arming is arming:

@@ -11,14 +11,9 @@ import msgspec
 
 from dialects.enums import Command, Result
 from groundstation.snapshot import EmergencyProgress
+from groundstation.vehicles.stop_commands import DANGEROUS, FORCED, LOCK, SAFE, send_stop
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.services.command.client import CommandClient, CommandOutcome
-
-SAFE, DANGEROUS = 0, 1
-"""SAFETY_SWITCH_STATE: motors off and locked; motors may run."""
-
-FORCE_DISARM = 21196
-"""Parameter 2 of COMPONENT_ARM_DISARM: disarm even while moving (common.xml)."""
 
 RETRY_PERIOD = 0.5
 """s between rounds of requests; within a round the command client repeats each command (0.35 s)."""
@@ -40,6 +35,8 @@ class EmergencyLock(msgspec.Struct):
     """The forced disarm was acknowledged, with whatever result."""
     accepted: bool = False
     """The vehicle has accepted one of the two."""
+    switched: bool = False
+    """It has accepted the safety switch command, so that it is locked until the release."""
     clearing: bool = False
     """The operator has requested the release; requesting the stop meanwhile would race with that."""
 
@@ -49,14 +46,24 @@ class EmergencyLock(msgspec.Struct):
             return
         self.due = now + RETRY_PERIOD
         if not self.switch_answered:
-            self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, SAFE)
-        if not self.disarm_answered or self.vehicle.armed:
-            self._send(client, now, Command.COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
+            send_stop(client, self.vehicle, LOCK, now)
+        if not self.disarm_answered or self.doubt(now):
+            send_stop(client, self.vehicle, FORCED, now)
 
     def clear(self, client: CommandClient, now: float) -> None:
         """Request the release of the lock."""
         self.clearing = True
-        self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, DANGEROUS)
+        client.send(
+            Command.DO_SET_SAFETY_SWITCH_STATE,
+            DANGEROUS,
+            target_system=self.vehicle.system,
+            target_component=self.vehicle.component,
+            now=now,
+        )
+
+    def doubt(self, now: float) -> str:
+        """Return which sender of its id does not report that it is disarmed; "" if the last report of each does."""
+        return self.vehicle.senders.find_doubt(now)
 
     def progress(self, now: float) -> EmergencyProgress:
         """Return how far the request is."""
@@ -70,6 +77,7 @@ class EmergencyLock(msgspec.Struct):
         """Record the acknowledgement of a command of this vehicle, or that none came after all repeats."""
         if _requests_stop(outcome) and outcome.result is Result.ACCEPTED:
             self.accepted = True
+            self.switched |= outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE
         if outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE:
             if outcome.params[0] == DANGEROUS:
                 self.clearing = False
@@ -77,15 +85,6 @@ class EmergencyLock(msgspec.Struct):
                 self.switch_answered = True
         elif outcome.command == Command.COMPONENT_ARM_DISARM and outcome.result is not None:
             self.disarm_answered = True
-
-    def _send(self, client: CommandClient, now: float, command: Command, *params: float) -> None:
-        client.send(
-            command,
-            *params,
-            target_system=self.vehicle.system,
-            target_component=self.vehicle.component,
-            now=now,
-        )
 
 
 def _requests_stop(outcome: CommandOutcome) -> bool:

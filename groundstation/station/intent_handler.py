@@ -161,7 +161,10 @@ class IntentHandler:
             self._commander.set_mode(selected.state, HOLD, now)  # neutral sticks do not stop a mission
 
     def _emergency_stop(self, intent: EmergencyStop, now: float) -> None:
-        """Stop the selected vehicle and those that we armed or drove; the second request in a row stops all."""
+        """Stop the selected vehicle and those that we armed or drove; the second request in a row stops all.
+
+        All are also those that are not heard, and without a vehicle the first request goes to all.
+        """
         self._operator.sticks.block(now)
         everything, self._emergency_at = now - self._emergency_at <= SECOND_STOP_WITHIN, now
         for contact in self._fleet:
@@ -170,8 +173,8 @@ class IntentHandler:
             elif contact.state.armed:
                 text = f"{contact.state.name} is armed, too: a second emergency stop stops all vehicles"
                 self._log.add(now, "station", text, Severity.CRITICAL)
-        if self._fleet.selected is None:
-            self._log.add(now, "station", "no vehicle yet", Severity.WARNING)
+        if everything or self._fleet.selected is None:
+            self._commander.stop_blindly(now)
 
     def _scale_limits(self, intent: ScaleLimits, now: float) -> None:
         self._operator.sticks.scale_limits(intent)

@@ -49,6 +49,7 @@ from groundstation.vehicles.drive_gate import drive_refusal
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.motor_outputs import is_turn
+from groundstation.vehicles.stop_commands import StopKind
 from groundstation.views.doctor import DoctorRequest
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
@@ -172,6 +173,8 @@ class Station:
             self._receive_of_anybody(received, now)
         self.relay.receive(received, now)
         contact = self.fleet.get_or_add(received, now)
+        if contact is not None and self._commander.blind_stop is not None:
+            self._commander.stop_late(contact.state, now)
         autopilot = contact is not None and contact.state.component == received.component
         self._traffic.count(received.message, received.system, received.component, now, known=autopilot)
         if contact is None:
@@ -185,6 +188,10 @@ class Station:
         if not reading:
             self._receive_exchange(contact, received, now)
 
+    def stop_blindly(self, kind: StopKind, now: float) -> None:
+        """Stop all vehicles, also those that are not heard."""
+        self._commander.stop_blindly(now, kind)
+
     def _receive_of_anybody(self, received: Received, now: float) -> None:
         """Handle what other ground stations and components send as well as vehicles."""
         conflict = self._id_conflict.receive(received, now)
@@ -192,6 +199,7 @@ class Station:
             self.log.add(now, "station", conflict, Severity.WARNING)
         self._link_views.stations.receive(received, now)
         self.params.receive(received)
+        self._commander.receive_of_unheard(received)
 
     def _receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
         """Handle what answers a request, makes one, or decides on something."""
@@ -407,6 +415,7 @@ class Station:
             vehicle=self._vehicle.build(selected, now) if selected else None,
             left_armed=self.departure.left_armed(now),
             id_conflict=self._id_conflict.text(now),
+            blind_stop=self._commander.describe_blind_stop(),
             vehicles=self.fleet.system_ids,
             not_shown=self.fleet.not_shown,
             also_armed=self.fleet.also_armed,

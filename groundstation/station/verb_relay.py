@@ -29,7 +29,7 @@ from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
-from link.core import LinkReport, Outgoing, Received
+from link.core import LinkReport, Outgoing, Peer, Received
 
 FRESH = 3.0
 """s for which the newest message of a kind is news for a verb that connects."""
@@ -83,7 +83,8 @@ class VerbRelay:
         self.screen_that_drives: Callable[[], str | None] = lambda: None
         """Returns its name; None without one."""
         self._verbs: list[Verb] = []
-        self._newest: dict[tuple[int, int, int], tuple[Received, float]] = {}
+        self._newest: dict[tuple[int, int, int, Peer | None], tuple[Received, float]] = {}
+        """System, component and message id -> the newest; a HEARTBEAT of each sender, because two may have one id."""
         self._reports: tuple[LinkReport, ...] = ()
         self._endings: list[_Ending] = []
         self._arming: dict[int, float] = {}
@@ -124,7 +125,8 @@ class VerbRelay:
         if number not in ACKED:
             if len(self._newest) >= MAX_KINDS:
                 self._newest.clear()
-            self._newest[received.system, received.component, number] = (received, now)
+            peer = received.peer if number == m.Heartbeat.id else None
+            self._newest[received.system, received.component, number, peer] = (received, now)
         for verb in self._verbs:
             verb.deliver((received,))
         if isinstance(received.message, m.CommandAck):

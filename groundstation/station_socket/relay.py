@@ -11,7 +11,7 @@ import msgspec
 from groundstation.station_socket.hello import StationFailed
 from link.core import LinkReport
 
-VERSION = 2
+VERSION = 3
 """Of the packets below."""
 
 MAX_RELAYED = 1 << 16
@@ -56,6 +56,11 @@ class HeardMessage(msgspec.Struct, frozen=True, array_like=True):
     payload: bytes
     name: str = ""
     """Of its program in the fleet behind the link (link.core.Peer)."""
+    address: str = ""
+    """Where it came from, in words: two vehicles with one id are told apart by it."""
+    numbering: int = 0
+    clash: bool = False
+    """As in link.core.Received."""
 
 
 class Heard(msgspec.Struct, frozen=True, tag=True):

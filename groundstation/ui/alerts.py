@@ -57,6 +57,8 @@ def _station(now: DisplayState) -> Iterator[Alert]:
 
 def _emergency(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
+    if now.snapshot.blind_stop:
+        yield Alert(AlertLevel.DANGER, now.snapshot.blind_stop)
     if now.hold is None and vehicle is not None and vehicle.emergency_stop:
         clear = f"Hold {now.key('stop.clear')} to release it"
         yield Alert(AlertLevel.DANGER, emergency_text(vehicle, clear))
@@ -74,6 +76,8 @@ def emergency_text(vehicle: VehicleView, clear: str) -> str:
     """Return what is known of an emergency stop: only what the vehicle has confirmed is claimed."""
     progress = vehicle.emergency_progress
     request = "on" if progress is None else _PROGRESS[progress]
+    if vehicle.stop_doubt and (vehicle.twins or not vehicle.armed):
+        return f"EMERGENCY STOP {request}, but {vehicle.stop_doubt}"
     if vehicle.armed:
         return f"EMERGENCY STOP {request}, but the vehicle {_reports(vehicle)} ARMED"
     if progress is None:
@@ -195,6 +199,13 @@ def _id_conflict(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, now.snapshot.id_conflict)
 
 
+def _twins(now: DisplayState) -> Iterator[Alert]:
+    vehicle = now.snapshot.vehicle
+    if vehicle is not None and vehicle.twins:
+        text = f"system id {vehicle.system} is used by several vehicles: {vehicle.twins}"
+        yield Alert(AlertLevel.DANGER, text)
+
+
 def _obeys(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.obeys:
@@ -267,7 +278,8 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _handover, _state, _key, _gate, _obeys, _operator,
+    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _handover, _twins, _state, _key, _gate, _obeys,
+    _operator,
     _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording, _vehicles,
 )  # fmt: skip
 """Most urgent first."""

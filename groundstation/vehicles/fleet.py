@@ -202,7 +202,7 @@ class Fleet:
                 self._change_component(contact, received, now)
         if contact is not None or not is_vehicle(received.message):
             return contact
-        if len(self._contacts) >= MAX_VEHICLES:
+        if len(self._contacts) >= MAX_VEHICLES and not self._make_room(received, now):
             self._leave_out(received.system, now)
             return None
         self._not_shown.pop(received.system, None)
@@ -216,6 +216,7 @@ class Fleet:
             StateChanges(self._own_id[0]),
             VehicleDetails(state.component),
             DriveReadings(state, VehicleParams(*self._own_id, target=target)),
+            verified=received.signed,
         )
         self._contacts[received.system] = contact
         self._check_settings(contact)
@@ -247,6 +248,21 @@ class Fleet:
         self._check_settings(contact)
         if contact.services is not None:
             contact.services.change_component(component, now)
+
+    def _make_room(self, received: Received, now: float) -> bool:
+        """Give a vehicle that signs with a key of ours the place of one that does not; return whether there is one.
+
+        Ids are invented easily, signatures are not. The selected vehicle, and those that we armed or drove, stay.
+        """
+        if not received.signed:
+            return False
+        others = [each for each in self if not (each.verified or each.ours or each is self._selected)]
+        if not others:
+            return False
+        leaving = min(others, key=lambda each: (each.state.armed, each.state.heartbeat_at))
+        del self._contacts[leaving.state.system]
+        self._leave_out(leaving.state.system, now)
+        return True
 
     def _leave_out(self, system: int, now: float) -> None:
         """Count a vehicle for which there is no place; only the first is logged, so that a flood fills no log."""

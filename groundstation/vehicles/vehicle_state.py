@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Autopilot, DriveLimit, Failsafe, LandedState, ModeFlag, Sensor, SystemState, VehicleType
+from dialects.enums import Autopilot, DriveLimit, Failsafe, LandedState, Sensor, SystemState, VehicleType
 from dialects.kinds import find_kind
 from dialects.mode_tables import HOLD
 from groundstation.geo import LocalFrame, Place, Point
@@ -22,6 +22,7 @@ from groundstation.vehicles.key_to_motor import KeyTimings
 from groundstation.vehicles.latency import LatencyMeter
 from groundstation.vehicles.mode_list import ModeList
 from groundstation.vehicles.outputs import drive_names
+from groundstation.vehicles.senders import Senders
 from groundstation.vehicles.track import Track
 from groundstation.vehicles.values import all_finite, battery_values, drive_demand, flag_words, vehicle_name, within
 from link.core import Received
@@ -53,6 +54,8 @@ class VehicleState:
         self.fleet_name = ""
         """Its name in the fleet behind the link of its newest message; "" without one."""
         self.monitor = HeartbeatMonitor(LOST_AFTER)
+        self.senders = Senders()
+        """All that send HEARTBEATs of a vehicle with this system id."""
         self.change_component(component)
 
     def change_component(self, component: int) -> None:
@@ -92,6 +95,7 @@ class VehicleState:
         self.monitor.update(now)
         self.fleet_name = received.peer.name or self.fleet_name
         message = received.message
+        self.senders.receive(received, now)
         if received.component != self.component:
             return
         if (boot_time := getattr(message, "time_boot_ms", None)) is not None:
@@ -203,7 +207,7 @@ class VehicleState:
         self.autopilot = message.autopilot
         self.kind = message.type
         self.status = message.system_status
-        self.armed = bool(message.base_mode & ModeFlag.ARMED)
+        self.armed = self.senders.is_armed(self.component, now)
         self.model = find_kind(message.autopilot, message.type)
         self.mode = self.model.modes.get(message.custom_mode) or self.listed_modes.name_of(message.custom_mode)
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 
 from dialects import messages as m
 from dialects import rover
+from dialects.command_places import to_command_int
 from dialects.enums import Command
 from groundstation.vehicles.requests import RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
@@ -16,6 +18,7 @@ from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
 from link.core import Received
+from link.services.command.client import CommandPlace
 
 PREFIX = "MAV_CMD_"
 LARGEST = 65535
@@ -48,6 +51,15 @@ def check_command(options: argparse.Namespace) -> None:
         raise VerbError(ExitCode.USAGE, f"{options.name.upper()} steers, which is for one vehicle at a time: --vehicle")
     if len(options.params) > 7:
         raise VerbError(ExitCode.USAGE, f"{len(options.params)} parameters, but a command has 7")
+    options.place = find_place(options.number, options.params) if options.int else None
+
+
+def find_place(command: int, params: Sequence[float]) -> CommandPlace:
+    """Return the position of a COMMAND_INT from parameters 5 and 6 of a command. Raises VerbError."""
+    message = to_command_int(m.CommandLong(0, 0, command, 0, *params, *(0.0,) * (7 - len(params))))
+    if message is None:
+        raise VerbError(ExitCode.USAGE, "parameters 5 and 6 are too large for the integers of a COMMAND_INT")
+    return CommandPlace(message.frame, message.x, message.y)
 
 
 def find_command(text: str) -> int:
@@ -66,7 +78,9 @@ async def command(session: VerbSession, options: argparse.Namespace, output: Out
     """Send a command; done when the vehicle has accepted."""
     await session.need_only_vehicle(options.vehicle)
     commands, params, what = session.services.commands, tuple(options.params), options.name.upper()
-    report = await session.request(lambda number, now: commands.send(number, options.number, params, what, now))
+    report = await session.request(
+        lambda number, now: commands.send(number, options.number, params, what, now, options.place)
+    )
     return finish(session, report, output, f"has accepted {what}", command=options.number)
 
 

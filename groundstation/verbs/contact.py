@@ -55,6 +55,11 @@ class VehicleContact:
         self._jobs: list[Job] = []
 
     @property
+    def busy(self) -> bool:
+        """A request to it is under way."""
+        return bool(self._jobs or self.services.book.running)
+
+    @property
     def in_control(self) -> bool:
         """This program is in control, as the vehicle reports it."""
         return is_in_control(self.state, self.ids, self.session)

@@ -45,6 +45,8 @@ class VerbCore:
         """The newest of each link."""
         self.heard: dict[tuple[int, type[m.Message]], float] = {}
         """System id and kind -> when the newest such message arrived, also the first ones, before any tap."""
+        self.frames_sent = 0
+        """On links of this program; each address counts."""
         self.taps: list[Tap] = []
         """Called with each message that arrives."""
         self.has_heard_all = False
@@ -53,7 +55,8 @@ class VerbCore:
         """The watchdog of a verb that sends demands."""
         self.outbox: list[m.Message] = []
         """Messages of a verb, to all or to their target."""
-        self._ids = ids
+        self.ids = ids
+        """Our system and component id."""
         self._wanted = wanted
         self._session = session
         self._heartbeat = HeartbeatSender(0.0)
@@ -75,6 +78,10 @@ class VerbCore:
         if self.chosen is None and not self.has_heard_all:
             self._choose(now)
         self._look()
+
+    def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
+        """Count a frame that has left on a link of this program."""
+        self.frames_sent += 1
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:
         """Take that a message was not sent, because the role of this program does not allow it."""
@@ -123,11 +130,22 @@ class VerbCore:
 
     def _add(self, received: Received, now: float) -> None:
         contact = self.contacts.get(received.system)
-        if contact is None and len(self.contacts) < MAX_VEHICLES:
+        if contact is None and (len(self.contacts) < MAX_VEHICLES or self._make_room(received)):
             target = (received.system, received.component)
-            contact = self.contacts[received.system] = VehicleContact(self._ids, self._session, target, now)
+            contact = self.contacts[received.system] = VehicleContact(self.ids, self._session, target, now)
         elif contact is not None and replaces(received.component, contact.state.component):
             contact.change_component(received.component, now)
+
+    def _make_room(self, received: Received) -> bool:
+        """Give the vehicle that is meant, or one that signs with a key of ours, the place of one that does not."""
+        meant = self._wanted is not None and is_chosen(self._wanted, received.system, received.peer.name)
+        if not meant and not received.signed:
+            return False
+        others = [each for each in self.contacts.values() if not each.verified and each is not self.chosen]
+        idle = [each for each in others if not each.busy]
+        if idle:
+            del self.contacts[min(idle, key=lambda each: each.state.heartbeat_at).state.system]
+        return bool(idle)
 
     def _choose(self, now: float) -> None:
         """Choose the vehicle. One that is not heard as an autopilot yet may be a script on board of it."""

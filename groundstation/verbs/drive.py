@@ -39,7 +39,7 @@ from groundstation.verbs.local_file import read_text
 from groundstation.verbs.output import Output
 from groundstation.verbs.reports import finish
 from groundstation.verbs.session import VerbSession
-from groundstation.verbs.stop_jobs import EmergencyJob
+from groundstation.verbs.stop_jobs import EmergencyJob, StopTimes
 from groundstation.verbs.stops import run_job
 
 LOOK_PERIOD = 0.01
@@ -160,6 +160,8 @@ async def _carry_out(session: VerbSession, intent: Intent) -> None:
         report = await run_job(
             session,
             "emergency stop",
-            lambda number, now: EmergencyJob(number, EmergencyLock(contact.state, now), until),
+            lambda number, now: EmergencyJob(
+                number, EmergencyLock(contact.state, now), StopTimes(now, session.sure_at, until)
+            ),
         )
     need_accepted(report, session)

@@ -15,7 +15,7 @@ from groundstation.verbs.control import ask_for_control
 from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.kinds import need_driven
 from groundstation.verbs.session import TOLD_WITHIN, VerbSession
-from groundstation.verbs.stop_jobs import disarm_job
+from groundstation.verbs.stop_jobs import StopTimes, disarm_job
 from groundstation.verbs.stops import run_job
 
 DISARM_WITHIN = 10.0
@@ -89,8 +89,8 @@ def need_accepted(report: RequestReport, session: VerbSession) -> None:
 
 async def disarm_vehicle(session: VerbSession) -> RequestReport:
     """Disarm, repeated until the heartbeat reports it."""
-    state, until = session.vehicle, session.now + DISARM_WITHIN
-    return await run_job(session, "disarm", lambda number, now: disarm_job(number, state, until))
+    state, times = session.vehicle, StopTimes(session.now, session.sure_at, session.now + DISARM_WITHIN)
+    return await run_job(session, "disarm", lambda number, now: disarm_job(number, state, times))
 
 
 async def leave(session: VerbSession, *, disarm: bool) -> RequestReport | None:

@@ -18,7 +18,7 @@ from dialects.extra.errors import DialectError
 from dialects.extra.option import use_dialect
 from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
 from groundstation.formats.errors import FileFormatError
-from groundstation.station_socket.hello import VERB, Hello
+from groundstation.station_socket.hello import HELLO_WITHIN, VERB, Hello
 from groundstation.station_socket.relay import VERSION
 from groundstation.verbs.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.endpoints import choose_endpoints, config_error, link_error, remember
@@ -44,8 +44,14 @@ if TYPE_CHECKING:
 
 many = LaterModule("many")
 
+STOP_WITHIN = 0.5
+"""s for a station to answer before a stop goes without it: it may hang."""
+
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
+
+STOP_WAIT = 30.0
+"""s for which a stop is sent to a vehicle that is not heard: a radio link may be cut for some seconds."""
 
 HELP_ALL = "all vehicles that are heard, at once; prints a table, and the exit code is the worst"
 HELP_GROUP = "likewise: a name of [groups] in the config file, system ids as 1-20,31, or a pattern of names"
@@ -123,7 +129,8 @@ async def _run(
     async def script(session: VerbSession) -> int:
         if group is not None:
             return await _run_for_group(session, action, options, output, group, " ".join(endpoints))
-        await _prepare(session, action, options, " ".join(endpoints))
+        session.where = " ".join(endpoints)
+        await _prepare(session, action, options, session.where)
         _keep(session, kept, output)
         if action.finds and options.endpoints:
             remember(endpoints, session.vehicle.name)
@@ -166,9 +173,19 @@ async def _run_for_group(
     group: VehicleGroup,
     where: str,
 ) -> int:
-    await session.find_vehicle(options.wait, None, where)
-    code: int = await many.ManyVehicles(session, action, options, group, output).run()
-    return code
+    session.where = where
+    if action.stops:
+        from groundstation.verbs.stops import stop_unheard
+
+        systems = group.listed or ((0,) if options.all else ())
+        sending = asyncio.ensure_future(stop_unheard(session, output.verb, systems))
+    try:
+        await session.find_vehicle(options.wait, None, where)
+        code: int = await many.ManyVehicles(session, action, options, group, output).run()
+        return code
+    finally:
+        if action.stops:
+            sending.cancel()
 
 
 def _find_way(
@@ -181,7 +198,14 @@ def _find_way(
 
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
     hello = Hello(VERB, VERSION, f"groundstation {output.verb}", takes_part=not action.watches, follows=action.follows)
-    station = find_station(options.through, endpoints, hello, output.note)
+    try:
+        within = STOP_WITHIN if action.stops else HELLO_WITHIN
+        station = find_station(options.through, endpoints, hello, output.note, within)
+    except VerbError as error:
+        if not action.stops or options.through != AUTO:
+            raise
+        output.note(f"{error}; this stop opens links of its own")
+        station = None
     if station is not None:
         return station, station.ready.endpoints
     return None, endpoints or choose()
@@ -205,7 +229,7 @@ def _start_guard(ids: tuple[int, int], signing: SigningKeeper | None) -> DemandG
 
 def _keep(session: VerbSession, kept: KeptSession, output: Output) -> None:
     """Prove the session of the verb before if this one follows it, so that the vehicle misses no ground station."""
-    if not kept.follows:
+    if not kept.follows or session.core.chosen is None:
         return
     contact = session.contact
     contact.operator.may_prove = kept.may_prove
@@ -281,7 +305,8 @@ def _add_common(parser: argparse.ArgumentParser, action: VerbAction) -> None:
     add("-v", "--vehicle", type=vehicle_id, metavar="ID", help="its system id or name (default: the only vehicle)")
     add("--all", action="store_true", help=HELP_ALL if action.many else argparse.SUPPRESS)
     add("--group", metavar="GROUP", help=HELP_GROUP if action.many else argparse.SUPPRESS)
-    add("--wait", type=seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
+    wait = STOP_WAIT if action.stops else 10.0
+    add("--wait", type=seconds, default=wait, metavar="S", help=f"for the vehicle's heartbeat (default: {wait:g})")
     add(
         "--station",
         dest="through",

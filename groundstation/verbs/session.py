@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.station.operator import NEUTRAL_LEAD
+from groundstation.vehicles.places import PLACES
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.vehicle_state import VehicleState
@@ -60,6 +61,8 @@ class VerbSession:
         self._contact = contact
         self._count = 0
         self._ended: dict[int, RequestReport] = {}
+        self.where = ""
+        """The endpoints, for texts."""
         self.began = self.now
         """When the verb began."""
         self.afterwards = "; this program no longer sends heartbeats"
@@ -69,6 +72,21 @@ class VerbSession:
     def now(self) -> float:
         """The time of the loop's clock, s."""
         return asyncio.get_running_loop().time()
+
+    @property
+    def known(self) -> bool:
+        """This session is about one vehicle that was heard."""
+        return self._contact is not None
+
+    @property
+    def sure_at(self) -> float:
+        """From when on every sender of an id was heard that sends once a second; a station has heard them before."""
+        return self.began if self.core.has_heard_all else self.began + ALONE_AFTER
+
+    @property
+    def names(self) -> tuple[int, str]:
+        """System id of the vehicle and its name in its fleet, once it was heard."""
+        return self.vehicle.system, self.vehicle.fleet_name
 
     @property
     def contact(self) -> VehicleContact:
@@ -235,7 +253,7 @@ async def run_session(
         from link.links import open_links
         from link.runner import Runner  # a verb through a station does without
 
-        links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION)
+        links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION, places=PLACES)
         sent = guard.record_sent if guard else None
         runner = Runner(core, links, period=PERIOD, route=False, log_tap=log_tap, sent=sent, signing=signing)
     running = asyncio.ensure_future(runner.run())

@@ -13,7 +13,7 @@ from dialects import codec
 from dialects.messages import MESSAGES
 from groundstation.station_socket.connect import NoStationError, connect, running_stations
 from groundstation.station_socket.folder import FolderError
-from groundstation.station_socket.hello import Hello, StationFailed
+from groundstation.station_socket.hello import HELLO_WITHIN, Hello, StationFailed
 from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.relay import (
     ALIVE_PERIOD,
@@ -52,10 +52,10 @@ class StationLink:
         self.ready = ready
 
     @classmethod
-    def open(cls, pid: int, hello: Hello) -> StationLink:
+    def open(cls, pid: int, hello: Hello, within: float = HELLO_WITHIN) -> StationLink:
         """Connect to the station with this process id. Raises VerbError."""
         try:
-            sock = connect(pid, hello)
+            sock = connect(pid, hello, within)
         except (NoStationError, FolderError) as error:
             raise VerbError(ExitCode.USAGE, str(error)) from error
         try:
@@ -71,17 +71,21 @@ class StationLink:
 
 
 def find_station(
-    choice: str, endpoints: Sequence[str], hello: Hello, note: Callable[[str], None]
+    choice: str,
+    endpoints: Sequence[str],
+    hello: Hello,
+    note: Callable[[str], None],
+    within: float = HELLO_WITHIN,
 ) -> StationLink | None:
     """Return the station that a verb goes through; None: it opens links of its own. Raises VerbError.
 
     With `endpoints`, those that the user named, a station counts only if it has them open. `note` gets why stations
-    cannot be looked for.
+    cannot be looked for. A station that does not answer `within` s is none.
     """
     if choice == NEVER:
         return None
     if choice.isdecimal():
-        return StationLink.open(int(choice), hello)
+        return StationLink.open(int(choice), hello, within)
     try:
         pids = running_stations()
     except FolderError as error:
@@ -89,23 +93,23 @@ def find_station(
             note(f"no running station is used: {error}")
             return None
         raise VerbError(ExitCode.USAGE, str(error)) from error
-    found = _matching(pids, endpoints, hello) if endpoints else pids
+    found = _matching(pids, endpoints, hello, within) if endpoints else pids
     if len(found) > 1:
         raise VerbError(ExitCode.USAGE, f"stations {', '.join(map(str, found))} run here: name one with --station PID")
     if found:
-        return StationLink.open(found[0], hello)
+        return StationLink.open(found[0], hello, within)
     if choice == ONLY:
         which = f"no station here has {' '.join(endpoints)} open" if pids else "no station runs here"
         raise VerbError(ExitCode.NO_VEHICLE, which)
     return None
 
 
-def _matching(pids: Sequence[int], endpoints: Sequence[str], hello: Hello) -> list[int]:
+def _matching(pids: Sequence[int], endpoints: Sequence[str], hello: Hello, within: float) -> list[int]:
     """Return the stations that have the endpoints open."""
     found = []
     for pid in pids:
         with contextlib.suppress(VerbError):
-            link = StationLink.open(pid, hello)
+            link = StationLink.open(pid, hello, within)
             link.sock.close()
             if set(endpoints) <= set(link.ready.endpoints):
                 found.append(pid)
@@ -221,5 +225,6 @@ class StationRunner:
 
 def _received(heard: HeardMessage) -> Received:
     message = codec.decode(heard.message, heard.payload)
-    peer = Peer(heard.link, "station", name=heard.name)
-    return Received(message, heard.system, heard.component, heard.sequence, peer, introduced=True, named=True)
+    peer = Peer(heard.link, heard.address or "station", name=heard.name)
+    return Received(message, heard.system, heard.component, heard.sequence, peer, introduced=True, named=True,
+                    numbering=heard.numbering, clash=heard.clash)  # fmt: skip

@@ -13,6 +13,7 @@ from dialects import messages as m
 from dialects.enums import state_name
 from groundstation.snapshot import VehicleView
 from groundstation.vehicles.requests import RequestState
+from groundstation.vehicles.senders import DIFFERS_FOR
 from groundstation.verbs.contact import VehicleContact
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
@@ -39,6 +40,7 @@ async def status(session: VerbSession, options: argparse.Namespace, output: Outp
         _print_short(session.contact, session.now, output)
         return ExitCode.DONE
     if not options.watch:
+        await _compare_senders(session, output)
         _print(session.contact, session.now, output)
         return ExitCode.DONE
     end = math.inf if options.seconds is None else session.now + options.seconds
@@ -105,7 +107,19 @@ async def links(session: VerbSession, options: argparse.Namespace, output: Outpu
         output.record(**_link_fields(report))
     if not session.core.contacts:
         raise VerbError(ExitCode.NO_VEHICLE, f"no vehicle within {options.wait + over:g} s")
+    for each in session.of_others():
+        await _compare_senders(each, output)
     return ExitCode.DONE
+
+
+async def _compare_senders(session: VerbSession, output: Output) -> None:
+    """Say if several vehicles use the id of this one; senders that differ are heard until a late link is none."""
+    senders = session.vehicle.senders
+    await session.look_for(
+        lambda: not senders.differ(session.now) or bool(senders.describe_twins(session.now)), DIFFERS_FOR + PERIOD
+    )
+    if twins := senders.describe_twins(session.now):
+        output.error(f"several vehicles use system id {session.vehicle.system}: {twins}")
 
 
 class _Asker:
@@ -147,6 +161,8 @@ def _print_short(contact: VehicleContact, now: float, output: Output) -> None:
     output.record(time=clock.isoformat(timespec="milliseconds").replace("+00:00", "Z"), **_fields(contact, now))
     cells = (_state(contact), _battery(view), _speed(view), _position(contact), _gps(view), _failsafes(view))
     heard = "" if view.alive else f"  link lost for {view.silence:.0f} s"
+    twins = contact.state.senders.describe_twins(now)
+    heard += f"  several vehicles use its id: {twins}" if twins else ""
     output.line(f"{clock:%H:%M:%SZ} {contact.state.mode:<9} {'  '.join(cells)}{heard}")
     output.flush()
 
@@ -231,7 +247,7 @@ def _fields(contact: VehicleContact, now: float) -> dict[str, Any]:
         "fix_type": view.gps_fix, "satellites_visible": view.gps_satellites,
         "lat": place.latitude if place else None, "lon": place.longitude if place else None,
         "groundspeed": view.speed, "heading": None if view.heading is None else math.degrees(view.heading),
-        "silence": view.silence,
+        "silence": view.silence, "twins": contact.state.senders.describe_twins(now) or None,
     }  # fmt: skip
 
 

@@ -10,17 +10,33 @@ import msgspec
 from dialects.enums import Command, Result, result_name
 from dialects.mode_tables import HOLD
 from groundstation.snapshot import EmergencyProgress
-from groundstation.station.arming import CONFIRM_WITHIN, send_mode
+from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.station.commander import DISARM_RETRY
 from groundstation.station.emergency import EmergencyLock
 from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.requests import RequestBook
-from groundstation.vehicles.services import VehicleServices
+from groundstation.vehicles.senders import Sender
+from groundstation.vehicles.stop_commands import DISARM, hold_command, send_stop
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.services.command.client import CommandClient, CommandOutcome
 
+LOCKED = "disarmed, and locked by its safety switch; `estop --clear` releases it"
+UNLOCKED = "disarmed; it reports no lock, so that arming is possible"
+"""What an emergency stop has done to a vehicle that does not report it: ArduPilot locks its motors without a word."""
+
+TOO_SHORT = "its id was not heard for long enough to know that nobody else has it"
+
 REJECTED_RETRY = 0.5
 """s between two tries of what the vehicle rejects for the moment."""
+
+
+class StopTimes(msgspec.Struct, frozen=True):
+    """When a stop began, from when on it may count as done, and until when it is repeated."""
+
+    began: float
+    sure_at: float
+    """Before that a sender of the same id may not have been heard."""
+    until: float
 
 
 @dataclass(slots=True)
@@ -30,25 +46,23 @@ class RepeatedCommand:
     number: int
     command: Command
     send: Callable[[CommandClient, float], None]
-    is_done: Callable[[], bool]
-    """Whether the vehicle reports the effect."""
-    missing: str
-    """What it reports otherwise."""
-    until: float
+    find_doubt: Callable[[float], str]
+    """Takes the time; returns which sender of its id does not report the effect, "" if the last report of each does."""
+    times: StopTimes
     _due: float = 0.0
     _accepted: bool = False
     _was_done: bool = field(init=False)
     """It was so before the first try: then it counts only with an answer."""
 
     def __post_init__(self) -> None:
-        self._was_done = self.is_done()
+        self._was_done = not self.find_doubt(self.times.began)
 
     def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
         """Repeat, until the vehicle reports the effect."""
-        if self.is_done() and (self._accepted or not self._was_done):
+        if (self._accepted or not self._was_done) and now >= self.times.sure_at and not self.find_doubt(now):
             client.cancel(self.command)
             book.accept(self.number)
-        elif now >= self.until:
+        elif now >= self.times.until:
             self._give_up(client, book, now)
         elif now >= self._due:
             self._due = now + DISARM_RETRY
@@ -70,33 +84,40 @@ class RepeatedCommand:
     def _give_up(self, client: CommandClient, book: RequestBook, now: float) -> None:
         client.cancel(self.command)
         if self._accepted:
-            book.refuse(self.number, f"accepted, but its heartbeat reports {self.missing}", now, by_vehicle=False)
+            doubt = self.find_doubt(now) or TOO_SHORT
+            book.refuse(self.number, f"accepted, but {doubt}", now, by_vehicle=False)
         else:
             book.fail(self.number, "after all tries")
 
 
-def disarm_job(number: int, state: VehicleState, until: float) -> RepeatedCommand:
+def disarm_job(number: int, state: VehicleState, times: StopTimes) -> RepeatedCommand:
     """Return the job that disarms."""
-    command = Command.COMPONENT_ARM_DISARM
 
     def send(client: CommandClient, now: float) -> None:
-        client.send(command, 0, target_system=state.system, target_component=state.component, now=now)
+        send_stop(client, state, DISARM, now)
 
-    return RepeatedCommand(number, command, send, lambda: not state.armed, "armed", until)
+    return RepeatedCommand(number, DISARM.command, send, state.senders.find_doubt, times)
 
 
-def hold_job(number: int, state: VehicleState, services: VehicleServices, until: float) -> RepeatedCommand | RefusedJob:
+def hold_job(number: int, state: VehicleState, times: StopTimes) -> RepeatedCommand | RefusedJob:
     """Return the job that changes to HOLD. The number of HOLD means another mode to a kind that is not driven."""
-    if state.model.refusal:
+    hold = hold_command(state)
+    if state.model.refusal or hold is None:
         return RefusedJob(number, f"{state.model.refusal}; `mode` takes a mode that it lists, `disarm` ends its power")
+    wanted = state.model.number_of(HOLD)
 
-    def is_held() -> bool:
-        return services.modes.current == state.model.number_of(HOLD)
+    def is_held(sender: Sender) -> bool:
+        if sender.component != state.component and not sender.armed:
+            return True  # a script on board that claims to be the autopilot has modes of its own
+        return sender.custom_mode == wanted
 
     def send(client: CommandClient, now: float) -> None:
-        send_mode(client, state, HOLD, now)
+        send_stop(client, state, hold, now)
 
-    return RepeatedCommand(number, Command.DO_SET_MODE, send, is_held, "another mode", until)
+    def find_doubt(now: float) -> str:
+        return state.senders.find_doubt(now, is_held)
+
+    return RepeatedCommand(number, Command.DO_SET_MODE, send, find_doubt, times)
 
 
 class RefusedJob(msgspec.Struct):
@@ -118,22 +139,25 @@ class EmergencyJob(msgspec.Struct):
 
     number: int
     lock: EmergencyLock
-    until: float
+    times: StopTimes
     _stopped_at: float | None = None
 
     def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
         """Repeat, until the vehicle reports that it is disarmed and, if it is of our dialect, locked."""
         self.lock.tick(client, now)
-        vehicle = self.lock.vehicle
-        if self.lock.accepted and not vehicle.armed:
+        vehicle, doubt = self.lock.vehicle, self.lock.doubt(now)
+        if self.lock.accepted and not doubt and now >= self.times.sure_at:
             self._stopped_at = now if self._stopped_at is None else self._stopped_at
+            waited = now - self._stopped_at
             if vehicle.emergency_stop:
                 book.accept(self.number)
-            elif vehicle.autopilot in FOREIGN_AUTOPILOTS or now - self._stopped_at > CONFIRM_WITHIN:
-                book.accept(self.number, "disarmed; it reports no lock, so that arming is possible")
-        elif now >= self.until and self.lock.accepted:
-            book.refuse(self.number, "accepted, but its heartbeat reports armed", now, by_vehicle=False)
-        elif now >= self.until:
+            elif (vehicle.autopilot in FOREIGN_AUTOPILOTS and self.lock.switch_answered) or waited > CONFIRM_WITHIN:
+                book.accept(self.number, LOCKED if self.lock.switched else UNLOCKED)
+        elif now >= self.times.until and self.lock.accepted:
+            book.refuse(
+                self.number, f"accepted, but {doubt or 'it was not heard for long enough'}", now, by_vehicle=False
+            )
+        elif now >= self.times.until:
             book.fail(self.number, "after all tries")
 
     def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:

@@ -121,6 +121,8 @@ class VerbAction(msgspec.Struct, frozen=True):
     """Raises VerbError for arguments that cannot be right, before any link is opened."""
     only_reads: Callable[[argparse.Namespace], bool] = lambda _: False
     """Whether it only looks with these arguments, so that it takes no part."""
+    stops: bool = False
+    """It is a stop: sent from the first moment, also to vehicles that are not heard, and past a station that hangs."""
     own_timeout: bool = False
     """Ends by itself after --timeout, with a code of its own."""
     guarded: Callable[[argparse.Namespace], bool] = lambda _: False
@@ -197,14 +199,14 @@ VERBS: dict[str, dict[str, VerbAction]] = {
                                watches=True)},
     "arm": {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
                              takes_part=True, many=True)},
-    "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm,
-                                own_timeout=True, many=True)},
-    "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop,
-                              own_timeout=True, many=True)},
+    "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm, finds=False,
+                                own_timeout=True, many=True, stops=True)},
+    "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop, finds=False,
+                              own_timeout=True, many=True, stops=True)},
     "estop": {ONLY: VerbAction(
         "stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
         (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True,
-        many=True)},
+        finds=False, many=True, stops=True)},
     "control": {
         "show": VerbAction("print who is in control", control.show, watches=True, many=True),
         "request": VerbAction(
@@ -263,7 +265,9 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "command": {ONLY: VerbAction(
         "send a MAV_CMD; done when the vehicle has accepted", command.command,
         (("name", {"metavar": "MAV_CMD_X", "help": "its name, with or without MAV_CMD_, or its number"}),
-         ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"})),
+         ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"}),
+         ("--int", {"action": "store_true",
+                    "help": "as COMMAND_INT; 5 and 6 in degrees for a command with a position, else whole numbers"})),
         takes_part=True, shows_neutral=True, many=True, check=command.check_command)},
     "request": {ONLY: VerbAction(
         "request one message and print it", command.request,

@@ -16,7 +16,7 @@ from enum import IntEnum
 from itertools import count
 
 from dialects.messages import target_system
-from dialects.traits import LOG_ONLY
+from dialects.traits import COMMANDS, LOG_ONLY, is_stop
 from link.core import Outgoing, Peer
 from link.endpoint import FLEET_NAME
 from link.protocol.frame import Frame, FramerCounts
@@ -179,6 +179,8 @@ class PeerTable:
             return self.known((peer,))
         if among is not None:
             return self.known(among)
+        if type(message).id in COMMANDS and is_stop(message):
+            return list(self)  # also who was not heard as a vehicle: the vehicle behind it may have no place for us
         target = target_system(message)
         return [state for state in self if state.accepts_target(target)]
 

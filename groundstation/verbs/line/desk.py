@@ -12,6 +12,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.intents.line import RunLine
 from groundstation.station.station import Station
 from groundstation.vehicles.fleet import Contact
+from groundstation.vehicles.stop_commands import STOP_VERBS
 from groundstation.verbs.arguments import is_chosen
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.parser import ParsedLine, parse_line
@@ -41,6 +42,8 @@ class LineDesk:
         self._station.log.add(now, LABEL, f":{intent.text}", Severity.INFO)
         try:
             parsed = parse_line(intent.text)
+            if parsed.name in STOP_VERBS and self._stop_blindly(intent, parsed, now):
+                return
             contact = self._find(parsed, intent.system)
             if len(self._tasks) >= MOST_RUNNING:
                 raise VerbError(ExitCode.REFUSED, f"{MOST_RUNNING} lines run; wait for the end of one")
@@ -54,6 +57,19 @@ class LineDesk:
         task = asyncio.get_running_loop().create_task(self._perform(intent, parsed, contact))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    def _stop_blindly(self, intent: RunLine, parsed: ParsedLine, now: float) -> bool:
+        """Carry out a stop while no vehicle was heard; return whether none was."""
+        if (
+            self._station.fleet.selected is not None
+            or parsed.options.vehicle
+            or getattr(parsed.options, "clear", False)
+        ):
+            return False
+        self._station.stop_blindly(STOP_VERBS[parsed.name], now)
+        self._flush()
+        self._end(intent, DONE, [], here(f"{parsed.name} is sent to all vehicles; none is heard yet"))
+        return True
 
     def build(self, request: LineRequest) -> LineView:
         """Return how a line stands, and the words that complete the text."""

@@ -20,12 +20,19 @@ def _need_selected(session: LineSession) -> None:
         raise VerbError(ExitCode.USAGE, f"{session.vehicle.name} is not selected: n selects the next vehicle")
 
 
+async def _wait_disarmed(session: LineSession) -> tuple[bool, str]:
+    """Wait until the last report of each sender of its id says disarmed; return whether it does, and else who not."""
+    senders = session.vehicle.senders
+    done = await session.wait_for(lambda: not senders.find_doubt(session.now), STOPPED_WITHIN)
+    return done, senders.find_doubt(session.now)
+
+
 async def disarm(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
     """Disarm."""
     _need_selected(session)
     session.do(Stop(), Disarm())
-    done = await session.wait_for(lambda: not session.vehicle.armed, STOPPED_WITHIN)
-    output.note(f"{session.vehicle.name} {'is disarmed' if done else 'still reports armed'}")
+    done, doubt = await _wait_disarmed(session)
+    output.note(f"{session.vehicle.name} {'is disarmed' if done else f'is not known to be disarmed: {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 
 
@@ -46,8 +53,8 @@ async def emergency_stop(session: LineSession, options: argparse.Namespace, outp
     if options.clear:
         raise VerbError(ExitCode.USAGE, "estop --clear is the key t, held for 1 s on Drive, so that no text does it")
     session.do(EmergencyStop())
-    done = await session.wait_for(lambda: not session.vehicle.armed, STOPPED_WITHIN)
-    output.note(f"{session.vehicle.name}: emergency stop{'' if done else '; it still reports armed'}")
+    done, doubt = await _wait_disarmed(session)
+    output.note(f"{session.vehicle.name}: emergency stop{'' if done else f'; {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 
 

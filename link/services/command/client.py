@@ -3,12 +3,15 @@
 Rules (https://mavlink.io/en/services/command.html): repeats of a COMMAND_LONG have a rising `confirmation`, COMMAND_INT
 has none; IN_PROGRESS extends the timeout. Our vehicle rejects what comes over a link of the driver that was not proven
 in the last second (ROVER_REJECTION_NO_PROOF): it is repeated likewise, because proofs go on.
+A vehicle that answers COMMAND_INT_ONLY or COMMAND_LONG_ONLY gets the command
+in the other form, once. A stop that is not answered goes in both forms in turn.
 """
 
 from __future__ import annotations
 
 import msgspec
 
+from dialects.command_places import to_command_int, to_command_long
 from dialects.enums import Rejection, Result
 from dialects.messages import CommandAck, CommandInt, CommandLong, Message
 from link.core import Outgoing, Received
@@ -52,6 +55,15 @@ class _Waiting(msgspec.Struct):
     due: float
     place: CommandPlace | None = None
     """Of a COMMAND_INT."""
+    further: tuple[int, ...] = ()
+    """Further components of the system that get it."""
+    stop: bool = False
+    other_form: bool = False
+    """It goes as COMMAND_INT in place of COMMAND_LONG, or the other way round."""
+    refused_form: int | None = None
+    """The answer that has asked for the other form."""
+    answers: dict[int, int] = msgspec.field(default_factory=dict)
+    """Component -> MAV_RESULT of its refusal."""
     sent: int = 0
     rejected: bool = False
     """Its sender's proof was missing at its last try."""
@@ -80,13 +92,17 @@ class CommandClient:
         target_component: int = 1,
         now: float,
         place: CommandPlace | None = None,
+        further: tuple[int, ...] = (),
+        stop: bool = False,
     ) -> None:
         """Send a command with up to 7 parameters (missing ones are 0) and wait for its COMMAND_ACK.
 
-        With a `place` it is a COMMAND_INT, and parameters 5 and 6 are not used.
+        With a `place` it is a COMMAND_INT, and parameters 5 and 6 are not used. `further` components get it as well; it
+        ends when one accepts or all have refused. A `stop` that is not answered is repeated in both forms in turn.
         """
         full: Params = (*params, *(0.0,) * (7 - len(params)))  # type: ignore[assignment]
-        waiting = _Waiting(int(command), full, (target_system, target_component), now, place)
+        target = (target_system, target_component)
+        waiting = _Waiting(int(command), full, target, now, place, further, stop)
         self._waiting[target_system, int(command)] = waiting
         self._transmit(waiting, now)
 
@@ -123,9 +139,16 @@ class CommandClient:
         if _wants_proof(message):
             waiting.rejected = True  # repeated when it is due; the proofs of the session go on meanwhile
             return
+        if _asks_for_other_form(message.result, waiting):
+            waiting.other_form, waiting.refused_form, waiting.sent = not waiting.other_form, message.result, 0
+            self._transmit(waiting, now)
+            return
+        result = _joint_result(waiting, received.component, message.result)
+        if result is None:
+            return
         del self._waiting[received.system, message.command]
-        known = Result(message.result) if message.result in Result._value2member_map_ else Result.FAILED
-        self._outcomes.append(CommandOutcome(waiting.command, waiting.params, received.system, known, message.result))
+        known = Result(result) if result in Result._value2member_map_ else Result.FAILED
+        self._outcomes.append(CommandOutcome(waiting.command, waiting.params, received.system, known, result))
 
     def refuse(self, message: Message, why: str) -> None:
         """End the command that `message` carries: it was not sent, because our role does not allow it."""
@@ -159,7 +182,10 @@ class CommandClient:
         return outcomes
 
     def _transmit(self, waiting: _Waiting, now: float) -> None:
-        self._outbox.append(Outgoing(_message(waiting)))
+        if waiting.stop and waiting.sent and not waiting.answers and waiting.refused_form is None:
+            waiting.other_form = not waiting.other_form
+        for component in _components(waiting):
+            self._outbox.append(Outgoing(_message(waiting, component)))
         waiting.sent, waiting.rejected = waiting.sent + 1, False
         waiting.due = now + REPEAT_AFTER
 
@@ -169,9 +195,46 @@ def _wants_proof(answer: CommandAck) -> bool:
     return answer.result == Result.TEMPORARILY_REJECTED and answer.result_param2 == Rejection.NO_PROOF
 
 
-def _message(waiting: _Waiting) -> Message:
-    place, command = waiting.place, waiting.command
-    system, component = waiting.target
+def _components(waiting: _Waiting) -> tuple[int, ...]:
+    """Return the components that get the next try; a stop without an answer goes to all, which 0 means."""
+    chosen = (waiting.target[1], *waiting.further)
+    return (*chosen, 0) if waiting.stop and waiting.sent and 0 not in chosen else chosen
+
+
+def _asks_for_other_form(result: int, waiting: _Waiting) -> bool:
+    """Return whether a refusal names the form in which the vehicle takes the command, and it was not tried yet."""
+    is_int = (waiting.place is not None) != waiting.other_form
+    wanted = Result.LONG_ONLY if is_int else Result.INT_ONLY
+    return result == wanted and waiting.refused_form is None and _convert(waiting) is not None
+
+
+def _joint_result(waiting: _Waiting, component: int, result: int) -> int | None:
+    """Return the answer of all components together: the first acceptance, else the refusal of the first component.
+
+    None: others have not answered yet, or the refusal is of a form that was a try only.
+    """
+    if result == Result.ACCEPTED:
+        return result
+    if waiting.stop and waiting.other_form and waiting.refused_form is None:
+        return None
+    waiting.answers[component] = result
+    asked = {each for each in (waiting.target[1], *waiting.further) if each}
+    return waiting.answers.get(waiting.target[1], result) if asked <= waiting.answers.keys() else None
+
+
+def _convert(waiting: _Waiting, component: int = 0) -> CommandLong | CommandInt | None:
+    """Return the command in the other form; None if it has none."""
+    message = _first_form(waiting, component)
+    return to_command_int(message) if isinstance(message, CommandLong) else to_command_long(message, waiting.sent)
+
+
+def _message(waiting: _Waiting, component: int) -> Message:
+    converted = _convert(waiting, component) if waiting.other_form else None
+    return converted or _first_form(waiting, component)
+
+
+def _first_form(waiting: _Waiting, component: int) -> CommandLong | CommandInt:
+    place, command, system = waiting.place, waiting.command, waiting.target[0]
     one, two, three, four, five, six, seven = waiting.params
     if place is None:
         return CommandLong(system, component, command, waiting.sent, one, two, three, four, five, six, seven)

@@ -36,6 +36,7 @@ def test_reasons(text: str, reason: str | None) -> None:
     ("Radio failsafe on", "transmitter"),
     ("Battery 1 low voltage failsafe", "charge"),
     ("Hardware safety switch", "safety switch"),
+    ("Hardware safety switch", "estop --clear"),
     ("Logging failed", "card"),
     ("No manual control input", "arm from Drive"),
     ("battery low", "charge"),

@@ -31,7 +31,7 @@ def test_disarm_that_never_takes_effect_is_reported() -> None:
     cockpit.vehicle.obeys = False
     cockpit.do(Disarm())
     cockpit.run(8.0)
-    assert cockpit.view.refusal == "disarm: Rover 1 still reports armed"
+    assert cockpit.view.refusal == "disarm: Rover 1: its heartbeat reports ARMED in MANUAL"
 
 
 def test_mode_by_name() -> None:

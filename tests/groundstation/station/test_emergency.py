@@ -9,7 +9,7 @@ from groundstation.intents.driving import ClearEmergencyStop, EmergencyStop
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm
 from groundstation.snapshot import EmergencyProgress
-from groundstation.station.emergency import FORCE_DISARM
+from groundstation.vehicles.stop_commands import FORCE_DISARM
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit
@@ -152,3 +152,44 @@ def test_clearing_where_no_stop_is_on_sends_nothing() -> None:
     cockpit.run(1.0)
     assert cockpit.vehicle.commands(SWITCH) == []
     assert cockpit.view.armed
+
+
+class MuteVehicle(FakeVehicle):
+    """One that has no place for us: it obeys stops, and sends nothing but their acknowledgements."""
+
+    def beat(self) -> None:
+        """Send no HEARTBEAT."""
+
+
+def test_before_any_vehicle_is_heard_the_emergency_stop_goes_to_all() -> None:
+    vehicle = MuteVehicle()
+    vehicle.armed = True
+    cockpit = Cockpit(vehicle)
+    cockpit.run(0.5)
+    cockpit.do(EmergencyStop())
+    cockpit.run(0.1)
+    assert not vehicle.armed
+    assert "(system 0)" in cockpit.snapshot.blind_stop
+    cockpit.run(2.0)
+    assert vehicle.locked
+    cockpit.run(31.0)
+    assert cockpit.snapshot.blind_stop == ""
+
+
+def test_a_vehicle_that_is_heard_after_a_stop_of_all_is_locked() -> None:
+    vehicle = FakeVehicle()
+    cockpit = Cockpit(vehicle)
+    cockpit.do(EmergencyStop())
+    cockpit.run(3.0)
+    assert vehicle.locked
+    assert cockpit.view.emergency_stop
+    cockpit.do(ClearEmergencyStop(held=1.0))
+    cockpit.run(3.0)
+    assert not vehicle.locked, "the stop of all ends with its release"
+
+
+def test_the_second_press_reaches_vehicles_that_are_not_heard() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(EmergencyStop(), EmergencyStop())
+    cockpit.run(0.5)
+    assert {each.target_system for each in cockpit.vehicle.commands(ARM)} >= {0, 1}

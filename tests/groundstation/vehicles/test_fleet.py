@@ -7,6 +7,7 @@ from dialects.enums import Autopilot
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
+from groundstation.verbs.core import VerbCore
 from link.core import Peer, Received
 
 
@@ -98,3 +99,28 @@ def test_only_ardupilots_settings_are_checked() -> None:
     assert unchecked is not None
     assert checked.settings_check is not None
     assert unchecked.settings_check is None
+
+
+def signed_beat(system: int) -> Received:
+    return beat(system)._replace(signed=True)
+
+
+def test_a_vehicle_with_a_key_of_ours_takes_the_place_of_one_without() -> None:
+    fleet, _ = fleet_of(*range(1, MAX_VEHICLES + 1))
+    own = fleet.get_or_add(signed_beat(200), 2.0)
+    assert own is not None
+    assert own.verified
+    assert len(fleet.system_ids) == MAX_VEHICLES
+    assert fleet.get(1) is fleet.selected, "the selected one stays"
+    assert fleet.get_or_add(beat(201), 3.0) is None
+    assert 200 in fleet.system_ids
+
+
+def test_a_verb_has_a_place_for_the_vehicle_that_is_meant() -> None:
+    core = VerbCore((254, 25), 200, 1)
+    for system in range(1, MAX_VEHICLES + 1):
+        core.receive(beat(system), 1.0)
+    core.receive(beat(200), 2.0)
+    assert core.chosen is not None
+    assert core.chosen.state.system == 200
+    assert len(core.contacts) == MAX_VEHICLES

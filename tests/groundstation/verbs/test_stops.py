@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import pytest
 
+from groundstation.station_socket.connect import running_stations
 from groundstation.verbs.exit_codes import ExitCode
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
+from tests.ports import free_port
 
 Capture = pytest.CaptureFixture[str]
 HOLD = {ARDUPILOT: 4, PX4: 3 << 24 | 4 << 16}
+COMMAND_INT, COMMAND_LONG = 75, 76
 SWITCH, DISARM, MODE = 5300, 400, 176
 
 
@@ -59,7 +66,7 @@ def test_a_stop_that_is_accepted_and_not_done_is_refused_in_the_end(capsys: Capt
         vehicle.armed, vehicle.obeys = True, False
         disarmed = verb(capsys, vehicle, "disarm", "--timeout", "1")
         assert disarmed.code == ExitCode.REFUSED
-        assert "accepted, but its heartbeat reports armed" in disarmed.err
+        assert "accepted, but its heartbeat reports ARMED in MANUAL" in disarmed.err
 
 
 def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
@@ -74,7 +81,7 @@ def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
 def test_without_an_answer_it_is_repeated_to_the_end(capsys: Capture, name: str) -> None:
     with foreign_vehicle() as vehicle:
         vehicle.armed = True
-        vehicle.silent.add(76)  # COMMAND_LONG
+        vehicle.silent |= {COMMAND_LONG, COMMAND_INT}
         silent = verb(capsys, vehicle, name, "--timeout", "1.5")
         assert (silent.code, len(vehicle.of("COMMAND_LONG")) >= 3) == (ExitCode.NO_ANSWER, True), silent.err
 
@@ -88,3 +95,59 @@ def test_without_a_vehicle_chosen_all_of_them_stop(capsys: Capture) -> None:
         other.answers[DISARM] = (4, "no")
         assert run_verb(capsys, "disarm", "-e", one.endpoint, "-e", other.endpoint).code == ExitCode.PARTLY
         assert (one.armed, other.armed) == (False, True)
+
+
+def is_disarmed(vehicle: ForeignVehicle) -> bool:
+    return not vehicle.armed
+
+
+def is_held(vehicle: ForeignVehicle) -> bool:
+    return vehicle.mode == HOLD[vehicle.autopilot]
+
+
+STOPS = {"disarm": is_disarmed, "estop": is_disarmed, "stop": is_held}
+"""Verb -> whether a vehicle obeys it."""
+
+
+@pytest.mark.parametrize("name", STOPS)
+def test_a_vehicle_with_the_same_id_confirms_no_stop(capsys: Capture, name: str) -> None:
+    with foreign_vehicle() as deaf, foreign_vehicle() as other:
+        deaf.armed, deaf.mode, other.mode = True, 10, 4
+        deaf.silent |= {COMMAND_LONG, COMMAND_INT}
+        run = run_verb(capsys, name, "-v", "1", "-e", other.endpoint, "-e", deaf.endpoint, "--timeout", "3")
+        assert run.code in (ExitCode.REFUSED, ExitCode.NO_ANSWER), run.err
+        assert "reports ARMED in AUTO" in run.err
+        deaf.silent.clear()
+        done = run_verb(capsys, name, "-v", "1", "-e", other.endpoint, "-e", deaf.endpoint)
+        assert (done.code, STOPS[name](deaf), STOPS[name](other)) == (0, True, True), done.err
+
+
+def test_where_nobody_was_heard_there_is_no_address(capsys: Capture) -> None:
+    silent = run_verb(capsys, "estop", "-e", f"udpin:127.0.0.1:{free_port()}", "--timeout", "0.5")
+    assert (silent.code, "there is no address to send to" in silent.err) == (ExitCode.NO_VEHICLE, True)
+
+
+@pytest.mark.parametrize("switch", [0, 3])
+def test_an_emergency_stop_says_whether_the_safety_switch_locks(capsys: Capture, switch: int) -> None:
+    with foreign_vehicle() as vehicle:
+        vehicle.armed, vehicle.answers[SWITCH] = True, (switch, "")
+        stopped = verb(capsys, vehicle, "estop")
+        locked = "locked by its safety switch; `estop --clear` releases it" in stopped.err
+        assert (stopped.code, locked) == (0, switch == 0), stopped.err
+
+
+def test_a_stop_goes_past_a_station_that_hangs(
+    capsys: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    with foreign_vehicle() as vehicle:
+        vehicle.armed = True
+        command = [sys.executable, "-m", "groundstation", "serve", "--headless", vehicle.endpoint]
+        with subprocess.Popen(command, stderr=subprocess.DEVNULL) as station:
+            try:
+                wait_until(lambda: running_stations() == [station.pid], "the station runs")
+                station.send_signal(signal.SIGSTOP)
+                stopped = run_verb(capsys, "disarm", "-e", vehicle.endpoint)
+                assert (stopped.code, vehicle.armed) == (0, False), stopped.err
+            finally:
+                station.kill()

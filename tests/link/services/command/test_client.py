@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 
 import pytest
@@ -140,3 +141,82 @@ def test_a_command_that_lacks_a_proof_to_the_end_is_rejected() -> None:
         client.tick(now)
     assert [(each.result, each.number) for each in outcomes] == [(Result.TEMPORARILY_REJECTED, 1)]
     assert now == pytest.approx(TRIES * REPEAT_AFTER, abs=0.5)
+
+
+INT_ONLY, LONG_ONLY = 8, 7
+
+
+def forms(client: CommandClient) -> list[tuple[type, int]]:
+    return [(type(each), each.target_component) for each in sent(client)]
+
+
+def test_a_command_that_is_taken_as_command_int_only_goes_so() -> None:
+    client = CommandClient(255, 190)
+    client.send(Command.DO_SET_HOME, 0.0, 0, 0, 0, 47.5, -8.25, 400.0, target_system=1, now=0.0)
+    sent(client)
+    client.receive(ack(179, INT_ONLY), 0.1)
+    [message] = sent(client)
+    assert isinstance(message, CommandInt)
+    assert (message.frame, message.x, message.y, message.z) == (0, 475_000_000, -82_500_000, 400.0)
+    assert client.outcomes() == []
+    client.receive(ack(179, Result.ACCEPTED), 0.2)
+    assert client.outcomes()[0].result is Result.ACCEPTED
+
+
+def test_a_command_int_that_is_taken_as_command_long_only_goes_so() -> None:
+    client = CommandClient(255, 190)
+    place = CommandPlace(3, 475_000_000, 82_500_000)
+    client.send(Command.DO_REPOSITION, -1.0, 1, 0, math.nan, 0, 0, 3.0, target_system=1, now=0.0, place=place)
+    sent(client)
+    client.receive(ack(192, LONG_ONLY), 0.1)
+    [message] = sent(client)
+    assert isinstance(message, CommandLong)
+    assert (message.param1, message.param5, message.param6, message.param7) == (-1.0, 47.5, 8.25, 3.0)
+
+
+def test_a_command_that_is_refused_in_both_forms_ends() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 0.0, target_system=1, now=0.0)
+    client.receive(ack(400, INT_ONLY), 0.1)
+    client.receive(ack(400, LONG_ONLY), 0.2)
+    assert [each.number for each in client.outcomes()] == [LONG_ONLY]
+    client.send(400, 0.0, 0, 0, 0, 1e12, target_system=1, now=0.0)
+    client.receive(ack(400, INT_ONLY), 0.1)
+    assert [each.number for each in client.outcomes()] == [INT_ONLY], "parameter 5 fits no integer"
+
+
+def test_a_stop_without_an_answer_goes_in_both_forms_to_all_components() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 0.0, target_system=1, target_component=1, further=(0, 2), stop=True, now=0.0)
+    assert forms(client) == [(CommandLong, 1), (CommandLong, 0), (CommandLong, 2)]
+    client.tick(REPEAT_AFTER)
+    assert forms(client) == [(CommandInt, 1), (CommandInt, 0), (CommandInt, 2)]
+    client.tick(2 * REPEAT_AFTER)
+    assert {kind for kind, _ in forms(client)} == {CommandLong}
+
+
+def test_other_commands_keep_their_form_without_an_answer() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 1.0, target_system=1, now=0.0)
+    client.tick(REPEAT_AFTER)
+    assert {kind for kind, _ in forms(client)} == {CommandLong}
+
+
+def test_a_refusal_of_one_component_ends_nothing_while_others_may_accept() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 0.0, target_system=1, target_component=1, further=(0, 2), stop=True, now=0.0)
+    client.receive(received(CommandAck(400, 3, target_system=255), 1, 2), 0.1)
+    assert client.outcomes() == []
+    client.receive(received(CommandAck(400, 0, target_system=255), 1, 1), 0.2)
+    assert [each.number for each in client.outcomes()] == [0]
+
+
+def test_a_stop_is_not_refused_by_a_vehicle_that_does_not_know_its_second_form() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 0.0, target_system=1, stop=True, now=0.0)
+    client.tick(REPEAT_AFTER)
+    client.receive(ack(400, Result.UNSUPPORTED), 0.5)
+    assert client.outcomes() == []
+    client.tick(2 * REPEAT_AFTER)
+    client.receive(ack(400, Result.ACCEPTED), 0.9)
+    assert client.outcomes()[0].result is Result.ACCEPTED
