@@ -16,9 +16,10 @@ from typing import Any
 
 import pytest
 
-from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.programs import Vehicle
 from tests.ports import free_port
 from tests.vehicle.motors.contract import Bench, MotorsContract
+from tests.waits import PATIENCE
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 Start = Callable[..., subprocess.Popen[str]]

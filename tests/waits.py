@@ -53,16 +53,17 @@ def wait_until(
     return value
 
 
-async def wait_until_async(
-    condition: Callable[[], Value], what: str | Callable[[], str] = "it", within: float = PATIENCE
-) -> Value:
-    """Let the event loop run until `condition` returns something true, and return that, as `wait_until` does."""
+async def until(condition: Callable[[], Value], within: float = PATIENCE) -> Value:
+    """Let the event loop run until `condition` returns something true, and return that; else TimeoutError.
+
+    The delays of this process are added to `within`, as by `wait_until`.
+    """
     waits, began = Waits(), time.monotonic()
     while not (value := condition()):
         took = time.monotonic() - began
         if took > within and took > within + waits.total():
-            raise AssertionError(f"not within {within:g} s: {what if isinstance(what, str) else what()}")
-        await asyncio.sleep(0.001)
+            raise TimeoutError(f"not within {within:g} s")
+        await asyncio.sleep(0.005)
     return value
 
 

@@ -12,7 +12,8 @@ from typing import Any
 
 import aiohttp
 
-PATIENCE = 60.0
+from tests.waits import PATIENCE
+
 PROGRAM = shutil.which("chromium")
 OPTIONS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",

@@ -18,8 +18,8 @@ from link.endpoint import parse_endpoint
 from link.fleet.config import load_config
 from tests.e2e.fleet_programs import LOCALHOST, FleetWires, RouterProcess, make_fleet
 from tests.e2e.namespaces import Namespaces
-from tests.e2e.programs import PATIENCE
 from tests.vehicle.wires import SessionProgram
+from tests.waits import PATIENCE
 
 AHEAD, NEUTRAL = Axes(throttle=1.0), Axes()
 MAN_TIMEOUT = 0.45

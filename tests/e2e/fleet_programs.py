@@ -22,8 +22,9 @@ from link.fleet.transport import FleetTransport
 from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from link.transport.transports import open_transports
-from tests.e2e.programs import PATIENCE, PATIENT_LOOP, Vehicle
+from tests.e2e.programs import PATIENT_LOOP, Vehicle
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 STEP = 0.02
 

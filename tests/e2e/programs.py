@@ -18,11 +18,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.groundstation.held_key import DELAY, GAP
+from tests.waits import PATIENCE
 
 LET_GO = 1.2
 """s without a repeat after which a key counts as released, whatever the ground station has learned (1.1 s at most)."""
-PATIENCE = 60.0
-"""s for what takes one or two on an idle machine: the machine is shared."""
 AT_REST = 0.5
 """s without motion after which wheels count as stopped."""
 PATIENT_LOOP = "FS_LOOP_TIMEOUT=2"

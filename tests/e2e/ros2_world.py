@@ -12,9 +12,10 @@ from pathlib import Path
 
 from groundstation.station_socket.connect import running_stations
 from tests.e2e import ros2_peer
-from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.programs import Vehicle
 from tests.e2e.ros2_peer import Peer
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 STEP = 0.02
 

@@ -12,9 +12,10 @@ import pytest
 from groundstation.screens import SCREENS
 from tests.benchmarks.screens import TITLES
 from tests.e2e.programs import LET_GO, Vehicle
-from tests.e2e.test_in_tmux import PATIENCE, Tmux, tmux
+from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.tmux_marks import IN_TMUX
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 __all__ = ["tmux"]
 

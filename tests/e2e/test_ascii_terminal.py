@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.e2e.programs import PATIENCE, GroundStation
+from tests.e2e.programs import GroundStation
 from tests.groundstation.cli.test_main import in_terminal
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

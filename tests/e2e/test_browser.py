@@ -21,13 +21,13 @@ import pytest
 
 from groundstation.station_socket.connect import running_stations
 from groundstation.web.launch import missing_package
-from tests.e2e.chromium import PATIENCE, PROGRAM, Browser, eventually, pause
+from tests.e2e.chromium import PROGRAM, Browser, eventually, pause
 from tests.e2e.programs import Vehicle
 from tests.e2e.relay import Relay
 from tests.groundstation.held_key import DELAY, GAP
 from tests.groundstation.screen import children, running
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits
 
 pytestmark = [
     pytest.mark.e2e,

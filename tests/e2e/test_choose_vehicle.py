@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from tests.e2e.programs import Vehicle
-from tests.e2e.test_in_tmux import PATIENCE, Tmux
+from tests.e2e.test_in_tmux import Tmux
 from tests.e2e.tmux_marks import IN_TMUX
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = IN_TMUX
 

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from groundstation.recent.recent_file import RecentFile
-from tests.e2e.programs import PATIENCE, GroundStation
+from tests.e2e.programs import GroundStation
 from tests.groundstation.ui.contrast import colour_codes
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

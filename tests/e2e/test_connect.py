@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.e2e.programs import PATIENCE, GroundStation, Vehicle, drive
+from tests.e2e.programs import GroundStation, Vehicle, drive
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

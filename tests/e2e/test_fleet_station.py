@@ -16,9 +16,9 @@ import pytest
 
 from tests.e2e.fleet_driver import FALL, MAN_TIMEOUT
 from tests.e2e.fleet_programs import RouterProcess, make_fleet
-from tests.e2e.programs import PATIENCE, GroundStation, Vehicle, drive
+from tests.e2e.programs import GroundStation, Vehicle, drive
 from tests.groundstation.screen import children
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits
 
 pytestmark = [pytest.mark.slow, pytest.mark.e2e]
 

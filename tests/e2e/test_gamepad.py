@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from groundstation.gamepad.child import missing_package
-from tests.e2e.programs import PATIENCE, GroundStation, Vehicle
+from tests.e2e.programs import GroundStation, Vehicle
 from tests.e2e.relay import Relay
 from tests.groundstation.gamepad.pads import FULL, Hand
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits
 
 pytestmark = [
     pytest.mark.e2e,

@@ -14,8 +14,9 @@ from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import GiveControl, KeepControl, ReleaseControl, RequestControl
 from groundstation.snapshot import Snapshot
 from tests.e2e.programs import Vehicle
-from tests.groundstation.screen import FORWARD, Screen, until
+from tests.groundstation.screen import FORWARD, Screen
 from tests.ports import free_port
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -32,7 +33,7 @@ class Pair:
         self.other = stack.enter_context(Screen(endpoint, system=254))
         self.other.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver is not None)
         self.driver.hold_forward()
-        until(self.vehicle.turning)
+        wait_until(self.vehicle.turning)
         self.other.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 255)
         self.other.client.send(RequestControl())
         self.driver.see(lambda seen: seen.handover is not None and seen.handover.station == 254)
@@ -62,7 +63,7 @@ def test_given_control_stops_the_rover_and_the_other_station_drives(pair: Pair, 
     """Wheels turn, control is handed over, wheels are neutral, and the mode stays; nothing says failsafe."""
     pair.answer(intent)
     drives(pair.other)
-    until(pair.vehicle.stands)
+    wait_until(pair.vehicle.stands)
     assert in_manual(pair.other)
     if not isinstance(intent, Quit):
         pair.driver.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 254)
@@ -78,5 +79,5 @@ def test_given_control_stops_the_rover_and_the_other_station_drives(pair: Pair, 
 def test_kept_control_drives_on(pair: Pair) -> None:
     pair.answer(KeepControl())
     pair.driver.see(lambda seen: seen.handover is None)
-    until(pair.vehicle.turning)  # a control cycle that the machine delays is one without power
+    wait_until(pair.vehicle.turning)  # a control cycle that the machine delays is one without power
     assert drives(pair.driver).vehicle is not None

@@ -20,9 +20,10 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.modes import Mode
 from link.protocol.framer import Framer
-from tests.e2e.programs import PATIENCE, PATIENT_LOOP, Vehicle
+from tests.e2e.programs import PATIENT_LOOP, Vehicle
 from tests.ports import free_port
 from tests.vehicle.wires import Program, SessionProgram
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.slow
 

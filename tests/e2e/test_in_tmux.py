@@ -24,12 +24,11 @@ from tests.e2e.tmux_marks import IN_TMUX
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.wheel import modes, notch
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = IN_TMUX
 
 FOLDER = Path(__file__).parents[2]
-PATIENCE = 60.0
-"""s for every wait: the machine is shared."""
 HELD = 10.0
 """s for a held key to show; then it is pressed anew."""
 PAUSE = 0.04

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from tests.e2e.test_in_tmux import PATIENCE, Tmux, tmux
+from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.tmux_marks import IN_TMUX
+from tests.waits import PATIENCE
 
 __all__ = ["tmux"]
 

@@ -10,8 +10,9 @@ from collections.abc import Callable
 import pytest
 
 from tests.e2e.conftest import Rig
-from tests.e2e.programs import PATIENCE, GroundStation
+from tests.e2e.programs import GroundStation
 from tests.e2e.test_station_process_lost import shows, station_of
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

@@ -18,8 +18,8 @@ from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.host.crashing_station import ORDER
 from tests.groundstation.ui.frames import text
-from tests.groundstation.ui.ptys import PATIENCE, until
 from tests.ports import free_port
+from tests.waits import PATIENCE, until
 
 pytestmark = pytest.mark.e2e
 

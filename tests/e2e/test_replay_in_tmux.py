@@ -9,9 +9,10 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from tests.e2e.test_in_tmux import PATIENCE, Tmux, speed_shown, tmux
+from tests.e2e.test_in_tmux import Tmux, speed_shown, tmux
 from tests.e2e.tmux_marks import IN_TMUX
 from tests.groundstation.replay.logs import drive_log
+from tests.waits import PATIENCE
 
 __all__ = ["tmux"]
 

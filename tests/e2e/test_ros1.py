@@ -11,9 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.e2e.programs import PATIENCE
 from tests.e2e.ros1.rig import SYSTEM_PYTHON, Rig
-from tests.groundstation.verbs.verb_runs import wait_until
+from tests.waits import PATIENCE, wait_until
 
 INSTALLED = Path(__file__).parent / "ros1" / "installed.py"
 PACKAGES = "python3-roslaunch python3-rospy python3-geometry-msgs python3-sensor-msgs python3-nav-msgs"

@@ -19,9 +19,9 @@ from groundstation.ros.services import SERVICES
 from groundstation.ros.types import RosTypes
 from link.services.param.client import Param
 from tests.e2e import ros2_peer
-from tests.e2e.programs import PATIENCE
 from tests.e2e.ros2_peer import CDR, TWIST, Peer
 from tests.e2e.ros2_world import World, kill
+from tests.waits import PATIENCE
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SET_BOOL = "std_srvs::srv::dds_::SetBool_/RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"

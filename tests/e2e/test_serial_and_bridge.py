@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from tests.e2e.cable import SerialCable
-from tests.e2e.programs import PATIENCE, GroundStation, Vehicle, drive, drive_on
+from tests.e2e.programs import GroundStation, Vehicle, drive, drive_on
 from tests.e2e.relay import Relay
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits
 
 pytestmark = pytest.mark.e2e
 

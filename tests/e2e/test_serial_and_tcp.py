@@ -17,12 +17,11 @@ from typing import Protocol
 import pytest
 
 from tests.e2e.cable import SerialCable
-from tests.e2e.programs import PATIENCE, GroundStation, Vehicle, drive, drive_on
+from tests.e2e.programs import GroundStation, Vehicle, drive, drive_on
 from tests.e2e.tcp_cable import TcpCable
 from tests.e2e.test_stop_matrix import FALLS_WITHIN, HOLD_TIMEOUT, NEUTRAL_WITHIN, NOISE
-from tests.groundstation.screen import until
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits, wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -166,7 +165,7 @@ def check_terminal_closed(rig: Rig) -> None:
         granted = rig.waits.total()  # repeatedly, because the ground station ends meanwhile
         return rig.vehicle.stands()
 
-    until(stand, PATIENCE)
+    wait_until(stand)
     _, stops = rig.vehicle.falls_and_stops_after(closed)
     assert stops <= NEUTRAL_WITHIN + NOISE + granted
     assert rig.station.process.wait(PATIENCE) is not None

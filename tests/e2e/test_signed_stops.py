@@ -13,11 +13,11 @@ from link.signing.key_actions import make_key
 from link.signing.key_file import FILE, load_keys, save_keys, station_key_file
 from link.signing.role import Role
 from tests.e2e.conftest import Rig
-from tests.e2e.programs import PATIENCE, GroundStation, Vehicle
+from tests.e2e.programs import GroundStation, Vehicle
 from tests.e2e.relay import Relay
 from tests.e2e.test_station_process_lost import station_of
 from tests.groundstation.screen import children
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits
 
 pytestmark = pytest.mark.e2e
 

@@ -12,7 +12,8 @@ import pytest
 
 from dialects.modes import Mode
 from tests.e2e.conftest import Rig
-from tests.e2e.programs import LET_GO, PATIENCE
+from tests.e2e.programs import LET_GO
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.e2e.programs import PATIENCE, GroundStation
+from tests.e2e.programs import GroundStation
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

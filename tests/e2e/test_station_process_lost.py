@@ -16,14 +16,14 @@ import pytest
 
 from groundstation.station_socket.connect import running_stations
 from tests.e2e.conftest import Rig
-from tests.e2e.programs import LET_GO, PATIENCE, GroundStation, drive_on
+from tests.e2e.programs import LET_GO, GroundStation, drive_on
 from tests.e2e.test_stop_matrix import assert_stood, assert_stops
 from tests.fakes.lines import on_line
 from tests.fakes.rover import LATCH, FakeArduPilot
-from tests.groundstation.screen import children, running, until
+from tests.groundstation.screen import children, running
 from tests.groundstation.ui.wheel import modes
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits, wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -127,7 +127,7 @@ def test_a_screen_that_quits_resets_the_terminal_itself(bench: Bench) -> None:
     bench.program.type("\x11")
     bench.program.type("\x11")
     assert bench.program.ended() == 0
-    until(lambda: not running(bench.station))
+    wait_until(lambda: not running(bench.station))
     bench.program.look(0.5)
     assert not modes(bench.program.screen)[1049]
     assert b"\x1b[=0;1u" not in bench.program.screen
@@ -139,7 +139,7 @@ def test_a_killed_screen_leaves_the_terminal_as_it_was(bench: Bench) -> None:
     assert termios.tcgetattr(bench.program._terminal) != bench.before
     os.kill(bench.program.process.pid, signal.SIGKILL)
     assert_terminal_is_reset(bench)
-    until(lambda: not running(bench.station))
+    wait_until(lambda: not running(bench.station))
 
 
 def assert_terminal_is_reset(bench: Bench) -> None:
@@ -151,14 +151,14 @@ def assert_reset(program: GroundStation, before: Sequence[object]) -> None:
     left = [mode for mode, on in modes(program.screen).items() if on and mode not in (7, 25, 1007)]
     assert left == []
     assert program.screen.rfind(b"\x1b[<u") > program.screen.rfind(b"\x1b[>")
-    until(lambda: termios.tcgetattr(program._terminal) == before)
+    wait_until(lambda: termios.tcgetattr(program._terminal) == before)
 
 
 def test_a_killed_screen_that_was_attached_leaves_the_terminal_as_it_was(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "groundstation", "serve", "--headless", f"udpin:127.0.0.1:{free_port()}"]
     with subprocess.Popen(command, stderr=subprocess.DEVNULL) as station:
         try:
-            until(lambda: station.pid in running_stations())
+            wait_until(lambda: station.pid in running_stations())
             program = GroundStation(tmp_path, "attach", str(station.pid))
             before = termios.tcgetattr(program._terminal)
             program.wait_for(lambda: bool(modes(program.screen).get(1000)), PATIENCE, "the screen")

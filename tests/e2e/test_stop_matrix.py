@@ -16,7 +16,8 @@ import pytest
 
 from dialects.modes import Mode
 from tests.e2e.conftest import Rig
-from tests.e2e.programs import LET_GO, PATIENCE, drive_on
+from tests.e2e.programs import LET_GO, drive_on
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

@@ -14,8 +14,9 @@ from groundstation.intents.driving import Stop
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.snapshot import Snapshot
 from tests.e2e.programs import Vehicle
-from tests.groundstation.screen import FORWARD, Screen, until
+from tests.groundstation.screen import FORWARD, Screen
 from tests.ports import free_port
+from tests.waits import wait_until
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
@@ -56,7 +57,7 @@ def test_the_twin_is_told_that_another_program_drives_and_its_keys_move_nothing(
     assert not blocked.operator.sending
     twins.see_wheels_turn()
     twins.driver.client.send(Stop())
-    until(twins.vehicle.stands)
+    wait_until(twins.vehicle.stands)
     assert in_control(twins.driver.snapshot)
 
 
@@ -64,7 +65,7 @@ def test_after_the_driver_is_killed_the_twin_drives_once_its_key_is_pressed_anew
     twins.twin.see(lambda seen: seen.vehicle is not None and seen.vehicle.twin)
     twins.twin.client.send(ReportKeyReleases(), FORWARD)
     os.kill(twins.driver.client.pid, signal.SIGKILL)
-    until(twins.vehicle.stands)
+    wait_until(twins.vehicle.stands)
     twins.twin.see(in_control)
     assert not twins.vehicle.turning()  # the key that was held all along
     twins.twin.turn_wheels(twins.vehicle.turning)

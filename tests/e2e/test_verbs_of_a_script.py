@@ -12,10 +12,9 @@ from pathlib import Path
 import pytest
 
 from groundstation.station_socket.connect import running_stations
-from tests.e2e.programs import PATIENCE, Vehicle
-from tests.groundstation.verbs.verb_runs import wait_until
+from tests.e2e.programs import Vehicle
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits, wait_until
 
 pytestmark = pytest.mark.e2e
 HOME = (-35.363262, 149.165237)

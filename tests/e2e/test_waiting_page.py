@@ -15,8 +15,9 @@ from pathlib import Path
 import pytest
 
 from link.transport.local_addresses import LocalAddresses
-from tests.e2e.programs import PATIENCE, GroundStation
+from tests.e2e.programs import GroundStation
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from groundstation import client as client_module
-from tests.groundstation.screen import PATIENCE
+from tests.waits import PATIENCE
 
 
 @pytest.fixture

@@ -13,9 +13,9 @@ from pathlib import Path
 
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
-from tests.groundstation.screen import running, until
+from tests.groundstation.screen import running
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import Waits, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -32,7 +32,7 @@ def neutral(vehicle: FakeVehicle, since: float) -> list[float]:
 
 def assert_said_neutral(vehicle: FakeVehicle, since: float) -> None:
     """Check that the last demands of the station were five neutrals."""
-    until(lambda: len(neutral(vehicle, since)) >= 5)
+    wait_until(lambda: len(neutral(vehicle, since)) >= 5)
     assert len(neutral(vehicle, since)) == 5
     assert not moving(vehicle, neutral(vehicle, since)[0])
 
@@ -53,10 +53,10 @@ def killed_screen(within: float, *options: str) -> Iterator[tuple[FakeVehicle, i
         try:
             assert parent.stdout is not None
             station = int(parent.stdout.readline())
-            until(lambda: bool(moving(vehicle, 0.0)))
+            wait_until(lambda: bool(moving(vehicle, 0.0)))
             waits, killed = Waits(station), time.monotonic()
             parent.kill()
-            until(lambda: bool(neutral(vehicle, killed)))
+            wait_until(lambda: bool(neutral(vehicle, killed)))
             assert neutral(vehicle, killed)[0] - killed < within + waits.total()
             yield vehicle, station, killed
         finally:

@@ -18,9 +18,8 @@ from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import Snapshot
 from tests.fakes.vehicle import FakeVehicle
 from tests.ports import free_port
+from tests.waits import PATIENCE, wait_until
 
-PATIENCE = 60.0
-"""s for what must come, and comes in less than one: the machine is shared."""
 TRY = 3.0
 """s for a key to show; a screen or a station that the machine held up for 0.3 s wants it pressed again."""
 FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
@@ -83,7 +82,7 @@ class Screen:
         """Arm and hold `i`; return when the vehicle receives the demand."""
         self.hold_forward()
         begun = time.monotonic()
-        until(lambda: any(x == 600 for _, x in vehicle.demands(begun)))
+        wait_until(lambda: any(x == 600 for _, x in vehicle.demands(begun)))
 
     def hold_forward(self) -> None:
         """Arm and hold `i`; return when the snapshot shows the demand."""
@@ -120,14 +119,6 @@ class Screen:
     def _renew(self) -> None:
         while not self._stop.wait(0.1):
             self.client.send(RenewLease())
-
-
-def until(condition: Callable[[], bool], within: float = PATIENCE) -> None:
-    """Poll until `condition` is true."""
-    deadline, waiting = time.monotonic() + within, threading.Event()
-    while not condition():
-        assert time.monotonic() < deadline, f"not within {within} s"
-        waiting.wait(0.01)
 
 
 def running(pid: int) -> bool:

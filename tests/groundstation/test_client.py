@@ -11,7 +11,8 @@ from groundstation.client import StationClient, StationError
 from groundstation.intents.driving import DriveKeyUp
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
-from tests.groundstation.screen import FORWARD, Screen, until
+from tests.groundstation.screen import FORWARD, Screen
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -52,7 +53,7 @@ def test_a_screen_that_does_not_read_blocks_nothing() -> None:
                 screen.client.send(DriveKeyUp(key="i"), FORWARD)
             return len(moving(vehicle, start)) > 30
 
-        until(has_driven)
+        wait_until(has_driven)
         newest = screen.client.receive()
         assert newest is not None
         assert newest.number > screen.snapshot.number + 5, "the newest one, not the oldest"

@@ -20,9 +20,9 @@ from groundstation.views.plan import PlanKind
 from groundstation.views.requests import RequestLine
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.ui.map.plans import HOME, at, item, task
+from tests.waits import PATIENCE
 
 ITEMS = (item(16, 5), item(19, 5, 5, 3.0), task(177, 0.0, 2.0))
-PATIENCE = 60.0
 
 
 class Station:

@@ -20,8 +20,8 @@ from dialects.enums import StationEventKind as Kind
 from groundstation.intents.driving import DriveKeyUp
 from groundstation.recording.options import RecordOptions
 from link.tlog.tlog import Record, read_records
-from tests.groundstation.screen import FORWARD, Screen, until
-from tests.waits import Waits
+from tests.groundstation.screen import FORWARD, Screen
+from tests.waits import Waits, wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -163,5 +163,5 @@ def test_an_end_in_order_is_in_the_log(tmp_path: Path) -> None:
     with Screen(sitl=True, record=RecordOptions(tmp_path, 100, 2000)) as screen:
         screen.see(lambda seen: seen.recording is not None and seen.recording.size > 0)
         assert screen.client.close() == 0
-        until(lambda: not screen.client.alive)
+        wait_until(lambda: not screen.client.alive)
     assert notes(only_log(tmp_path))[-1] == (Kind.MARK, "recording ends")

@@ -35,8 +35,9 @@ from groundstation.station_socket.hello import SCREEN, Hello
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.killed_screen import ROOT, assert_said_neutral, killed_screen, moving, neutral
-from tests.groundstation.screen import FORWARD, Screen, running, until
+from tests.groundstation.screen import FORWARD, Screen, running
 from tests.ports import free_port
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -47,14 +48,14 @@ NOBODY = 65534
 def test_the_socket_is_for_this_user_only_and_goes_with_its_station() -> None:
     with Screen() as screen:
         path = socket_path(folder_path(), screen.client.pid)
-        until(path.exists)
+        wait_until(path.exists)
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
         assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
         assert running_stations() == [screen.client.pid]
         with pytest.raises(StationError, match="has another version: end it and start it again"):
             _attach_with(screen.client.pid, Hello(SCREEN, 1, "an old screen"))
         assert screen.client.alive
-    until(lambda: not path.exists())
+    wait_until(lambda: not path.exists())
     with pytest.raises(NoStationError, match="no station with process id"):
         connect(screen.client.pid, Hello(SCREEN, 1))
 
@@ -63,7 +64,7 @@ def test_the_socket_is_for_this_user_only_and_goes_with_its_station() -> None:
 def test_another_user_is_refused_even_where_the_folder_lets_him_in() -> None:
     with Screen() as screen:
         path = socket_path(folder_path(), screen.client.pid)
-        until(path.exists)
+        wait_until(path.exists)
         for each, mode in ((path, 0o777), (path.parent, 0o755), (path.parent.parent, 0o755)):
             each.chmod(mode)
         try:
@@ -89,7 +90,7 @@ print(sock.recv(4096))
 def test_the_second_screen_watches_stops_and_drives_once_the_first_gives_the_keys() -> None:
     with Screen() as first, on_line(FakeVehicle(), endpoint=first.endpoint) as vehicle:
         first.drive(vehicle)
-        until(lambda: first.client.pid in running_stations())
+        wait_until(lambda: first.client.pid in running_stations())
         with Screen.attach(first.client.pid) as second:
             assert second.client.first_request == 1_000_001
             second.see(lambda seen: seen.lease.driver == "first screen")
@@ -100,7 +101,7 @@ def test_the_second_screen_watches_stops_and_drives_once_the_first_gives_the_key
 
             stopped = time.monotonic()
             second.client.send(Stop(STOP_KEY))
-            until(lambda: bool(neutral(vehicle, stopped)))
+            wait_until(lambda: bool(neutral(vehicle, stopped)))
             first.see(lambda seen: seen.operator.throttle == 0 and not seen.lease.driver)
             assert not moving(vehicle, neutral(vehicle, stopped)[0])
 
@@ -111,7 +112,7 @@ def test_the_second_screen_watches_stops_and_drives_once_the_first_gives_the_key
             first.see(lambda seen: seen.lease.driver == "second screen")
             second.drive(vehicle)
             first.client.send(FORWARD)
-        until(lambda: not moving(vehicle, time.monotonic() - 0.2))
+        wait_until(lambda: not moving(vehicle, time.monotonic() - 0.2))
         first.see(lambda seen: seen.lease.driver == "no screen")
 
 
@@ -123,7 +124,7 @@ def test_a_kept_station_goes_neutral_when_its_screen_is_killed_and_takes_the_nex
             screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.armed and not seen.lease.driver)
             screen.drive(vehicle)
             screen.client.send(Quit(disarm=True))
-            until(lambda: not running(station))
+            wait_until(lambda: not running(station))
             assert not vehicle.armed
 
 
@@ -136,15 +137,15 @@ def test_a_station_without_a_screen_is_silent_and_outlives_its_screens() -> None
         assert station.stderr.readline() == (
             f"station {station.pid} on {endpoint}; `groundstation attach` opens a screen\n"
         )
-        until(lambda: running_stations() == [station.pid])
+        wait_until(lambda: running_stations() == [station.pid])
         with on_line(FakeVehicle(), endpoint=endpoint) as vehicle:
             with Screen.attach(station.pid) as screen:
                 screen.drive(vehicle)
                 left = time.monotonic()
-            until(lambda: bool(neutral(vehicle, left)))
+            wait_until(lambda: bool(neutral(vehicle, left)))
             assert_said_neutral(vehicle, left)
             quiet = time.monotonic() + 0.2
-            until(lambda: time.monotonic() > quiet + 2.0)
+            wait_until(lambda: time.monotonic() > quiet + 2.0)
             assert [at for at, _ in vehicle.all(m.Heartbeat) if at > quiet] == [], "the failsafe must act"
             assert running_stations() == [station.pid]
         station.send_signal(signal.SIGINT)

@@ -12,9 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.programs import Vehicle
 from tests.e2e.relay import Relay
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 HOME = (-35.3632581, 149.1652363)
 """Where the simulated rover starts, degrees."""

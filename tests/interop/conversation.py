@@ -11,8 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-PATIENCE = 60.0
-"""s for an answer: the machine is shared."""
+from tests.waits import PATIENCE
 
 
 class Conversation:

@@ -14,9 +14,10 @@ from typing import Any, Protocol
 from dialects import messages as m
 from dialects.enums import Command, ModeFlag, Result
 from tests.interop import mavproxy, mavsdk_process
-from tests.interop.conversation import PATIENCE, Conversation
+from tests.interop.conversation import Conversation
 from tests.interop.qgroundcontrol import JOYSTICK, QGroundControl
 from tests.interop.script import Script
+from tests.waits import PATIENCE
 
 RELEASE, REQUEST = 0, 1
 """Parameter 1 of REQUEST_OPERATOR_CONTROL."""

@@ -18,7 +18,6 @@ from mavsdk import ComponentType, Configuration, Mavsdk
 
 from tests.interop import mavsdk_streams
 from tests.interop.mavsdk_tools import (
-    PATIENCE,
     Stick,
     accepted,
     by_hand,
@@ -35,6 +34,7 @@ from tests.interop.mavsdk_tools import (
     wait_until,
     watch,
 )
+from tests.waits import PATIENCE
 
 
 def identity(system: Any, folder: str) -> None:

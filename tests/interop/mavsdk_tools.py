@@ -11,9 +11,9 @@ from enum import Enum
 from importlib import import_module
 from typing import Any
 
+from tests.waits import PATIENCE
+
 Subscribe = Callable[[Callable[..., None]], Any]
-PATIENCE = 60.0
-"""s for an answer that MAVSDK returns by a callback: the machine is shared."""
 NEUTRALS = 8
 """Neutral messages before the stick moves: more than a lossy link loses in a row."""
 

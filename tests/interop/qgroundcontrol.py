@@ -21,6 +21,7 @@ from dialects.enums import Command, Result
 from link.protocol.framer import Framer
 from link.services.ftp.protocol import crc32
 from tests.interop.qgc_files import LIMIT, Download, DownloadError
+from tests.waits import PATIENCE
 
 Kind = TypeVar("Kind", bound=m.Message)
 
@@ -37,8 +38,6 @@ JOYSTICK = 1 / 25
 """s between two MANUAL_CONTROL."""
 NEUTRALS = 8
 """Neutral messages before the stick moves: more than a lossy link loses in a row."""
-PATIENCE = 60.0
-"""s for every wait: the machine is shared."""
 
 
 class QGroundControl:

@@ -9,6 +9,8 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
+from tests.waits import PATIENCE
+
 os.environ["MAVLINK20"] = "1"  # read when mavutil is imported
 
 mavftp: Any = import_module("pymavlink.mavftp")  # partly typed, so not checked
@@ -21,8 +23,6 @@ STICK = 0.05
 """s between two MANUAL_CONTROL."""
 NEUTRALS = 8
 """Neutral messages before the stick moves: more than a lossy link loses in a row."""
-PATIENCE = 60.0
-"""s for every wait: the machine is shared."""
 
 
 class Script:

@@ -12,11 +12,11 @@ import pytest
 
 from dialects.enums import Command, Result
 from tests.e2e.fleet_programs import RouterProcess, make_fleet
-from tests.e2e.programs import PATIENCE, Vehicle
-from tests.groundstation.verbs.verb_runs import wait_until
+from tests.e2e.programs import Vehicle
 from tests.interop import mavproxy as mavproxy_program
 from tests.interop.qgroundcontrol import QGroundControl
 from tests.ports import free_port
+from tests.waits import PATIENCE, wait_until
 from vehicle.params import TABLE
 
 pytestmark = [pytest.mark.interop, pytest.mark.slow]

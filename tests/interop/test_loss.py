@@ -19,9 +19,10 @@ from link.services.mission.items import from_message
 from tests.e2e.relay import Relay
 from tests.interop import mavproxy, mavsdk_process, qgc_plans
 from tests.interop.conftest import HOME, Rover
-from tests.interop.conversation import PATIENCE, Conversation
+from tests.interop.conversation import Conversation
 from tests.interop.qgroundcontrol import QGroundControl
 from tests.interop.script import Script, mavparm, mavwp
+from tests.waits import PATIENCE
 from vehicle.autonomy.mission.executor import MissionState
 from vehicle.params import TABLE
 

@@ -21,6 +21,7 @@ from tests.groundstation.ui.map.plans import item
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.interop.mavsdk_process import ROOT, needed
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = [pytest.mark.e2e, needed]
 
@@ -32,7 +33,6 @@ WAYPOINTS = """QGC WPL 110
 VEHICLE = "tests.interop.mavsdk_vehicle"
 PARAMS = 300
 """Whole numbers; as many as make several datagrams of a list."""
-PATIENCE = 60.0
 
 
 class Vehicle:

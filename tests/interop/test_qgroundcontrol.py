@@ -12,8 +12,8 @@ from dialects.enums import Capability, Command, Result
 from tests.interop import qgc_plans
 from tests.interop.conftest import Rover
 from tests.interop.qgc_files import LIMIT
-from tests.interop.qgroundcontrol import PATIENCE, QGroundControl
-from tests.waits import Waits
+from tests.interop.qgroundcontrol import QGroundControl
+from tests.waits import PATIENCE, Waits
 from vehicle.params import TABLE
 
 pytestmark = pytest.mark.interop

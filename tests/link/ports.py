@@ -8,7 +8,7 @@ import os
 import pty
 import termios
 import tty
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Hashable, Sequence
 from pathlib import Path
 
 from link.transport.transport import Transport
@@ -98,18 +98,3 @@ class Heard:
     @property
     def bytes(self) -> bytes:
         return b"".join(data for data, _ in self.data)
-
-
-async def until(condition: Callable[[], object], within: float = 60.0) -> None:
-    """Let the loop run until `condition`."""
-    async with asyncio.timeout(within):
-        while not condition():
-            await _turn()
-
-
-async def _turn() -> None:
-    """Let the loop do what is due, and at least 1 ms pass."""
-    loop = asyncio.get_running_loop()
-    due = loop.create_future()
-    loop.call_later(0.001, due.set_result, None)
-    await due

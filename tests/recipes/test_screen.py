@@ -33,7 +33,6 @@ ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f11",), "y", "groundstati
 OPEN_IT = """
 import asyncio
 from tests.groundstation.ui.pilots import console
-from tests.groundstation.ui.ptys import until
 
 async def main():
     async with console(size=(140, 45)) as screen:

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Protocol
 
 from tests.benchmarks.procfs import family
-from tests.e2e.programs import PATIENCE, Output, Vehicle
+from tests.e2e.programs import Output, Vehicle
 from tests.soak.drivers import Driver, KeyDriver, SnapshotDriver
 from tests.soak.rules import Stretch, stretches
+from tests.waits import PATIENCE
 
 
 class Member(Protocol):

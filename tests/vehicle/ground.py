@@ -18,9 +18,8 @@ from dialects import codec, rover
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Autopilot, Command, ModeFlag, VehicleType
 from dialects.messages import CommandLong, Heartbeat, Message, StatusText, decode_text
+from tests.waits import PATIENCE
 
-PATIENCE = 60.0
-"""s for what must come, and comes in one or two: the machine is shared."""
 PATIENT_LOOP = "FS_LOOP_TIMEOUT=2"
 """A control cycle later than this disarms: the longest that can be set, because the machine is shared."""
 DEMAND_PERIOD = 0.05

@@ -13,10 +13,10 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
-from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import children
-from tests.groundstation.verbs.verb_runs import wait_until
 from tests.ports import free_port
+from tests.waits import PATIENCE, wait_until
 
 HERE = Path(__file__).parent
 COMMAND_NODE = HERE.parents[2] / "docs" / "examples" / "command_node.py"

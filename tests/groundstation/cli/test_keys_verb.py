@@ -15,8 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, attach_pty
-
-PATIENCE = 60.0
+from tests.waits import PATIENCE
 
 
 class Keys:

@@ -9,8 +9,8 @@ from groundstation.connect.listener import VehicleListener
 from groundstation.views.connect import HeardRow
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
-from tests.groundstation.ui.ptys import until
 from tests.ports import free_port
+from tests.waits import until
 
 IDS = (255, 190)
 

@@ -18,9 +18,9 @@ from groundstation.views.connect import ConnectRequest, ConnectView, LinkAttempt
 from groundstation.views.links import LinksRequest, LinksView
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
-from tests.groundstation.screen import Screen, until
+from tests.groundstation.screen import Screen
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import Waits, wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -77,7 +77,7 @@ def test_a_driver_notices_nothing_of_a_link_that_is_added_and_closed() -> None:
             screen.client.send(CloseLink(link=index_of(screen, other)))
             screen.see(lambda seen: seen.vehicles == (1,) and other not in seen.endpoints)
             closed = time.monotonic()
-        until(lambda: len(vehicle.demands(closed)) > 10)
+        wait_until(lambda: len(vehicle.demands(closed)) > 10)
         demands = [at for at, x in vehicle.demands(begun) if x == 600]
         assert demands[-1] > closed
         gaps = [later - before for before, later in pairwise(demands)]
@@ -93,7 +93,7 @@ def test_closing_a_link_is_neutral_first_and_then_silence() -> None:
         screen.client.send(CloseLink(link=0))
         screen.see(lambda seen: seen.endpoints == ())
         closed = time.monotonic()
-        until(lambda: len([x for _, x in vehicle.demands(begun) if not x]) >= 5)
+        wait_until(lambda: len([x for _, x in vehicle.demands(begun) if not x]) >= 5)
         neutral = [at for at, x in vehicle.demands(begun) if not x]
         assert len(neutral) == 5
         assert not [at for at, x in vehicle.demands(neutral[0]) if x]

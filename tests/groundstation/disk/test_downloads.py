@@ -12,7 +12,8 @@ import pytest
 from groundstation.intents.files import GetFile
 from groundstation.intents.session import Quit
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
-from tests.groundstation.screen import Screen, running, until
+from tests.groundstation.screen import Screen, running
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -33,7 +34,7 @@ def begin(screen: Screen, vehicle: ForeignVehicle, folder: Path) -> Path:
 def test_a_download_is_written_by_the_station(tmp_path: Path) -> None:
     with foreign_vehicle() as vehicle, Screen(vehicle.endpoint) as screen:
         begin(screen, vehicle, tmp_path)
-        until(lambda: (tmp_path / "1.bin").exists())
+        wait_until(lambda: (tmp_path / "1.bin").exists())
         assert (tmp_path / "1.bin").read_bytes() == DATA
         assert not (tmp_path / "1.bin.part").exists()
 
@@ -43,7 +44,7 @@ def test_quitting_keeps_what_has_arrived(tmp_path: Path) -> None:
     with foreign_vehicle() as vehicle, Screen(vehicle.endpoint) as screen:
         part = begin(screen, vehicle, tmp_path)
         screen.client.send(Quit())
-        until(lambda: not running(screen.client.pid))
+        wait_until(lambda: not running(screen.client.pid))
         kept = (tmp_path / "1.bin").read_bytes() if (tmp_path / "1.bin").exists() else part.read_bytes()
         assert kept
         assert DATA.startswith(kept)
@@ -53,6 +54,6 @@ def test_a_killed_station_leaves_no_file_under_the_final_name(tmp_path: Path) ->
     with foreign_vehicle() as vehicle, Screen(vehicle.endpoint) as screen:
         begin(screen, vehicle, tmp_path)
         os.kill(screen.client.pid, signal.SIGKILL)
-        until(lambda: not running(screen.client.pid))
+        wait_until(lambda: not running(screen.client.pid))
         whole = tmp_path / "1.bin"
         assert not whole.exists() or whole.read_bytes() == DATA

@@ -8,10 +8,11 @@ import socket
 from pathlib import Path
 from types import TracebackType
 
+from tests.waits import PATIENCE
+
 SOCKET = "TEST_PAD_SOCKET"
 """Environment variable with the path of the test's socket."""
 FULL = 32767
-PATIENCE = 60.0
 
 
 class Hand:

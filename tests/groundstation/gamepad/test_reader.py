@@ -14,7 +14,8 @@ from groundstation.gamepad.child import GamepadChild, missing_package
 from groundstation.input.pad import PadFrame
 from groundstation.input.pad_mapping import ANY, PadMapping
 from tests.groundstation.gamepad.pads import FULL, Hand
-from tests.groundstation.screen import running, until
+from tests.groundstation.screen import running
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.skipif(missing_package() is not None, reason="the extra [gamepad] is not installed")
 
@@ -46,41 +47,41 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
 def test_two_gamepads_of_which_one_drives(bench: Bench) -> None:
     hand = bench.hand
     hand.do("plug One", "button One rightshoulder 1")
-    until(lambda: bench.newest.names == ("One",))
+    wait_until(lambda: bench.newest.names == ("One",))
     assert not bench.newest.held, "its button was held when it was plugged in"
     hand.do("button One rightshoulder 0")
-    until(lambda: bench.newest.read_at > time.monotonic() - 0.3)
+    wait_until(lambda: bench.newest.read_at > time.monotonic() - 0.3)
     hand.do("button One rightshoulder 1")
-    until(lambda: bench.newest.held)
+    wait_until(lambda: bench.newest.held)
     hand.do(f"axis One lefty {-FULL}", "button One start 1")
-    until(lambda: bench.newest.throttle == 1.0 and bench.newest.buttons == ("start",))
+    wait_until(lambda: bench.newest.throttle == 1.0 and bench.newest.buttons == ("start",))
 
     hand.do("plug Two", f"axis Two lefty {FULL}", "button Two rightshoulder 1")
-    until(lambda: bench.newest.names == ("One", "Two"))
+    wait_until(lambda: bench.newest.names == ("One", "Two"))
     assert (bench.newest.name, bench.newest.throttle) == ("One", 1.0)
     steady = len(bench.frames)
-    until(lambda: len(bench.frames) > steady + 20)  # 1 s without any event: a held stick is legal while it is read
+    wait_until(lambda: len(bench.frames) > steady + 20)  # 1 s without any event: a held stick is legal while it is read
     assert {(frame.throttle, frame.held) for frame in bench.frames[steady:]} == {(1.0, True)}
 
     hand.do("unplug One")
-    until(lambda: bench.newest.names == ("Two",))
+    wait_until(lambda: bench.newest.names == ("Two",))
     assert not bench.newest.held, "its button was held before it drives"
     hand.do("button Two rightshoulder 0", "axis Two lefty 0", "plug Three")
-    until(lambda: len(bench.newest.names) == 2)
+    wait_until(lambda: len(bench.newest.names) == 2)
     bench.child.choose_next()
-    until(lambda: bench.newest.name == "Three")
+    wait_until(lambda: bench.newest.name == "Three")
 
 
 def test_a_reader_that_hangs_or_is_killed_is_noticed(bench: Bench) -> None:
     bench.hand.do("plug One")
-    until(lambda: bench.newest.names == ("One",))
+    wait_until(lambda: bench.newest.names == ("One",))
     assert bench.child.problem(time.monotonic()) == ""
     bench.hand.send_signal(signal.SIGSTOP)
-    until(lambda: bench.child.problem(time.monotonic()) == "its reader does not respond")
+    wait_until(lambda: bench.child.problem(time.monotonic()) == "its reader does not respond")
     bench.hand.send_signal(signal.SIGKILL)
-    until(lambda: "has ended" in bench.child.problem(time.monotonic()))
+    wait_until(lambda: "has ended" in bench.child.problem(time.monotonic()))
     assert bench.newest.names == ()
-    until(lambda: bench.frames[-1] == bench.newest)
+    wait_until(lambda: bench.frames[-1] == bench.newest)
 
 
 def test_it_ends_with_the_screen(bench: Bench) -> None:

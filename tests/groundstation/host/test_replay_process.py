@@ -20,7 +20,7 @@ from groundstation.views.base import View
 from groundstation.views.replay import ReplayRequest, ReplayView
 from tests.groundstation.recorded_station import RECORDINGS
 from tests.groundstation.replay.logs import drive_log, indexed, open_desk
-from tests.groundstation.screen import until
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -41,7 +41,7 @@ class Watcher:
             self.views |= {type(view): view for view in self.client.pop_views()}
             return self.snapshot.replay is not None and bool(condition(self.snapshot))
 
-        until(seen)
+        wait_until(seen)
         return self.snapshot
 
     @property

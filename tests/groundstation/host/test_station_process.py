@@ -22,8 +22,8 @@ from tests.fakes.lines import on_line
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.killed_screen import assert_said_neutral, killed_screen, moving, neutral
-from tests.groundstation.screen import FORWARD, Screen, running, until
-from tests.waits import Waits
+from tests.groundstation.screen import FORWARD, Screen, running
+from tests.waits import Waits, wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -33,7 +33,7 @@ def test_a_held_key_drives_and_its_release_is_neutral_at_once() -> None:
         screen.drive(vehicle)
         waits, released = Waits(screen.client.pid), time.monotonic()
         screen.client.send(DriveKeyUp(key="i"))
-        until(lambda: len(neutral(vehicle, released)) > 5)
+        wait_until(lambda: len(neutral(vehicle, released)) > 5)
         assert neutral(vehicle, released)[0] - released < 0.3 + waits.total()
         assert not moving(vehicle, neutral(vehicle, released)[0])
 
@@ -79,7 +79,7 @@ def test_quit_disarms_on_request_and_ends() -> None:
         screen.drive(vehicle)
         at = time.monotonic()
         screen.client.send(Quit(disarm=True))
-        until(lambda: not running(screen.client.pid))
+        wait_until(lambda: not running(screen.client.pid))
         assert_said_neutral(vehicle, at)
         assert not vehicle.armed
         assert screen.client.close() == 0
@@ -92,9 +92,9 @@ def test_signals_mean_neutral_and_end(number: signal.Signals) -> None:
         screen.drive(vehicle)
         at = time.monotonic()
         os.kill(screen.client.pid, number)
-        until(lambda: not running(screen.client.pid))
+        wait_until(lambda: not running(screen.client.pid))
         assert_said_neutral(vehicle, at)
-        until(lambda: screen.client.receive() is None and not screen.client.alive)
+        wait_until(lambda: screen.client.receive() is None and not screen.client.alive)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTSTP])
@@ -109,7 +109,7 @@ def test_the_terminals_keys_do_not_reach_the_station(number: signal.Signals) -> 
 
 def test_killed_screen_is_neutral_and_the_station_ends() -> None:
     with killed_screen(0.4) as (vehicle, station, killed):
-        until(lambda: not running(station))
+        wait_until(lambda: not running(station))
         assert_said_neutral(vehicle, killed)
 
 
@@ -119,12 +119,12 @@ def test_frozen_screen_is_neutral_within_half_a_second_and_control_is_given_up()
         waits = Waits(screen.client.pid)
         screen.freeze()
         frozen = time.monotonic()
-        until(lambda: len(neutral(vehicle, frozen)) >= 5)
+        wait_until(lambda: len(neutral(vehicle, frozen)) >= 5)
         assert max(moving(vehicle, 0.0)) - frozen < 0.5 + waits.total()
         quiet = time.monotonic()
-        until(lambda: time.monotonic() > quiet + 1.5)
+        wait_until(lambda: time.monotonic() > quiet + 1.5)
         still = quiet + 0.1 + waits.total()  # what was on its way
-        until(lambda: time.monotonic() > still + 0.5)
+        wait_until(lambda: time.monotonic() > still + 0.5)
         assert vehicle.demands(still) == []
         assert [at for at, _ in vehicle.all(m.Heartbeat) if at > still] == []
 
@@ -132,7 +132,7 @@ def test_frozen_screen_is_neutral_within_half_a_second_and_control_is_given_up()
 def test_no_key_is_lost_at_5_ms() -> None:
     with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
-        until(lambda: bool(vehicle.all(m.RoverOperatorPresence)))
+        wait_until(lambda: bool(vehicle.all(m.RoverOperatorPresence)))
         before = counted(vehicle) + late(screen.snapshot)
         started = time.monotonic()
         for number in range(1000):

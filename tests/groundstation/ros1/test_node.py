@@ -10,8 +10,7 @@ from pathlib import Path
 
 from groundstation.ros1 import node
 from groundstation.ros1.process import NODE
-
-PATIENCE = 60.0
+from tests.waits import PATIENCE
 
 
 def test_it_is_of_python_3_8_and_imports_neither_this_project_nor_packages_at_its_head() -> None:

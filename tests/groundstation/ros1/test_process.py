@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from groundstation.ros1.process import MAX_WAITING, NodeEndedError, running_node
+from tests.waits import PATIENCE
 
-PATIENCE = 60.0
 TOPICS = {"command": "std_msgs/String"}
 
 

@@ -10,7 +10,8 @@ import pytest
 from groundstation.intents.session import RenewLease, StartSimulator
 from groundstation.sitl.sitl import SimulatorControl
 from link.endpoint import parse_endpoint
-from tests.groundstation.screen import Screen, running, simulators, until
+from tests.groundstation.screen import Screen, running, simulators
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -26,7 +27,7 @@ def test_sitl_starts_a_rover_on_a_free_port_and_ends_it_with_us() -> None:
         assert screen.snapshot.simulator == "running"
         (simulator,) = simulators(screen.client.pid)
         assert screen.client.close() == 0
-        until(lambda: not running(simulator))
+        wait_until(lambda: not running(simulator))
 
 
 def test_the_simulator_can_be_started_later() -> None:
@@ -46,7 +47,7 @@ def test_the_simulator_dies_with_a_station_that_is_killed() -> None:
         sees_rover(screen)
         (simulator,) = simulators(screen.client.pid)
         os.kill(screen.client.pid, signal.SIGKILL)
-        until(lambda: not running(simulator))
+        wait_until(lambda: not running(simulator))
 
 
 def test_the_exit_of_the_simulator_is_reported() -> None:

@@ -19,7 +19,8 @@ from link.core import Peer, Received
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.host.crashing_station import ORDER
-from tests.groundstation.screen import Screen, running, until
+from tests.groundstation.screen import Screen, running
+from tests.waits import wait_until
 
 PEER = Peer(0, "vehicle")
 
@@ -109,7 +110,7 @@ def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> 
             lambda: screen.client.send(SetStyle(style=ORDER + place)),
             lambda snapshot: bool(snapshot.texts) and "station crashed" in snapshot.texts[-1].text,
         )
-        until(lambda: not running(screen.client.pid))
+        wait_until(lambda: not running(screen.client.pid))
         seen = screen.snapshot
         assert seen.texts[-1].text.startswith("station crashed (ZeroDivisionError: a bug")
         assert "\n" not in seen.texts[-1].text
@@ -119,7 +120,7 @@ def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> 
             "station crashed",
         )
         assert screen.client.close() == 1
-        until(lambda: sum(not x for _, x in vehicle.demands(broke)) >= 5)
+        wait_until(lambda: sum(not x for _, x in vehicle.demands(broke)) >= 5)
         moving = [at for at, x in vehicle.demands(broke) if x]
         neutral = [at for at, x in vehicle.demands(broke) if not x]
         assert not moving or max(moving) < neutral[-5]
@@ -144,5 +145,5 @@ def test_without_a_vehicle_it_just_ends() -> None:
             screen.client.send(SetStyle(style=ORDER + "tick"))  # again: one that comes late is dropped
             return not running(screen.client.pid)
 
-        until(ended)
+        wait_until(ended)
         assert screen.client.close() == 1

@@ -24,7 +24,7 @@ from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 
 @dataclass

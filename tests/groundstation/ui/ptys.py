@@ -11,7 +11,7 @@ import signal
 import struct
 import subprocess
 import termios
-from collections.abc import AsyncIterator, Callable, Iterable
+from collections.abc import AsyncIterator, Iterable
 from pathlib import Path
 from threading import Thread
 from typing import TypeVar
@@ -21,13 +21,12 @@ from groundstation.ui.app import ConsoleApp
 from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.terminal.tty_output import TerminalFile
 from tests.groundstation.ui.examples import Recorder
+from tests.waits import PATIENCE, until
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])
 PRESS_W, REPEAT_W, RELEASE_W = "\x1b[119;1:1;119u", "\x1b[119;1:2;119u", "\x1b[119;1:3u"
 """The key W as a terminal with the kitty keyboard protocol sends it."""
 
-PATIENCE = 60.0
-"""s that a test waits for what must come; it comes in milliseconds."""
 
 Value = TypeVar("Value")
 
@@ -86,19 +85,6 @@ class Terminal:
                 if self.answers:
                     self.type(b"\x1b[0n" * data.count(b"\x1b[5n"))
         os.close(self._master)
-
-
-async def until(wanted: Callable[[], Value], within: float = PATIENCE) -> Value:
-    """Wait until it is true, looking at each turn of the loop's clock; TimeoutError after so many s."""
-    loop = asyncio.get_running_loop()
-    deadline = loop.time() + within
-    while not (value := wanted()):
-        if loop.time() > deadline:
-            raise TimeoutError("it did not come")
-        turn = loop.create_future()
-        loop.call_later(0.005, turn.set_result, None)
-        await turn
-    return value
 
 
 @contextlib.asynccontextmanager

@@ -18,7 +18,7 @@ from groundstation.ui.look.appearance import Look
 from tests.groundstation.replay.logs import finish
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 
 class ReplayStation:

@@ -17,7 +17,7 @@ from groundstation.ui.display_state import DisplayState
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console, helps_pushed, type_in
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 DISARMED = snapshot(vehicle=vehicle(armed=False))
 

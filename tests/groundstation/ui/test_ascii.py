@@ -9,7 +9,8 @@ from rich.cells import cell_len
 
 from groundstation.ui.look.appearance import Look
 from groundstation.ui.look.ascii import to_ascii
-from tests.groundstation.ui.ptys import app_on_a_pty, until
+from tests.groundstation.ui.ptys import app_on_a_pty
+from tests.waits import until
 
 
 @given(st.text())

@@ -14,7 +14,7 @@ from groundstation.ui.screens.links import LinksScreen
 from groundstation.ui.screens.log import LogScreen
 from tests.groundstation.ui.example_map import pages, picture, plan_view, track
 from tests.groundstation.ui.pilots import console, type_in
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 ARMED = picture(armed=True, mode="HOLD", speed=0.0)
 

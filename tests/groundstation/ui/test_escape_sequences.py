@@ -20,9 +20,10 @@ from groundstation.ui.keys.key_gate import KeyGate
 from groundstation.ui.terminal.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.ui.examples import Recorder
-from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, STANDARD, app_on_a_pty, until
+from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, STANDARD, app_on_a_pty
 from tests.groundstation.ui.sequences import STOPS, every_sequence, is_stop
 from tests.groundstation.ui.sinks import Clock, Sink
+from tests.waits import until
 
 TICK = 0.05
 SEQUENCES = every_sequence()

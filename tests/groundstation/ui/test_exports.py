@@ -18,9 +18,9 @@ from link.tlog.tlog import read_records
 from tests.groundstation.export.logs import drive
 from tests.groundstation.replay.logs import NOON, BytesSource, build_station, drive_log, finish
 from tests.groundstation.ui.pilots import console
-from tests.groundstation.ui.ptys import until
 from tests.groundstation.ui.replay_station import replay_console
 from tests.groundstation.ui.screens.test_files import WIDE, open_files
+from tests.waits import until
 
 FOLDER = Path("/logs")
 LOG = FOLDER / "a.tlog"

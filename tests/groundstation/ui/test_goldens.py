@@ -42,7 +42,8 @@ from tests.groundstation.ui.examples import (
 )
 from tests.groundstation.ui.link_examples import FLEET, OURS, SIGNED, VIEWS
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import STANDARD, until
+from tests.groundstation.ui.ptys import STANDARD
+from tests.waits import until
 
 GOLDEN = Path(__file__).parent / "golden"
 SMALL, WIDE, LARGE = (80, 24), (140, 45), (200, 60)

@@ -9,9 +9,10 @@ from groundstation.ui.keys.key_gate import KeyGate
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import Recorder
-from tests.groundstation.ui.ptys import STANDARD, app_on_a_pty, until
+from tests.groundstation.ui.ptys import STANDARD, app_on_a_pty
 from tests.groundstation.ui.sinks import Clock
 from tests.groundstation.ui.typing_monkey import PAIRS, corpus, rampage
+from tests.waits import until
 
 PRESS_R, REPEAT_R, RELEASE_R = "\x1b[114;1:1;114u", "\x1b[114;1:2;114u", "\x1b[114;1:3u"
 """The key R as a terminal with the kitty keyboard protocol sends it."""

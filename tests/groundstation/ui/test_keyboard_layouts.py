@@ -14,7 +14,8 @@ from groundstation.ui.terminal.key_parser import find_latin_sequence
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import snapshot, vehicle
-from tests.groundstation.ui.ptys import PATIENCE, Terminal, app_on_a_pty, until
+from tests.groundstation.ui.ptys import Terminal, app_on_a_pty
+from tests.waits import PATIENCE, until
 
 TRY = 3.0
 """s for a hint to show, which takes milliseconds."""

@@ -18,9 +18,10 @@ from groundstation.ui.terminal.escape_sequences import MAX_LENGTH, OPEN_TIME, Pi
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from groundstation.ui.terminal.mouse import CAPTURE_MOUSE, RELEASE_MOUSE
 from tests.groundstation.ui.programs import Program
-from tests.groundstation.ui.ptys import app_on_a_pty, until
+from tests.groundstation.ui.ptys import app_on_a_pty
 from tests.groundstation.ui.sinks import Clock, Sink
 from tests.groundstation.ui.wheel import DOWN, UP, modes, notch
+from tests.waits import until
 
 REPORTS = {
     "wheel up": "\x1b[<64;11;12M",

@@ -22,7 +22,7 @@ from groundstation.ui.widgets.status import StatusBar
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.extra_screen import ExtraScreen
 from tests.groundstation.ui.pilots import Console, console, type_in
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 EXTRA = ScreenRow("extra", "Extra", "One more screen", ("f7",), "7", "tests.groundstation.ui.extra_screen:ExtraScreen")
 TABS = [row.id for row in SCREENS if row.in_tabs]

@@ -6,7 +6,7 @@ from groundstation.actions import ACTIONS
 from groundstation.intents.vehicle import Disarm
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 DISARMED = snapshot(vehicle=vehicle(armed=False))
 

@@ -19,7 +19,7 @@ from groundstation.ui.screens.screen import ConsoleScreen
 from tests.fakes.params import Param, many_params
 from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 DOCS = {
     "parameters": [

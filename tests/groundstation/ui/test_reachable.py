@@ -13,8 +13,8 @@ from groundstation.screens import SCREENS
 from groundstation.ui.navigation import load_screen
 from groundstation.ui.palette import action_commands
 from tests.groundstation.ui.pilots import console
-from tests.groundstation.ui.ptys import until
 from tests.groundstation.ui.test_goldens import SMALL, STANDING
+from tests.waits import until
 
 FUNCTION_KEY = re.compile(r"(?:\w+\+)*f\d+")
 

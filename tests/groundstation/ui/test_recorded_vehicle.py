@@ -9,7 +9,7 @@ from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import PLAIN
 from tests.groundstation.recorded_station import RecordedStation
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 FACTS = {
     "drive": ("ArduPilot rover 1", "MANUAL", "ARMED", "RTK fixed, 10 satellites", "servo 1"),

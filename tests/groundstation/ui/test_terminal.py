@@ -7,7 +7,8 @@ import asyncio
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.ui.keys.key_gate import GateClosure
-from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, app_on_a_pty, until
+from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, app_on_a_pty
+from tests.waits import until
 
 
 async def test_a_key_and_its_release_arrive_as_intents() -> None:

@@ -14,7 +14,7 @@ from groundstation.ui.screens.messages import MessagesScreen
 from groundstation.ui.screens.screen import ConsoleScreen
 from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console, type_in
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 ESC, LEFT, BACKSPACE = "\x1b[27u", "\x1b[D", "\x7f"
 """Escape as the kitty keyboard protocol sends it: alone, whatever follows."""

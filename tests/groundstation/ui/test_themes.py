@@ -20,8 +20,9 @@ from tests.groundstation.ui import frames
 from tests.groundstation.ui.contrast import TEXT_CONTRAST, colour_codes, contrast, forget_drawn_styles, luminance, shown
 from tests.groundstation.ui.examples import snapshot, waiting
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import app_on_a_pty, until
+from tests.groundstation.ui.ptys import app_on_a_pty
 from tests.groundstation.ui.test_goldens import FRAMES, GOLDEN, SMALL, STANDING, STOPPED, views_for
+from tests.waits import until
 
 COLOURED = [name for name, theme in THEMES.items() if not theme.attributes]
 

@@ -25,8 +25,8 @@ from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.held_key import GAP, event_times
 from tests.groundstation.ui.ptys import attach_pty
+from tests.waits import PATIENCE
 
-PATIENCE = 60.0
 FOLDER = Path(__file__).parents[3]
 
 needs_tmux = pytest.mark.skipif(

@@ -17,7 +17,8 @@ from groundstation.intents.vehicle import Arm
 from groundstation.ui.app import ConsoleApp
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import Recorder, snapshot, vehicle
-from tests.groundstation.ui.ptys import Terminal, app_on_a_pty, until
+from tests.groundstation.ui.ptys import Terminal, app_on_a_pty
+from tests.waits import until
 
 FOLDER = Path(__file__).parents[3]
 

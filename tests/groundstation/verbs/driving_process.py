@@ -11,8 +11,8 @@ from contextlib import contextmanager
 
 from tests.fakes.lines import on_line
 from tests.fakes.rover import LATCH, FakeArduPilot
-from tests.groundstation.verbs.verb_runs import PATIENCE, wait_until
 from tests.ports import free_port
+from tests.waits import PATIENCE, wait_until
 
 
 @contextmanager

@@ -17,6 +17,7 @@ import pytest
 
 from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
 from groundstation.verbs.completion import build_script
+from tests.waits import PATIENCE
 
 PROGRAM = Path(sys.executable).parent / "groundstation"
 HELPS = {**VERB_HELP, **LOCAL_HELP}
@@ -31,8 +32,6 @@ printf '%s\\0' "$@" > {arguments}
 printf 'end%s\\n' ed
 """
 """A program in the place of ours: it writes down what it is called with, but answers completions."""
-PATIENCE = 60.0
-"""s for a shell to answer; it takes a tenth."""
 ENDED = "ended"
 
 

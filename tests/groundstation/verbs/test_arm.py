@@ -9,7 +9,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.exit_codes import ExitCode
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.waits import wait_until
 
 Capture = pytest.CaptureFixture[str]
 ARM, MODE, PREARM = 400, 176, 0x10000000

@@ -12,8 +12,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 from groundstation.verbs.exit_codes import ExitCode
 from tests.fakes.params import Param
 from tests.fakes.services import PX4, ForeignVehicle, foreign_vehicle
-from tests.groundstation.verbs.verb_runs import run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
+from tests.waits import wait_until
 
 Capture = pytest.CaptureFixture[str]
 MOTOR_TEST, ACTUATOR_TEST, CHECKS, CALIBRATION = 209, 310, 401, 241

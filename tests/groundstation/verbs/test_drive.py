@@ -13,7 +13,8 @@ from groundstation.verbs.exit_codes import ExitCode
 from tests.fakes.params import Param
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.driving_process import check_signal, check_standstill
-from tests.groundstation.verbs.verb_runs import PATIENCE, VerbRun, run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.waits import PATIENCE, wait_until
 
 Capture = pytest.CaptureFixture[str]
 PX4_MANUAL, PX4_MISSION = 1 << 16, 4 << 16 | 4 << 24

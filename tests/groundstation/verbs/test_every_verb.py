@@ -27,8 +27,9 @@ from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.test_doctor import INTERVAL, MAG_CAL_START, channels, progress, report, send_all
 from tests.groundstation.verbs.test_examples import prepare
-from tests.groundstation.verbs.verb_runs import run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 LOSS = 0.2

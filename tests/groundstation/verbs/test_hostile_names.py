@@ -17,8 +17,8 @@ from dialects.enums import Autopilot, VehicleType
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.names import PARAMS, VEHICLES, find_names, plain_names
 from tests.groundstation.verbs.shell import InteractiveShell, skip_without
-from tests.groundstation.verbs.verb_runs import wait_until
 from tests.ports import free_port
+from tests.waits import wait_until
 
 SHELLS = ("bash", "zsh", "fish")
 HOSTILE = (

@@ -30,7 +30,8 @@ from tests.groundstation.verbs.test_doctor import (
     progress,
 )
 from tests.groundstation.verbs.test_examples import prepare
-from tests.groundstation.verbs.verb_runs import run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import run_verb
+from tests.waits import wait_until
 
 Capture = pytest.CaptureFixture[str]
 DATA = random.Random(8).randbytes(2_000_000)

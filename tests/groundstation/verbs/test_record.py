@@ -17,10 +17,10 @@ from groundstation.verbs.exit_codes import ExitCode
 from groundstation.verbs.record import FileRecording
 from link.tlog.tlog import read_records
 from tests.fakes.services import foreign_vehicle
-from tests.groundstation.screen import until
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.link.frames import heartbeat
 from tests.ports import free_port
+from tests.waits import wait_until
 
 Capture = pytest.CaptureFixture[str]
 
@@ -84,9 +84,9 @@ def test_ctrl_c_ends_it_in_order(tmp_path: Path) -> None:
     with foreign_vehicle() as vehicle:
         command = [sys.executable, "-m", "groundstation", "record", str(out), "-e", vehicle.endpoint]
         program = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        until(lambda: out.exists() and out.stat().st_size > 0)
+        wait_until(lambda: out.exists() and out.stat().st_size > 0)
         vehicle.send(mav.MAVLink_statustext_message(6, b"the last one"))
-        until(lambda: any(number == StatusText.id for _, _, number in ids(out)))
+        wait_until(lambda: any(number == StatusText.id for _, _, number in ids(out)))
         program.send_signal(signal.SIGINT)
         printed, _ = program.communicate(timeout=60)
     assert program.returncode == 128 + signal.SIGINT

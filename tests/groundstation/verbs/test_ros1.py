@@ -16,7 +16,8 @@ from dialects import messages as m
 from groundstation.verbs.exit_codes import ExitCode
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.ros1.stand_in import StandIn
-from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import run_verb
+from tests.waits import PATIENCE, wait_until
 
 Capture = pytest.CaptureFixture[str]
 GIVEN = ("-v", "1", "--max-speed", "1", "--max-turn", "1")

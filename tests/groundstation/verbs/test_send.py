@@ -10,7 +10,8 @@ import pytest
 
 from tests.fakes.services import PX4, foreign_vehicle
 from tests.groundstation.verbs.driving_process import check_signal, check_standstill
-from tests.groundstation.verbs.verb_runs import PATIENCE, run_verb
+from tests.groundstation.verbs.verb_runs import run_verb
+from tests.waits import PATIENCE
 
 Capture = pytest.CaptureFixture[str]
 DRIVE = ("send", "MANUAL_CONTROL", "z=400", "--rate", "20", "--for", "30", "--yes")

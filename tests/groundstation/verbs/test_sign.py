@@ -20,7 +20,8 @@ from tests.e2e.programs import Vehicle
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.fakes.wires import PymavlinkWire
-from tests.groundstation.verbs.verb_runs import run_until_answered, run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import run_until_answered, run_verb
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.xdist_group("verbs that sign")
 Capture = pytest.CaptureFixture[str]

@@ -20,9 +20,9 @@ from link.tlog.tlog import read_records
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen, until
 from tests.groundstation.verbs.shell import complete
-from tests.groundstation.verbs.verb_runs import PATIENCE, VerbRun, run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import PATIENCE, Waits, wait_until
 
 pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("verbs through a station")]
 Capture = pytest.CaptureFixture[str]

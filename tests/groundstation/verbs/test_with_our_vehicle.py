@@ -14,9 +14,9 @@ import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
 from tests.e2e.programs import Vehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.ports import free_port
-from tests.waits import Waits
+from tests.waits import Waits, wait_until
 
 pytestmark = pytest.mark.xdist_group("verbs with our vehicle")
 Capture = pytest.CaptureFixture[str]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +11,7 @@ import pytest
 
 from groundstation.cli.main import main
 from groundstation.verbs.exit_codes import ExitCode
-
-PATIENCE = 60.0
-"""s for what takes one or two on an idle machine: the machine is shared."""
+from tests.waits import PATIENCE
 
 _AGAIN = (ExitCode.NO_ANSWER, ExitCode.NO_VEHICLE)
 
@@ -51,12 +48,3 @@ def run_until_answered(capsys: pytest.CaptureFixture[str], *arguments: str) -> V
     while (run := run_verb(capsys, *arguments)).code in _AGAIN:
         assert time.monotonic() < deadline, run.err
     return run
-
-
-def wait_until(condition: Callable[[], bool], what: str) -> float:
-    """Wait for a condition; return when it held (monotonic)."""
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, what
-        time.sleep(0.005)
-    return time.monotonic()

@@ -14,8 +14,8 @@ from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import Quit, RenewLease
 from tests.fakes.lines import LINES, on_line
 from tests.fakes.rover import LATCH, FakeArduPilot
-from tests.groundstation.screen import FORWARD, Screen, children, running, until
-from tests.waits import Waits
+from tests.groundstation.screen import FORWARD, Screen, children, running
+from tests.waits import Waits, wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -33,7 +33,7 @@ class Drive:
         self.screen = stack.enter_context(Screen(vehicle.endpoint))
         self.station = self.screen.client.pid
         self.screen.hold_forward()
-        until(lambda: self.rover.moves)
+        wait_until(lambda: self.rover.moves)
         (self.watchdog,) = children(self.station)
         self.waits = Waits(self.station, self.watchdog)
 
@@ -44,7 +44,7 @@ class Drive:
 
     def stops_within(self, seconds: float, since: float) -> None:
         """Check that the wheels stop, in less than the 3 s that the rover takes by itself."""
-        until(lambda: not self.rover.moves)
+        wait_until(lambda: not self.rover.moves)
         assert self.rover.stopped_at - since < seconds + NOISE + self.waits.total() < LATCH
 
     def outage(self) -> str:
@@ -64,15 +64,15 @@ def test_a_killed_station_stops_the_rover_at_once_and_the_screen_says_what_is_kn
 ) -> None:
     drive = Drive(line, stack)
     killed = drive.signal(signal.SIGKILL)
-    until(lambda: "neutral is sent to ArduPilot rover 1" in drive.outage())
+    wait_until(lambda: "neutral is sent to ArduPilot rover 1" in drive.outage())
     drive.stops_within(0.2, killed)
-    until(lambda: drive.outage() == "station process ended: ArduPilot rover 1 stands")
+    wait_until(lambda: drive.outage() == "station process ended: ArduPilot rover 1 stands")
     assert drive.screen.client.left_armed == (
         "station process ended: ArduPilot rover 1 stands",
         "last known before: ArduPilot rover 1 is left ARMED in MANUAL",
     )
     assert not drive.screen.client.alive
-    until(lambda: not running(drive.watchdog))
+    wait_until(lambda: not running(drive.watchdog))
     assert not [at for at, *outputs in drive.rover.turning if any(outputs) and at > drive.rover.stopped_at]
 
 
@@ -84,33 +84,33 @@ def test_a_stopped_station_stops_the_rover_and_its_held_key_moves_nothing_when_i
     send = drive.screen.client.send
     stopped = drive.signal(signal.SIGSTOP)
     drive.stops_within(0.3, stopped)
-    until(lambda: "not responding: neutral is sent to ArduPilot rover 1" in drive.outage())
+    wait_until(lambda: "not responding: neutral is sent to ArduPilot rover 1" in drive.outage())
     drive.signal(signal.SIGCONT)
     back = time.monotonic()
-    until(lambda: send(REPEAT) is None and time.monotonic() > back + 1.5)
+    wait_until(lambda: send(REPEAT) is None and time.monotonic() > back + 1.5)
     assert not drive.rover.moves, "the key was held all along"
     assert drive.rover.stopped_at < back
     assert drive.outage() == ""
     drive.screen.see(lambda seen: any("station stopped for" in line.text for line in seen.texts))
     drive.screen.insist(lambda: send(DriveKeyUp(key="i"), FORWARD), lambda seen: seen.operator.throttle > 0)
-    until(lambda: drive.rover.moves)
+    wait_until(lambda: drive.rover.moves)
 
 
 def test_a_stopped_station_that_is_killed_then_gets_no_second_neutral(stack: ExitStack) -> None:
     drive = Drive("udpin", stack)
     drive.stops_within(0.3, drive.signal(signal.SIGSTOP))
-    until(lambda: "may still move" in drive.outage())
+    wait_until(lambda: "may still move" in drive.outage())
     drive.signal(signal.SIGKILL)
-    until(lambda: not running(drive.watchdog))
-    until(lambda: drive.outage().startswith("station process ended: ArduPilot rover 1 may still move"))
+    wait_until(lambda: not running(drive.watchdog))
+    wait_until(lambda: drive.outage().startswith("station process ended: ArduPilot rover 1 may still move"))
 
 
 def test_the_port_is_free_when_a_station_has_ended_in_order(stack: ExitStack) -> None:
     drive = Drive("udpin", stack)
     drive.screen.client.send(Quit())
-    until(lambda: not running(drive.station))
+    wait_until(lambda: not running(drive.station))
     assert not running(drive.watchdog)
-    until(lambda: not drive.rover.moves)
+    wait_until(lambda: not drive.rover.moves)
     assert drive.outage() == ""
 
 
@@ -119,7 +119,7 @@ def test_a_station_that_drives_nothing_leaves_nothing_behind() -> None:
         screen.see(lambda seen: seen.number > 2)
         (watchdog,) = children(screen.client.pid)
         os.kill(screen.client.pid, signal.SIGKILL)
-        until(lambda: not running(watchdog))
+        wait_until(lambda: not running(watchdog))
         screen.client.receive()
         assert screen.client.outage.text == "station process ended: nothing is sent"
 
@@ -131,7 +131,7 @@ def test_the_report_is_read_behind_intents_that_the_station_has_not_read() -> No
         os.kill(screen.client.pid, signal.SIGSTOP)
         screen.client.send(RenewLease())
         os.kill(screen.client.pid, signal.SIGKILL)
-        until(lambda: not running(watchdog))
+        wait_until(lambda: not running(watchdog))
         screen.client.receive()
         assert screen.client.outage.text == "station process ended: nothing is sent"
 
@@ -151,9 +151,9 @@ def test_a_watchdog_that_was_stopped_does_not_take_a_running_station_for_a_stopp
     drive = Drive("udpin", stack)
     os.kill(drive.watchdog, signal.SIGSTOP)
     at = time.monotonic()
-    until(lambda: time.monotonic() > at + 1.5)
+    wait_until(lambda: time.monotonic() > at + 1.5)
     os.kill(drive.watchdog, signal.SIGCONT)
-    until(lambda: time.monotonic() > at + 3.0)
+    wait_until(lambda: time.monotonic() > at + 3.0)
     if drive.waits.total() < 0.2:
         assert drive.rover.moves
     assert drive.outage() == ""
@@ -163,7 +163,7 @@ def test_without_the_watchdog_the_rover_drives_on_for_3_s(stack: ExitStack) -> N
     """The fault that the watchdog cures: what the other tests measure is not the rover's own doing."""
     drive = Drive("udpin", stack)
     os.kill(drive.watchdog, signal.SIGKILL)
-    until(lambda: not running(drive.watchdog))
+    wait_until(lambda: not running(drive.watchdog))
     killed = drive.signal(signal.SIGKILL)
-    until(lambda: not drive.rover.moves)
+    wait_until(lambda: not drive.rover.moves)
     assert drive.rover.stopped_at - killed > LATCH - 0.3 - drive.waits.total()

@@ -10,9 +10,9 @@ from msgspec.structs import replace
 
 from link.bridge.screens import StatusLogger, StatusWriter
 from link.bridge.status import BridgeStatus, LinkStatus
+from tests.waits import PATIENCE
 
 LINK = LinkStatus("serial:/dev/ttyUSB0:57600", None, 1, 1.0, 20.0, 1.0, 20.0, 0.0, 0, 0, 0, 0, 0)
-PATIENCE = 60.0
 
 
 def status(problem: str | None = None, number: int = 0) -> BridgeStatus:

@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from link.runtime.worker import Worker
-from tests.link.tlog.test_recorder import PATIENCE
+from tests.waits import PATIENCE
 
 
 def test_a_job_that_fails_is_told_and_the_next_is_done(caplog: pytest.LogCaptureFixture) -> None:

@@ -13,8 +13,7 @@ from link.tlog.raw_file import RawFile
 from link.tlog.recorder import MAX_BATCH, PENDING, PERIOD, SLOW, Recorder
 from link.tlog.tlog import Record, read_records
 from tests.link.frames import demand, heartbeat
-
-PATIENCE = 60.0
+from tests.waits import PATIENCE
 
 
 class MemoryFile:

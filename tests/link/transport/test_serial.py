@@ -18,7 +18,8 @@ from link.protocol.framer import Framer
 from link.transport.serial import SerialTransport, open_serial
 from link.transport.transport import LinkError
 from tests.link.frames import demand, frame, heartbeat
-from tests.link.ports import BaudCable, Cable, Heard, until
+from tests.link.ports import BaudCable, Cable, Heard
+from tests.waits import until
 
 DISARM = frame(CommandLong(1, 1, 400, 0, 0, 0, 0, 0, 0, 0, 0), 9)
 

@@ -15,7 +15,7 @@ from dialects.messages import Attitude
 from link.transport.priority_queue import TransmitPacer, TransmitQueue
 from link.transport.stream_writer import MAX_JOINED, StreamWriter
 from tests.link.frames import demand, frame
-from tests.link.ports import until
+from tests.waits import until
 
 PIPE = 4096
 """Bytes that the pipe holds."""

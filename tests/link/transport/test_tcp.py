@@ -18,8 +18,9 @@ from link.transport import tcp
 from link.transport.tcp import MAX_CONNECTIONS, TcpClientTransport, TcpServerTransport, open_tcpin, open_tcpout
 from link.transport.transport import LinkError
 from tests.link.frames import demand, frame, heartbeat
-from tests.link.ports import Heard, until
+from tests.link.ports import Heard
 from tests.ports import free_port
+from tests.waits import until
 
 DISARM = frame(CommandLong(1, 1, 400, 0, 0, 0, 0, 0, 0, 0, 0), 9)
 

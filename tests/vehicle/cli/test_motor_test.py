@@ -15,8 +15,9 @@ from pathlib import Path
 import pytest
 
 from tests.vehicle.motors.controllers import RoboClaw
-from tests.vehicle.motors.pty_controller import PATIENCE, OnPty
+from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
+from tests.waits import PATIENCE
 from vehicle.cli.motor_test import MotorTestOptions, RefusedError, build_options, run_motor_test
 from vehicle.motors import MotorError
 from vehicle.motors.simulated import SimulatedMotors

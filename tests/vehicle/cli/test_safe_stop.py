@@ -14,13 +14,14 @@ import pytest
 
 from dialects.enums import Command
 from dialects.messages import CommandLong
-from tests.vehicle.ground import PATIENCE, Ground, Vehicle, drive, running
+from tests.vehicle.ground import Ground, Vehicle, drive, running
 from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.fake_sysfs import FakeSysfs
 from tests.vehicle.motors.filed_pins import PINS, installed
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.xdist_group("motor drivers")  # each driver can be used by one vehicle at a time
 

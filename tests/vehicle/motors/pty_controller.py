@@ -13,9 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tests.vehicle.motors.controllers import Controller
-
-PATIENCE = 60.0
-"""s: never reached where the code is right, so it may be long."""
+from tests.waits import PATIENCE
 
 
 class OnPty:

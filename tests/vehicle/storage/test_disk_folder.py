@@ -16,12 +16,12 @@ from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_pac
 from link.services.ftp.server import FtpServer
 from link.services.pacing import BulkPacer
 from tests.link.services_world import from_gcs, messages
+from tests.waits import PATIENCE
 from vehicle.storage import disk_folder
 from vehicle.storage.disk_folder import MAX_ENTRIES, MAX_PENDING, MAX_SIZE, PIECE, DiskFolder
 
 T = TypeVar("T")
 DATA = os.urandom(3 * PIECE + 77)
-PATIENCE = 60.0
 
 
 @pytest.fixture

@@ -12,7 +12,8 @@ from pathlib import Path
 from smbus2 import SMBus
 
 from dialects.axes import Axes
-from tests.vehicle.ground import PATIENCE, PATIENT_LOOP, Ground
+from tests.vehicle.ground import PATIENT_LOOP, Ground
+from tests.waits import PATIENCE
 
 LINES = Path("/sys/devices/platform/gpio-sim.0/gpiochip0")
 FORWARD, BACKWARD = (10, 8), (9, 7)

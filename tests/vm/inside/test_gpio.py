@@ -10,7 +10,7 @@ import pytest
 from dialects.axes import Axes
 from dialects.enums import Command
 from dialects.messages import CommandLong
-from tests.vehicle.ground import PATIENCE, Ground
+from tests.vehicle.ground import Ground
 from tests.vm.inside.header import (
     ENABLE,
     ESTOP,
@@ -27,6 +27,7 @@ from tests.vm.inside.header import (
     silent,
     write_config,
 )  # fmt: skip
+from tests.waits import PATIENCE
 
 
 @pytest.fixture

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from dialects.axes import Axes
-from tests.vehicle.ground import PATIENCE, Ground
+from tests.vehicle.ground import Ground
 from tests.vm.inside.header import PCA9685, drive, pulse, rover, safe_stop, write_config
+from tests.waits import PATIENCE
 
 NEUTRAL, FULL = 1500.0, 2000.0
 STEP = 5.0

@@ -6,8 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.vehicle.ground import PATIENCE, Ground
+from tests.vehicle.ground import Ground
 from tests.vm.inside.header import GPIO, ahead, drive, rover, silent, until, write_config
+from tests.waits import PATIENCE
 
 VEHICLE_END, BRIDGE_END = "serial:/dev/ttyS1:115200", "serial:/dev/ttyS2:115200"
 

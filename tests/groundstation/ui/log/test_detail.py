@@ -30,7 +30,7 @@ from tests.groundstation.ui.example_log import (
 )
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 SMALL, WIDE = (80, 24), (140, 45)

@@ -15,7 +15,7 @@ from groundstation.views.charts import FieldsRequest, SeriesPage, SeriesRequest
 from tests.groundstation.ui.example_charts import DEMAND, NOW, SPEED, TURN, drive, fields_page, points
 from tests.groundstation.ui.examples import DRIVE_WATCH, NOON, snapshot, waiting
 from tests.groundstation.ui.pilots import Console, console, type_in
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 
 async def open_charts(screen: Console, *keys: str) -> None:

@@ -19,7 +19,7 @@ from groundstation.ui.screens.map import MapScreen
 from groundstation.views.line import ASKS, DONE, FAILED, LineRequest, LineView
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.pilots import Console, console, type_in
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 
 async def begin(screen: Console) -> CommandLine:

@@ -29,7 +29,7 @@ from tests.groundstation.ui.example_connect import (
 from tests.groundstation.ui.example_files import fill_folder
 from tests.groundstation.ui.link_examples import FLEET, VIEWS
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 
 @pytest.fixture(autouse=True)

@@ -15,7 +15,7 @@ from groundstation.ui.alerts import LIMITS
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting, wheels
 from tests.groundstation.ui.pilots import console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 DISARMED = snapshot(vehicle=vehicle(armed=False))
 STOPPED = snapshot(vehicle=vehicle(armed=False, emergency_stop=True))

@@ -27,7 +27,7 @@ from tests.groundstation.ui.example_files import FILES, FOLDERS, NO_TASKS, TASKS
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 WIDE = (140, 45)
 

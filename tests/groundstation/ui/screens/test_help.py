@@ -8,7 +8,7 @@ from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.input.pad_mapping import add_buttons, build_mapping
 from tests.groundstation.ui.pilots import console, helps, helps_pushed, type_in
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 
 async def test_help_shows_every_key_and_goes_back() -> None:

@@ -31,7 +31,7 @@ from groundstation.views.links import ControlRequest, ControlView, LinkRow, Link
 from tests.groundstation.ui.examples import DRIVE_WATCH, snapshot, vehicle
 from tests.groundstation.ui.link_examples import CONTROL, FLEET, LINKS, OURS, SIX, VIEWS, fleet, many
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 STOPS: dict[str, set[type[Intent]]] = {"drive.stop": {Stop}, "stop.emergency": {EmergencyStop, Stop}}
 """Action -> which stops its keys send."""

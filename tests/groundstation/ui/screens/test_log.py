@@ -17,7 +17,7 @@ from groundstation.views.log import LogPage, LogRequest
 from groundstation.views.requests import RequestsRequest
 from tests.groundstation.ui.examples import DRIVE_WATCH, LOG_PAGE, NOON, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 MANY = LogPage(
     tuple(LogLine(time=NOON, severity=6, label="vehicle", text=f"line {n}.", number=n) for n in range(1, 101)), 100

@@ -38,7 +38,7 @@ from tests.groundstation.ui.example_map import (
 from tests.groundstation.ui.examples import waiting
 from tests.groundstation.ui.map.plans import at
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 STANDING = picture(armed=False, mode="HOLD", speed=0.0)
 ALL: tuple[View, ...] = (plan_view(), *pages(), track())

@@ -26,7 +26,8 @@ from groundstation.views.messages import (
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from tests.groundstation.ui.examples import DRIVE_WATCH, MESSAGES_PAGE, SYS_STATUS_VIEW, snapshot
 from tests.groundstation.ui.pilots import Console, console, type_in
-from tests.groundstation.ui.ptys import STANDARD, until
+from tests.groundstation.ui.ptys import STANDARD
+from tests.waits import until
 
 SYS_STATUS = MessageRequest(1, 1, False, "SYS_STATUS")
 KEYS = [(action, key) for action in ACTIONS.values() if action.id != "app.quit" for key in STANDARD.get_keys(action.id)]

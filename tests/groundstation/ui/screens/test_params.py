@@ -36,7 +36,7 @@ from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.example_params import DIFF, HOLES, INFOS, PAGE, page
 from tests.groundstation.ui.examples import DRIVE_WATCH, param_page, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 EMPTY = ParamPage(1, (), 0, 0, 0, None, has_defaults=False, running=(), ended=())
 

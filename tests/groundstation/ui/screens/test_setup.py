@@ -29,7 +29,7 @@ from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.example_setup import EMPTY, LACKING, LAYING, doctor_view
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import until
+from tests.waits import until
 
 STANDS = snapshot(vehicle=vehicle(armed=False))
 

@@ -18,8 +18,7 @@ from link.links import open_links
 from link.runner import Runner
 from tests.fakes.params import Param
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
-
-PATIENCE = 60.0
+from tests.waits import PATIENCE
 
 
 class Lines:
