@@ -63,7 +63,7 @@ async def until(condition: Callable[[], Value], within: float = PATIENCE) -> Val
         took = time.monotonic() - began
         if took > within and took > within + waits.total():
             raise TimeoutError(f"not within {within:g} s")
-        await asyncio.sleep(0.005)
+        await asyncio.sleep(0.001)
     return value
 
 
