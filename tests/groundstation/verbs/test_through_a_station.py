@@ -18,7 +18,7 @@ from groundstation.station_socket.connect import running_stations
 from groundstation.verbs.exit_codes import ExitCode
 from link.tlog.tlog import read_records
 from tests.e2e.programs import Vehicle
-from tests.groundstation.screen import Screen, until
+from tests.groundstation.screen import Screen
 from tests.groundstation.verbs.shell import complete
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.ports import free_port
@@ -112,7 +112,7 @@ def start_driving(verb: Run, vehicle: Vehicle) -> subprocess.Popen[str]:
         assert verb("mode", "MANUAL").code == 0
         process = subprocess.Popen([sys.executable, "-m", "groundstation", *DEMAND], stderr=subprocess.PIPE, text=True)
         with suppress(AssertionError):
-            until(vehicle.turning, START)
+            wait_until(vehicle.turning, within=START)
             return process
         process.kill()
         said = process.communicate()[1]
