@@ -17,7 +17,8 @@ from pathlib import Path
 import pytest
 
 from tests.e2e.namespaces import Namespaces, why_not
-from tests.e2e.programs import PATIENCE, Vehicle
+from tests.e2e.programs import Vehicle
+from tests.waits import PATIENCE
 
 REASON = why_not() or (None if Path("/dev/net/tun").exists() else "no tun devices here")
 pytestmark = [pytest.mark.e2e, pytest.mark.skipif(REASON is not None, reason=str(REASON))]

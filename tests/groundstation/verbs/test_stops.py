@@ -13,8 +13,9 @@ import pytest
 from groundstation.station_socket.connect import running_stations
 from groundstation.verbs.exit_codes import ExitCode
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.ports import free_port
+from tests.waits import wait_until
 
 Capture = pytest.CaptureFixture[str]
 HOLD = {ARDUPILOT: 4, PX4: 3 << 24 | 4 << 16}
