@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -11,8 +12,10 @@ from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 from link.protocol.rate import TokenBucket
 from link.protocol.sequence import SequenceTracker
-from link.signing.keys import SigningKey
 from link.signing.signature import is_signed
+
+if TYPE_CHECKING:  # a verb through a station needs no keys
+    from link.signing.keys import SigningKey
 
 MAX_SOURCES = 64
 """Systems and components tracked behind one peer."""

@@ -14,6 +14,7 @@ from collections import Counter, deque
 from collections.abc import Hashable, Iterable, Iterator
 from enum import IntEnum
 from itertools import count
+from typing import TYPE_CHECKING
 
 from dialects.messages import target_system
 from dialects.traits import COMMANDS, LOG_ONLY, is_stop
@@ -22,8 +23,10 @@ from link.endpoint import FLEET_NAME
 from link.protocol.frame import Frame, FramerCounts
 from link.protocol.framer import Framer
 from link.protocol.peer import PeerState
-from link.signing.keys import SigningKey
 from link.signing.role import Role
+
+if TYPE_CHECKING:
+    from link.signing.keys import SigningKey
 
 MAX_PEERS = 24
 """Sixteen ground stations on one port, and room for half of them to restart: a restarted program has a new port, and

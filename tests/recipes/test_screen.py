@@ -33,6 +33,7 @@ ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f11",), "y", "groundstati
 OPEN_IT = """
 import asyncio
 from tests.groundstation.ui.pilots import console
+from tests.waits import until
 
 async def main():
     async with console(size=(140, 45)) as screen:

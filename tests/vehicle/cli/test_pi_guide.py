@@ -52,6 +52,7 @@ def test_check_says_what_the_guide_shows(tmp_path: Path) -> None:
     file.write_text(
         build_template().replace('"udpin:0.0.0.0:14550"', f'"{endpoint}"').replace('"simulated"', '"article-car"', 1)
     )
+    (tmp_path / ".local/state/mavhelm").mkdir(parents=True)  # by the motor test, the step before
     pins = {"GPIOZERO_PIN_FACTORY": "mock", "GPIOZERO_MOCK_PIN_CLASS": "mockpwmpin"}
     check = subprocess.run(
         [sys.executable, "-m", "vehicle", "check", file],
