@@ -150,4 +150,4 @@ def test_its_files_are_listed_and_read(vehicle: Vehicle, verb: Callable[..., Ver
 def test_what_it_lacks_is_named(verb: Callable[..., VerbRun]) -> None:
     """It lists no modes, and its HEARTBEAT names no type whose modes are known."""
     assert "its type is not known" in verb("modes", code=7).err
-    assert "none is known" in verb("mode", "HOLD", code=4).err
+    assert "lists no modes itself" in verb("mode", "HOLD", code=4).err
