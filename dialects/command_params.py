@@ -1,6 +1,6 @@
 """Writes the table of what mission commands need, from the definition of MAV_CMD.
 
-    python -m dialects.command_params > groundstation/ui/map/mission_commands.py
+    python -m dialects.command_params > groundstation/ui/map/plan/mission_commands.py
 
 The screen's process does not load the dialect, so that the table is a module of its own there. A test compares it with
 the installed definitions.
@@ -27,7 +27,7 @@ Written by dialects/command_params.py from the definition of MAV_CMD (common.xml
 
 from __future__ import annotations
 
-from groundstation.ui.map.mission_command import CommandParam, MissionCommand
+from groundstation.ui.map.plan.mission_command import CommandParam, MissionCommand
 
 _P = CommandParam
 
@@ -39,7 +39,7 @@ _TAIL = '''}  # fmt: skip
 
 
 def write_module(definition: Path = DEFINITION) -> str:
-    """Return the text of groundstation/ui/map/mission_commands.py."""
+    """Return the text of groundstation/ui/map/plan/mission_commands.py."""
     commands = next(each for each in ET.parse(definition).iter("enum") if each.get("name") == "MAV_CMD")
     rows = sorted((int(entry.get("value", "0")), entry) for entry in commands.iter("entry") if _is_item(entry))
     return _HEAD + "".join(line for number, entry in rows for line in _row(number, entry)) + _TAIL

@@ -6,8 +6,8 @@ import os
 
 from dialects.axes import NEUTRAL, Axes
 from dialects.messages import RoverOperatorPresence
-from groundstation.vehicles.demand_copies import DemandCopies
-from groundstation.vehicles.demand_stream import DemandStream
+from groundstation.vehicles.demand.demand_copies import DemandCopies
+from groundstation.vehicles.demand.demand_stream import DemandStream
 from link.protocol.framer import Framer
 from tests.benchmarks.baud_cable import Copies, Direction
 from tests.benchmarks.traffic import framed

@@ -14,10 +14,10 @@ from groundstation.intents.driving import Stop
 from groundstation.intents.plan import ChooseMode, GoTo, JumpToItem, SetHome
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
-from groundstation.station.verb_relay import Verb
-from groundstation.ui.map.fields import change_command
+from groundstation.station.relay.verb_relay import Verb
+from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.map.model import MapModel
-from groundstation.ui.request_numbers import RequestNumbers
+from groundstation.ui.map.plan.fields import change_command
 from groundstation.views.base import View
 from groundstation.views.plan import PlanKind, PlanSummary, PlanView
 from tests.test_stops import Drive

@@ -16,8 +16,8 @@ from dialects import messages as m
 from dialects import rover
 from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.connect.listener import ENDPOINTS
-from groundstation.station.message_traffic import MessageTraffic
-from groundstation.verbs.output import Output
+from groundstation.station.messages.message_traffic import MessageTraffic
+from groundstation.verbs.common.output import Output
 from link.endpoint import parse_endpoint
 from tests.groundstation.verbs.verb_runs import run_verb
 from vehicle.cli.options import GROUND_STATION

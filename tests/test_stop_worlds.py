@@ -16,11 +16,11 @@ import pytest
 from dialects import messages as m
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command
-from groundstation.station.emergency import EmergencyLock
-from groundstation.vehicles.blind_stop import BlindStop
-from groundstation.vehicles.stop_commands import StopKind
-from groundstation.verbs.core import VerbCore
-from groundstation.verbs.stop_jobs import EmergencyJob, StopTimes
+from groundstation.station.driving.emergency import EmergencyLock
+from groundstation.vehicles.demand.blind_stop import BlindStop
+from groundstation.vehicles.demand.stop_commands import StopKind
+from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
+from groundstation.verbs.session.core import VerbCore
 from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import to_stamp

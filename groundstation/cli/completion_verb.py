@@ -6,8 +6,8 @@ import sys
 from collections.abc import Mapping, Sequence
 
 from groundstation.station_socket.names import KINDS, find_names
-from groundstation.verbs.exit_codes import ExitCode
-from groundstation.verbs.shells import SHELLS
+from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.manual.shells import SHELLS
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 

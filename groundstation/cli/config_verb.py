@@ -29,7 +29,7 @@ The file is that of --config, else of the variable MAVHELM_CONFIG, else the one 
 
 
 class _Code(IntEnum):
-    """Exit codes, those of groundstation/verbs/exit_codes.py, which loads the dialect."""
+    """Exit codes, those of groundstation/verbs/common/exit_codes.py, which loads the dialect."""
 
     DONE = 0
     USAGE = 2

@@ -92,7 +92,7 @@ def open_screen(
     client = connect(log_file)
     quits = False
     try:
-        from groundstation.ui.run import run as run_ui
+        from groundstation.ui.app.run import run as run_ui
 
         remember(opened)
         code = run_ui(
@@ -146,7 +146,7 @@ def remember(endpoints: Sequence[str], vehicle: str = "") -> None:
 
 def import_screen() -> None:
     """Import the screen, which takes 0.2 s: after the arguments are checked, and while the station starts."""
-    import groundstation.ui.run  # noqa: F401
+    import groundstation.ui.app.run  # noqa: F401
 
 
 def report_armed(lines: Sequence[str]) -> None:

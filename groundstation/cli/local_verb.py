@@ -13,7 +13,7 @@ from groundstation.client import StationError
 from groundstation.config.config_file import ConfigError
 from groundstation.config.effective import Effective, load_config, merge
 from groundstation.input.keymap import KeymapError
-from groundstation.verbs.mavproxy_words import describe_word
+from groundstation.verbs.manual.mavproxy_words import describe_word
 from link.endpoint import EndpointError
 from link.runtime.command_line import CommandLineParser
 

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
-from groundstation.verbs.mavproxy_words import describe_action
+from groundstation.verbs.manual.mavproxy_words import describe_action
 from link.runtime import startup_gc, stdio, without_openssl
 
 FLAGS = ("--json", "-q", "--quiet")
@@ -24,7 +24,7 @@ PLAIN_VERB = ("status", "--watch", "--changes")
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the ground station. Returns 0 after a session, 2 for wrong arguments, 1 when the station crashed.
 
-    A verb returns a code of groundstation/verbs/exit_codes.py.
+    A verb returns a code of groundstation/verbs/common/exit_codes.py.
     """
     stdio.ensure_open()
     arguments = _verb_first(_plain_verb(sys.argv[1:] if arguments is None else arguments))

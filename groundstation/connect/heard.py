@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
-from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.views.connect import HeardRow
 from link.core import Received
 from link.protocol.rate import RateMeter

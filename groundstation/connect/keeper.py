@@ -14,7 +14,7 @@ import msgspec
 from dialects.enums import Severity
 from groundstation.intents.links import AddLink
 from groundstation.station.station import Station
-from groundstation.vehicles.places import PLACES
+from groundstation.vehicles.state.places import PLACES
 from groundstation.views.connect import LinkAttempt
 from link.core import LinkReport
 from link.endpoint import EndpointError, Side, parse_endpoint, parse_endpoints

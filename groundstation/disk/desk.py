@@ -17,7 +17,7 @@ from groundstation.disk.local_file import (
     store,
 )
 from groundstation.station.station import Station
-from groundstation.vehicles.disk_jobs import DiskJob, DiskResult, DiskWork
+from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult, DiskWork
 from link.runtime.worker import Worker
 
 CLOSE_WITHIN = 1.0

@@ -9,7 +9,7 @@ from pathlib import Path
 from platformdirs import user_cache_path, user_config_path
 
 from groundstation.formats.docs_files import FILE_NAMES, DocsFile, read_docs
-from groundstation.station.param_texts import ParamTexts
+from groundstation.station.views.param_texts import ParamTexts
 from link.runtime.whole_file import replace_file
 
 MAX_SIZE = 16 * 1024 * 1024

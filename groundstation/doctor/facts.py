@@ -1,4 +1,4 @@
-"""DoctorFacts: everything that the rows of the chain judge. Collected by station/doctor_facts.py."""
+"""DoctorFacts: everything that the rows of the chain judge. Collected by station/doctor/doctor_facts.py."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ REMEDIES = {
     "COM_DL_LOSS_T": 10.0,
     "NAV_DLL_ACT": 6.0,
 }
-"""Parameter -> the value that its warning recommends (vehicles/ardupilot_checks.py, px4_checks.py)."""
+"""Parameter -> the value that its warning recommends (vehicles/stops/ardupilot_checks.py, px4_checks.py)."""
 
 STOP_BOUNDS = ("RC_OVERRIDE_TIME", "FS_THR_ENABLE", "COM_RC_LOSS_T", "NAV_RCL_ACT", "COM_FAIL_ACT_T", "COM_RC_IN_MODE")
 """Parameters that decide when the motors stop without demands; the others decide on the ground station failsafe."""
@@ -29,7 +29,7 @@ ENABLE, AUTO_GOES_ON = "FS_GCS_ENABLE", 2
 """The parameter of our rover and of ArduPilot; its value with which AUTO continues."""
 
 COMMAND, STATION = ("no command", "... no RC", "... then"), "no station"
-"""Names of the bounds that the Drive screen shows (vehicles/stop_bounds.py)."""
+"""Names of the bounds that the Drive screen shows (vehicles/stops/stop_bounds.py)."""
 
 
 def stop_bound(facts: DoctorFacts) -> ChainFinding:

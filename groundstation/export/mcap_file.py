@@ -17,7 +17,7 @@ from groundstation.export.ros_types import RosType
 from groundstation.export.sample import Sample
 from groundstation.ros.types import RosTypes
 from groundstation.ros.vehicle import ODOMETRY, ROWS, RosVehicle, Values, transforms
-from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
+from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
 
 _TYPES = RosTypes()
 """Standard types, and those made so far."""

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from groundstation.station.station import Station
 from groundstation.station_socket.names import MODES, PARAMS, VEHICLES, Names, encode_names
-from groundstation.vehicles.mode_requests import listed_or_known
+from groundstation.vehicles.requests.mode_requests import listed_or_known
 
 
 def answer_names(sock: socket.socket, kind: str, station: Station) -> None:

@@ -19,7 +19,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
 from groundstation.ipc import MAX_INTENT_AGE, IntentBatch, StationReady
 from groundstation.snapshot import Snapshot
-from groundstation.station.screen_lease import Screen, ScreenLease
+from groundstation.station.driving.screen_lease import Screen, ScreenLease
 from groundstation.station.station import Station
 from groundstation.station.view_feed import ViewFeed
 

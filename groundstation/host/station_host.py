@@ -29,10 +29,10 @@ from groundstation.ipc import protocol_version
 from groundstation.recording.station_recording import StationRecording
 from groundstation.sitl.sitl import SimulatorControl
 from groundstation.snapshot import Snapshot
-from groundstation.station.crash_neutral import CrashNeutral
-from groundstation.station.crash_snapshot import crash_snapshot
-from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
-from groundstation.station.lasting_alerts import LastingAlerts
+from groundstation.station.driving.departure import DISARM_AFTER, DISARM_TIMEOUT
+from groundstation.station.process.crash_neutral import CrashNeutral
+from groundstation.station.process.crash_snapshot import crash_snapshot
+from groundstation.station.process.lasting_alerts import LastingAlerts
 from groundstation.station.station import Station
 from groundstation.station_socket import names, relay
 from groundstation.station_socket.hello import NAMES, SCREEN, VERB

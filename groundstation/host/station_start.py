@@ -16,7 +16,7 @@ from groundstation.connect.signing import SigningError, StationSigning
 from groundstation.host.options import log_to
 from groundstation.sitl.sitl import SimulatorControl, free_port
 from groundstation.station.component import COMPONENT
-from groundstation.vehicles.places import PLACES
+from groundstation.vehicles.state.places import PLACES
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, Side, parse_endpoint
 from link.links import open_links

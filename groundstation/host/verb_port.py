@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from dialects import codec
 from dialects.messages import MESSAGES, Message
-from groundstation.station.verb_relay import Verb, VerbRelay
+from groundstation.station.relay.verb_relay import Verb, VerbRelay
 from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.relay import (
     BATCH,

@@ -9,7 +9,7 @@ class RunLine(Intent, frozen=True):
     """Run a verb of `groundstation` in the station, for the vehicle that the operator saw."""
 
     request: int
-    """By which LineView reports how it stands; see ui/request_numbers.py."""
+    """By which LineView reports how it stands; see ui/display/request_numbers.py."""
     text: str
     """E.g. "mode HOLD"."""
     system: int = 0

@@ -9,7 +9,7 @@ class AddLink(Intent, frozen=True):
     """Open a link; while that fails, it is tried again until the link is closed."""
 
     request: int
-    """Number by which ConnectView.attempts reports how it stands; see ui/request_numbers.py."""
+    """Number by which ConnectView.attempts reports how it stands; see ui/display/request_numbers.py."""
     endpoint: str
     watch_only: bool = False
     """Never send a byte on it."""

@@ -1,6 +1,6 @@
 """Intents that are requests to the services of a vehicle. Views report by their number how they stand.
 
-A new one is a class here and its row in SERVICE_CALLS (station/service_calls.py).
+A new one is a class here and its row in SERVICE_CALLS (station/services/service_calls.py).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ class ServiceIntent(Intent, frozen=True, tag=False):
     """Base class of the requests."""
 
     request: int
-    """Number by which views report how it stands; see ui/request_numbers.py."""
+    """Number by which views report how it stands; see ui/display/request_numbers.py."""
     system: int = 0
     """The vehicle that the operator saw: another one that is selected meanwhile must not get the request.
 

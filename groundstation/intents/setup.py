@@ -15,7 +15,7 @@ class RebootVehicle(ServiceIntent, frozen=True, tag=True):
 
 
 class Calibrate(ServiceIntent, frozen=True, tag=True):
-    """Begin a calibration; `kind` is one of vehicles/calibration.py, KINDS."""
+    """Begin a calibration; `kind` is one of vehicles/calibration/calibration.py, KINDS."""
 
     kind: str = ""
 
@@ -59,4 +59,4 @@ class WatchSticks(Intent, frozen=True):
 
 
 SETUP_INTENTS: tuple[type[Intent], ...] = (TurnMotor, StopMotorTest, ConfirmPosition, WatchSticks)
-"""Those that station/doctor_desk.py carries out; the others are requests to services."""
+"""Those that station/doctor/doctor_desk.py carries out; the others are requests to services."""

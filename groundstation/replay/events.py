@@ -17,8 +17,8 @@ from dialects.enums import Command, Failsafe, ModeFlag, Severity, SystemState, V
 from dialects.kinds import VehicleKind, find_kind
 from dialects.messages import MESSAGES, Message, decode_text, printable
 from dialects.modes import custom_mode_of
-from groundstation.vehicles.values import flag_words
-from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
+from groundstation.vehicles.readings.values import flag_words
+from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
 
 MAX_EVENTS = 20_000
 """Kept; beyond that only those of severity WARNING and worse are, up to twice as many."""

@@ -8,7 +8,7 @@ from dialects.codec import CRC_EXTRA, decode_frame
 from dialects.messages import Heartbeat
 from groundstation.replay.log_index import LogIndex
 from groundstation.replay.query import Query
-from groundstation.vehicles.vehicle_heartbeat import is_vehicle
+from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from link.tlog.scan import LogFrame, id_of
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from groundstation.station.charts.desk import ChartDesk
-from groundstation.station.verb_relay import VerbRelay
+from groundstation.station.relay.verb_relay import VerbRelay
 from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.views.messages import MessageRequest

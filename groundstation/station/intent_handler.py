@@ -48,18 +48,18 @@ from groundstation.intents.vehicle import (
 )
 from groundstation.intents.watch import Watch
 from groundstation.station.charts.desk import ChartDesk
-from groundstation.station.commander import Commander
-from groundstation.station.departure import Departure
-from groundstation.station.driving import DrivingController
-from groundstation.station.handover import Handover
-from groundstation.station.link_closing import LinkClosing
-from groundstation.station.operator import OperatorSession
-from groundstation.station.service_calls import SERVICE_CALLS
-from groundstation.station.service_desk import ServiceDesk
+from groundstation.station.driving.commander import Commander
+from groundstation.station.driving.departure import Departure
+from groundstation.station.driving.driving import DrivingController
+from groundstation.station.driving.handover import Handover
+from groundstation.station.driving.link_closing import LinkClosing
+from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.services.service_calls import SERVICE_CALLS
+from groundstation.station.services.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Fleet
-from groundstation.vehicles.message_log import MessageLog
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.vehicle_state import VehicleState
 
 SECOND_STOP_WITHIN = 3.0
 """s after an emergency stop within which another one goes to every vehicle, not only to ours."""
@@ -235,13 +235,13 @@ class IntentHandler:
         self._link_closing.begin(intent.link, now)
 
     def _leave_to_doctor(self, intent: Intent, now: float) -> None:
-        """Do nothing more: station/doctor_desk.py has carried it out."""
+        """Do nothing more: station/doctor/doctor_desk.py has carried it out."""
 
     def _leave_to_line_desk(self, intent: Intent, now: float) -> None:
         """Do nothing more: verbs/line/desk.py carries it out."""
 
     def _leave_to_notes(self, intent: ReportScreen, now: float) -> None:
-        """Do nothing more: station/station_notes.py notes it."""
+        """Do nothing more: station/notes/station_notes.py notes it."""
 
     def _quit(self, intent: Quit, now: float) -> None:
         self._operator.sticks.block(now)

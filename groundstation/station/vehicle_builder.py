@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from groundstation.snapshot import VehicleView
-from groundstation.station.commander import Commander
-from groundstation.station.drive_display import DriveDisplay
-from groundstation.station.driving import DrivingController
-from groundstation.station.handover import Handover
+from groundstation.station.driving.commander import Commander
+from groundstation.station.driving.driving import DrivingController
+from groundstation.station.driving.handover import Handover
+from groundstation.station.views.drive_display import DriveDisplay
 from groundstation.vehicles.fleet import Contact
 
 

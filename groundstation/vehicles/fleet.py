@@ -12,20 +12,20 @@ from dialects.enums import Severity
 from dialects.modes import Mode
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.snapshot.signing import SigningView
-from groundstation.vehicles.demand_copies import DemandCopies
-from groundstation.vehicles.demand_stream import DemandStream
-from groundstation.vehicles.dialect_probe import DialectProbe
-from groundstation.vehicles.drive_readings import DriveReadings
-from groundstation.vehicles.message_log import STATE, MessageLog
+from groundstation.vehicles.demand.demand_copies import DemandCopies
+from groundstation.vehicles.demand.demand_stream import DemandStream
+from groundstation.vehicles.probes.dialect_probe import DialectProbe
+from groundstation.vehicles.probes.signing_watch import SIGNING, SigningWatch
+from groundstation.vehicles.probes.stream_requests import StreamRequests
 from groundstation.vehicles.services import VehicleServices
-from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
-from groundstation.vehicles.signing_watch import SIGNING, SigningWatch
-from groundstation.vehicles.state_changes import StateChanges
-from groundstation.vehicles.stream_requests import StreamRequests
-from groundstation.vehicles.vehicle_details import VehicleDetails
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
-from groundstation.vehicles.vehicle_params import VehicleParams
-from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
+from groundstation.vehicles.state.drive_readings import DriveReadings
+from groundstation.vehicles.state.message_log import STATE, MessageLog
+from groundstation.vehicles.state.state_changes import StateChanges
+from groundstation.vehicles.state.vehicle_details import VehicleDetails
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
+from groundstation.vehicles.state.vehicle_params import VehicleParams
+from groundstation.vehicles.state.vehicle_state import LOST_AFTER, VehicleState
+from groundstation.vehicles.stops.settings_check import SETTINGS, SettingsCheck
 from link.core import LinkReport, Received
 
 

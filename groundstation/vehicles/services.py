@@ -13,29 +13,29 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result, VehicleType
 from dialects.kinds import VehicleKind, find_kind
-from groundstation.vehicles.command_requests import CommandRequests
-from groundstation.vehicles.identity import VehicleIdentity
-from groundstation.vehicles.mode_requests import ModeRequests
-from groundstation.vehicles.plan_progress import PlanProgress
-from groundstation.vehicles.requests import FIRST_STEP, RequestBook, RequestReport
+from groundstation.vehicles.requests.command_requests import CommandRequests
+from groundstation.vehicles.requests.mode_requests import ModeRequests
+from groundstation.vehicles.requests.requests import FIRST_STEP, RequestBook, RequestReport
+from groundstation.vehicles.state.identity import VehicleIdentity
+from groundstation.vehicles.state.plan_progress import PlanProgress
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient
 
 if TYPE_CHECKING:
-    from groundstation.vehicles.disk_jobs import DiskJob, DiskResult
-    from groundstation.vehicles.file_comparing import FileComparing
-    from groundstation.vehicles.file_requests import FileRequests
-    from groundstation.vehicles.folder_cache import FolderCache
-    from groundstation.vehicles.log_requests import LogRequests
-    from groundstation.vehicles.message_requests import MessageRequests
-    from groundstation.vehicles.metadata_requests import MetadataRequests
-    from groundstation.vehicles.mission_requests import MissionRequests
-    from groundstation.vehicles.param_comparing import ParamComparing
-    from groundstation.vehicles.param_requests import ParamRequests
-    from groundstation.vehicles.param_storage import ParamStorage
-    from groundstation.vehicles.param_writer import ParamWriter
-    from groundstation.vehicles.plan_requests import PlanRequests
-    from groundstation.vehicles.transfer_requests import TransferRequests
+    from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult
+    from groundstation.vehicles.requests.file_comparing import FileComparing
+    from groundstation.vehicles.requests.file_requests import FileRequests
+    from groundstation.vehicles.requests.folder_cache import FolderCache
+    from groundstation.vehicles.requests.log_requests import LogRequests
+    from groundstation.vehicles.requests.message_requests import MessageRequests
+    from groundstation.vehicles.requests.metadata_requests import MetadataRequests
+    from groundstation.vehicles.requests.mission_requests import MissionRequests
+    from groundstation.vehicles.requests.param_comparing import ParamComparing
+    from groundstation.vehicles.requests.param_requests import ParamRequests
+    from groundstation.vehicles.requests.param_storage import ParamStorage
+    from groundstation.vehicles.requests.param_writer import ParamWriter
+    from groundstation.vehicles.requests.plan_requests import PlanRequests
+    from groundstation.vehicles.requests.transfer_requests import TransferRequests
 
 
 class _Service(Protocol):
@@ -133,14 +133,14 @@ class VehicleServices:
     @cached_property
     def messages(self) -> MessageRequests:
         """Rates of messages, and single messages."""
-        from groundstation.vehicles.message_requests import MessageRequests
+        from groundstation.vehicles.requests.message_requests import MessageRequests
 
         return MessageRequests(self.commands, self.book)
 
     @cached_property
     def files(self) -> FileRequests:
         """MAVLink FTP."""
-        from groundstation.vehicles.file_requests import FileRequests
+        from groundstation.vehicles.requests.file_requests import FileRequests
         from link.services.ftp.client import FtpClient
 
         to, at = self._target
@@ -149,7 +149,7 @@ class VehicleServices:
     @cached_property
     def plans(self) -> PlanRequests:
         """Mission, fence and rally points."""
-        from groundstation.vehicles.plan_requests import PlanRequests
+        from groundstation.vehicles.requests.plan_requests import PlanRequests
         from link.services.mission.client import MissionClient
 
         to, at = self._target
@@ -158,14 +158,14 @@ class VehicleServices:
     @cached_property
     def missions(self) -> MissionRequests:
         """The mission and places: started, paused, gone to."""
-        from groundstation.vehicles.mission_requests import MissionRequests
+        from groundstation.vehicles.requests.mission_requests import MissionRequests
 
         return MissionRequests(self.commands, self.modes, self.progress, self.book, lambda: self.autopilot, self._model)
 
     @cached_property
     def logs(self) -> LogRequests:
         """Logs by LOG_REQUEST_LIST."""
-        from groundstation.vehicles.log_requests import LogRequests
+        from groundstation.vehicles.requests.log_requests import LogRequests
         from link.services.log.client import LogClient
 
         to, at = self._target
@@ -174,7 +174,7 @@ class VehicleServices:
     @cached_property
     def params(self) -> ParamRequests:
         """Parameters."""
-        from groundstation.vehicles.param_requests import ParamRequests
+        from groundstation.vehicles.requests.param_requests import ParamRequests
         from link.services.param.client import ParamClient
 
         to, at = self._target
@@ -185,7 +185,7 @@ class VehicleServices:
     @cached_property
     def param_writer(self) -> ParamWriter:
         """Several parameters in one request."""
-        from groundstation.vehicles.param_writer import ParamWriter
+        from groundstation.vehicles.requests.param_writer import ParamWriter
 
         made = ParamWriter(self.params, self.book)
         self._followers.append(made)
@@ -194,21 +194,21 @@ class VehicleServices:
     @cached_property
     def param_storage(self) -> ParamStorage:
         """The vehicle's memory of its parameters."""
-        from groundstation.vehicles.param_storage import ParamStorage
+        from groundstation.vehicles.requests.param_storage import ParamStorage
 
         return ParamStorage(self.commands)
 
     @cached_property
     def param_file(self) -> ParamComparing:
         """The file that the parameters are compared with."""
-        from groundstation.vehicles.param_comparing import ParamComparing
+        from groundstation.vehicles.requests.param_comparing import ParamComparing
 
         return ParamComparing(self.book)
 
     @cached_property
     def metadata(self) -> MetadataRequests:
         """The vehicle's own texts of its parameters."""
-        from groundstation.vehicles.metadata_requests import MetadataRequests
+        from groundstation.vehicles.requests.metadata_requests import MetadataRequests
 
         made = MetadataRequests(self.files, self.identity, self._texts)
         self._timed.append(made)
@@ -217,7 +217,7 @@ class VehicleServices:
     @cached_property
     def folders(self) -> FolderCache:
         """Folders that were listed."""
-        from groundstation.vehicles.folder_cache import FolderCache
+        from groundstation.vehicles.requests.folder_cache import FolderCache
 
         made = FolderCache(self.files)
         self._followers.append(made)
@@ -226,7 +226,7 @@ class VehicleServices:
     @cached_property
     def transfers(self) -> TransferRequests:
         """Downloads into files of this machine, and uploads from them."""
-        from groundstation.vehicles.transfer_requests import TransferRequests
+        from groundstation.vehicles.requests.transfer_requests import TransferRequests
 
         made = TransferRequests(self.files, self.logs, self.book, lambda: (self.alive, self.autopilot))
         self._timed.append(made)
@@ -237,7 +237,7 @@ class VehicleServices:
     @cached_property
     def comparing(self) -> FileComparing:
         """Files compared by checksum."""
-        from groundstation.vehicles.file_comparing import FileComparing
+        from groundstation.vehicles.requests.file_comparing import FileComparing
 
         made = FileComparing(self.files, self.book)
         self._followers.append(made)

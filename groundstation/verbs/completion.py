@@ -16,7 +16,7 @@ from dialects.enums import Autopilot, Command, VehicleType
 from dialects.kinds import find_kind
 from dialects.messages import MESSAGES
 from groundstation.station_socket.names import MODES, PARAMS, PLAIN_NAME, VEHICLES
-from groundstation.verbs.shells import SHELLS
+from groundstation.verbs.manual.shells import SHELLS
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
 
 LOCAL_COMMON = ("--dialect", "--json", "--quiet", "--help")

@@ -20,17 +20,17 @@ from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
 from groundstation.formats.errors import FileFormatError
 from groundstation.station_socket.hello import HELLO_WITHIN, VERB, Hello
 from groundstation.station_socket.relay import VERSION
-from groundstation.verbs.arguments import seconds, system_id, vehicle_id
-from groundstation.verbs.endpoints import choose_endpoints, config_error, link_error, remember
-from groundstation.verbs.exit_codes import ExitCode, VerbError
-from groundstation.verbs.identity import choose_identity
-from groundstation.verbs.kept_session import KeptSession
-from groundstation.verbs.later import LaterModule
-from groundstation.verbs.output import Output
-from groundstation.verbs.session import VerbSession, run_session
-from groundstation.verbs.station_link import AUTO, StationLink, find_station, station_choice
+from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.later import LaterModule
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
+from groundstation.verbs.session.identity import choose_identity
+from groundstation.verbs.session.kept_session import KeptSession
+from groundstation.verbs.session.session import VerbSession, run_session
+from groundstation.verbs.session.station_link import AUTO, StationLink, find_station, station_choice
+from groundstation.verbs.session.vehicle_choice import choose_group
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
-from groundstation.verbs.vehicle_choice import choose_group
 from link.endpoint import EndpointError
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
@@ -38,8 +38,8 @@ from link.runtime.event_loop import run_loop
 
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
-    from groundstation.verbs.demand_guard import DemandGuard
-    from groundstation.verbs.station_session import StationSession
+    from groundstation.verbs.session.demand_guard import DemandGuard
+    from groundstation.verbs.session.station_session import StationSession
     from link.signing_keeper import SigningKeeper
 
 many = LaterModule("many")
@@ -142,7 +142,7 @@ async def _run(
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
             if action.station:
-                from groundstation.verbs.station_session import run_station  # loads the whole station
+                from groundstation.verbs.session.station_session import run_station  # loads the whole station
 
                 return await run_station(endpoints, options.system, getattr(options, "driver", 0), alone, station)
             return await run_session(
@@ -175,7 +175,7 @@ async def _run_for_group(
 ) -> int:
     session.where = where
     if action.stops:
-        from groundstation.verbs.stops import stop_unheard
+        from groundstation.verbs.control.stops import stop_unheard
 
         systems = group.listed or ((0,) if options.all else ())
         sending = asyncio.ensure_future(stop_unheard(session, output.verb, systems))
@@ -222,7 +222,7 @@ def _open_signing() -> SigningKeeper | None:
 
 
 def _start_guard(ids: tuple[int, int], signing: SigningKeeper | None) -> DemandGuard:
-    from groundstation.verbs.demand_guard import DemandGuard
+    from groundstation.verbs.session.demand_guard import DemandGuard
 
     return DemandGuard(ids, signing.signing if signing else None)
 

@@ -15,13 +15,13 @@ import msgspec
 
 from groundstation.config.groups import VehicleGroup
 from groundstation.formats.errors import FileFormatError
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
-from groundstation.verbs.core import ALONE_AFTER
-from groundstation.verbs.exit_codes import ExitCode, VerbError, worst_code
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError, worst_code
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.common.tables import format_table
 from groundstation.verbs.many_output import VehicleOutput
-from groundstation.verbs.output import Output
-from groundstation.verbs.session import VerbSession
-from groundstation.verbs.tables import format_table
+from groundstation.verbs.session.core import ALONE_AFTER
+from groundstation.verbs.session.session import VerbSession
 
 if TYPE_CHECKING:
     from groundstation.verbs.table import VerbAction

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from groundstation.vehicles.requests import RequestReport
+from groundstation.vehicles.requests.requests import RequestReport
 
 
 class VehicleOutput:

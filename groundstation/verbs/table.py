@@ -14,7 +14,7 @@ import msgspec
 
 from dialects.enums import MissionType
 from groundstation.formats.param_form import ParamForm
-from groundstation.verbs.arguments import (
+from groundstation.verbs.common.arguments import (
     LONGEST_HOLD,
     Argument,
     count,
@@ -27,69 +27,46 @@ from groundstation.verbs.arguments import (
     seconds,
     system_id,
 )
-from groundstation.verbs.later import LaterModule, made
-from groundstation.verbs.output import Output
+from groundstation.verbs.common.later import LaterModule, made
+from groundstation.verbs.common.output import Output
 from link.protocol.log_tap import LogTap
 from link.signing.key_options import ENTERED, SHOWN
 
 if TYPE_CHECKING:
-    from groundstation.verbs import (
-        arm,
-        calibrate,
-        command,
-        control,
-        doctor,
-        drive,
-        export,
-        ftp,
-        go_to,
-        log,
-        messages,
-        mission,
-        mode,
-        motor,
-        param,
-        param_files,
-        ping,
-        plan,
-        reboot,
-        record,
-        ros1,
-        ros2,
-        send,
-        sign,
-        sign_setup,
-        status,
-        stops,
-    )
+    from groundstation.verbs.control import arm, control, drive, mode, motor, reboot, stops
+    from groundstation.verbs.files import export, ftp, log, param, param_files
+    from groundstation.verbs.messages import command, messages, ping, record, send, status
+    from groundstation.verbs.mission import go_to, mission, plan
+    from groundstation.verbs.ros import ros1, ros2
+    from groundstation.verbs.setup import calibrate, doctor, sign, sign_setup
 else:
-    arm = LaterModule("arm")
-    calibrate = LaterModule("calibrate")
-    command = LaterModule("command")
-    control = LaterModule("control")
-    doctor = LaterModule("doctor")
-    drive = LaterModule("drive")
-    export = LaterModule("export")
-    ftp = LaterModule("ftp")
-    go_to = LaterModule("go_to")
-    log = LaterModule("log")
-    messages = LaterModule("messages")
-    mission = LaterModule("mission")
-    mode = LaterModule("mode")
-    motor = LaterModule("motor")
-    param = LaterModule("param")
-    param_files = LaterModule("param_files")
-    ping = LaterModule("ping")
-    plan = LaterModule("plan")
-    reboot = LaterModule("reboot")
-    record = LaterModule("record")
-    ros1 = LaterModule("ros1")
-    ros2 = LaterModule("ros2")
-    send = LaterModule("send")
-    sign = LaterModule("sign")
-    sign_setup = LaterModule("sign_setup")
-    status = LaterModule("status")
-    stops = LaterModule("stops")
+    arm = LaterModule("control.arm")
+    calibrate = LaterModule("setup.calibrate")
+    command = LaterModule("messages.command")
+    control = LaterModule("control.control")
+    doctor = LaterModule("setup.doctor")
+    drive = LaterModule("control.drive")
+    export = LaterModule("files.export")
+    ftp = LaterModule("files.ftp")
+    go_to = LaterModule("mission.go_to")
+    log = LaterModule("files.log")
+    messages = LaterModule("messages.messages")
+    mission = LaterModule("mission.mission")
+    mode = LaterModule("control.mode")
+    motor = LaterModule("control.motor")
+    param = LaterModule("files.param")
+    param_files = LaterModule("files.param_files")
+    ping = LaterModule("messages.ping")
+    plan = LaterModule("mission.plan")
+    reboot = LaterModule("control.reboot")
+    record = LaterModule("messages.record")
+    ros1 = LaterModule("ros.ros1")
+    ros2 = LaterModule("ros.ros2")
+    send = LaterModule("messages.send")
+    sign = LaterModule("setup.sign")
+    sign_setup = LaterModule("setup.sign_setup")
+    status = LaterModule("messages.status")
+    stops = LaterModule("control.stops")
 
 
 class VerbAction(msgspec.Struct, frozen=True):

@@ -94,7 +94,7 @@ class FieldsRequest(ViewRequest, frozen=True):
     """Numeric fields whose name matches a text, and what is known of some fields."""
 
     text: str = ""
-    """Fuzzy, see station/fuzzy.py; several words must all match."""
+    """Fuzzy, see station/messages/fuzzy.py; several words must all match."""
     count: int = 0
     """Rows wanted; 0: none."""
     known: tuple[FieldId, ...] = ()

@@ -14,7 +14,7 @@ class MessagesRequest(ViewRequest, frozen=True):
     order: str = "source"
     """One of MESSAGE_ORDERS. "source" is a tree; in the other orders rows of all sources stand in one list."""
     text: str = ""
-    """Filter: words that all must match; see station/message_filter.py."""
+    """Filter: words that all must match; see station/messages/message_filter.py."""
     first: int = 0
     """Index of the first row wanted; more than there are means the last ones."""
     count: int = 50

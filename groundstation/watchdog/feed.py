@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
 from dialects.messages import ManualControl, Message, RcChannelsOverride
-from groundstation.station.driven import DEMAND_MEMORY, DrivenVehicle
+from groundstation.station.driving.driven import DEMAND_MEMORY, DrivenVehicle
 from groundstation.watchdog.process import fork_watchdog
 from groundstation.watchdog.report import MAX_OUTLETS, DemandRoute, StationReport, encode_report
 from link.signing.signing import Signing

@@ -6,7 +6,7 @@ from dialects import codec
 from dialects.axes import NEUTRAL, axis_map, build_manual_control
 from dialects.enums import OperatorFlag
 from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, Message, RoverOperatorPresence, boot_ms
-from groundstation.station.driven import DrivenVehicle
+from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.watchdog.report import DemandRoute
 from link.signing.signature import SecretHash
 from link.signing.signing import FrameSigner, Signing

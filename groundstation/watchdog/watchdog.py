@@ -18,9 +18,9 @@ from dialects import codec
 from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, Message, RoverDriveStatus, VfrHud
 from groundstation.snapshot import StationOutage
-from groundstation.station.driven import DrivenVehicle
-from groundstation.station.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT
-from groundstation.vehicles.demand_stream import DRIVING_PERIOD, NEUTRAL_PERIOD, SETTLE
+from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT
+from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, NEUTRAL_PERIOD, SETTLE
 from groundstation.watchdog.neutral import NeutralFrames
 from groundstation.watchdog.report import StationReport
 from link.protocol.frame import Frame

@@ -14,7 +14,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES
 from link.bridge.fleet.members import add_member
 from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table, brief
 from tests.benchmarks.fleet_sender import RATE

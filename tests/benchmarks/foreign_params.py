@@ -6,8 +6,8 @@ import asyncio
 import time
 from statistics import median
 
-from groundstation.vehicles.requests import RequestReport, RequestState
-from groundstation.verbs.session import VerbSession, run_session
+from groundstation.vehicles.requests.requests import RequestReport, RequestState
+from groundstation.verbs.session.session import VerbSession, run_session
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Table, brief
 from tests.fakes.params import many_params
 from tests.fakes.services import foreign_vehicle

@@ -30,7 +30,7 @@ DRIVE_SCREEN = frozenset(
         *(m.BatteryStatus, m.ServoOutputRaw, m.StatusText, m.CommandAck, m.Timesync),
     )
 )
-"""What the Drive screen reads (groundstation/vehicles/vehicle_state.py, groundstation/station/station.py)."""
+"""What the Drive screen reads (groundstation/vehicles/state/vehicle_state.py, groundstation/station/station.py)."""
 
 PYMAVLINK = "pymavlink parse_buffer"
 FRAMER = "framer"

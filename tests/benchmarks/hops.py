@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
-from groundstation.ui.panes import PANES
+from groundstation.ui.drive.panes import PANES
 from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Spread, Table, brief, spread
 from tests.benchmarks.key_to_motor import BARE, CONTENDERS, LOST_AFTER, OURS_WIDE, Outcome, Rig, running
 from tests.benchmarks.machine import ROOT

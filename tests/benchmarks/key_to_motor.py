@@ -13,7 +13,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from groundstation.ui.panes import PANES
+from groundstation.ui.drive.panes import PANES
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Spread, Table, brief, spread
 from tests.benchmarks.motor_feed import MotorFeed
 from tests.benchmarks.programs import Program, free_port, on_pipe, on_terminal, python, scratch

@@ -7,7 +7,7 @@ import time
 from statistics import median
 
 from groundstation.screens import SCREENS
-from groundstation.ui.panes import PANES
+from groundstation.ui.drive.panes import PANES
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, brief, spread
 from tests.benchmarks.key_to_motor import CONTENDERS, OURS_WIDE, Outcome, Rig, running
 

@@ -12,7 +12,7 @@ from groundstation import client as client_module
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.driving import SetStyle
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.held_key import hold_until

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.e2e.programs import Vehicle
 from tests.e2e.test_verbs_of_a_script import write_corner
 from tests.groundstation.verbs.verb_runs import run_verb

@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, DataStream, Result
 from dialects.messages import INVALID_AXIS, boot_ms
 from dialects.modes import Mode
-from groundstation.vehicles.stream_requests import STREAM_RATES
+from groundstation.vehicles.probes.stream_requests import STREAM_RATES
 from link.core import Received
 from tests.fakes.vehicle import PX4_MANUAL, FakeVehicle
 

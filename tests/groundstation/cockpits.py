@@ -10,7 +10,7 @@ from groundstation.intents.session import REST_PERIOD, RenewLease, ReportKeyRele
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm
 from groundstation.snapshot import OperatorView, Snapshot, VehicleView
-from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.process.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.transport.memory import LossyPipe
 from tests.fakes.vehicle import FakeVehicle

@@ -6,9 +6,9 @@ from typing import TypeVar
 
 from groundstation.intents.session import RenewLease, SetKeyGate
 from groundstation.intents.watch import Watch
-from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.process.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
-from groundstation.vehicles.places import PLACES
+from groundstation.vehicles.state.places import PLACES
 from groundstation.views.base import View, ViewRequest
 from link.protocol.channel import Channel
 from tests.fakes.vehicle import FakeVehicle

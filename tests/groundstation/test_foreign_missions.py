@@ -15,7 +15,7 @@ from groundstation.intents.plan import GoTo, JumpToItem, PauseMission, SetHome, 
 from groundstation.intents.session import RenewLease
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
-from groundstation.ui.map.copies import PlanCopies
+from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.views.plan import PlanKind
 from groundstation.views.requests import RequestLine
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle

@@ -6,7 +6,7 @@ import pytest
 
 from dialects.enums import Autopilot
 from groundstation.snapshot import Snapshot
-from groundstation.vehicles.signing_watch import SIGNING
+from groundstation.vehicles.probes.signing_watch import SIGNING
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.fakes.wires import PymavlinkWire

@@ -47,10 +47,10 @@ asyncio.run(main())
 
 def test_an_instrument(tree: Tree) -> None:
     tree.write("groundstation/ui/widgets/toy.py", TOY)
-    instruments = "groundstation/ui/instruments.py"
+    instruments = "groundstation/ui/drive/instrument_table.py"
     tree.insert_after(
         instruments,
-        "from groundstation.ui.widgets.sticks import",
+        "from groundstation.ui.drive.instruments.sticks import",
         "from groundstation.ui.widgets.toy import ToyReadout",
     )
     tree.insert_before(instruments, '_row("log", "bottom"', ROW)

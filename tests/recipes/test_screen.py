@@ -17,7 +17,7 @@ from collections.abc import Iterable
 from textual.widget import Widget
 from textual.widgets import Static
 
-from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.base.screen import ConsoleScreen
 
 
 class ToyScreen(ConsoleScreen):
@@ -54,6 +54,6 @@ asyncio.run(main())
 
 def test_a_screen(tree: Tree) -> None:
     tree.write("groundstation/ui/screens/toy.py", TOY)
-    tree.insert_after("groundstation/screens.py", '"groundstation.ui.screens.drive:DriveScreen"),', ROW)
+    tree.insert_after("groundstation/screens.py", '"groundstation.ui.drive.screen:DriveScreen"),', ROW)
     tree.check_recipe("a screen")
     tree.run_script(OPEN_IT)

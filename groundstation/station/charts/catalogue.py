@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 
 from dialects.messages import MESSAGES, Message
-from groundstation.station.charts.fields import build_info, format_value, make_reader, numeric_fields, rank_fields
 from groundstation.station.charts.ready_views import STATION_FIELDS, build_ready
-from groundstation.station.message_traffic import MessageTraffic, Place
+from groundstation.station.messages.fields import build_info, format_value, make_reader, numeric_fields, rank_fields
+from groundstation.station.messages.message_traffic import MessageTraffic, Place
 from groundstation.views.charts import STATION, FieldId, FieldInfo, FieldRow, FieldsPage, FieldsRequest
 
 MAX_ROWS = 50

@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dialects.messages import Message
 from groundstation.intents.union import AnyIntent
 from groundstation.station.charts.catalogue import FieldCatalogue, class_of, place_of
-from groundstation.station.charts.fields import Reader, make_reader
 from groundstation.station.charts.marks import MarkWatcher
 from groundstation.station.charts.points import PointBuffer
 from groundstation.station.charts.recorder import SeriesRecorder
-from groundstation.station.link_stats import LinkStats
-from groundstation.station.message_kind import Tap
-from groundstation.station.message_traffic import MessageTraffic, Place
-from groundstation.station.operator import OperatorSession
+from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.messages.fields import Reader, make_reader
+from groundstation.station.messages.message_kind import Tap
+from groundstation.station.messages.message_traffic import MessageTraffic, Place
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Fleet
 from groundstation.views.base import ViewRequest

@@ -9,7 +9,7 @@ import msgspec
 
 from groundstation.intents.driving import PAD, STOP_KEY, DriveKeyDown, DrivePad, EmergencyStop, Stop
 from groundstation.intents.union import AnyIntent
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.views.charts import Mark
 
 MAX_MARKS = 500

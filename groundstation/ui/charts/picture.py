@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
+from groundstation.ui.charts.field_list import CandidateRow, ChartRow, ListRow, SeriesRow, TextRow, ViewRow
 from groundstation.ui.charts.model import ChartsModel
+from groundstation.ui.charts.pane import PaneLine, PaneValue, nice_scale
 from groundstation.ui.charts.series import SeriesSpec
-from groundstation.ui.widgets.charts.field_list import CandidateRow, ChartRow, ListRow, SeriesRow, TextRow, ViewRow
-from groundstation.ui.widgets.charts.pane import PaneLine, PaneValue, nice_scale
-from groundstation.ui.widgets.charts.stats import StatsRow
-from groundstation.ui.widgets.charts.timeline import ChartTimelineValue, TimelineMark, TimelineMode
+from groundstation.ui.charts.stats import StatsRow
+from groundstation.ui.charts.timeline import ChartTimelineValue, TimelineMark, TimelineMode
 
 CANDIDATES = 12
 """Fields that are listed while a name is typed."""

@@ -8,11 +8,11 @@ from typing import Any, Protocol
 
 import msgspec
 
-from groundstation.ui.exports import LOG_SUFFIX, NAMES, ExportRequest, Exports, parse_request
-from groundstation.ui.local_files import short_path
-from groundstation.ui.widgets.files.tables import percent_text
+from groundstation.ui.base.local_files import short_path
+from groundstation.ui.display.wrap import clean
+from groundstation.ui.files.exports import LOG_SUFFIX, NAMES, ExportRequest, Exports, parse_request
+from groundstation.ui.files.tables import percent_text
 from groundstation.ui.widgets.line_field import FieldUse
-from groundstation.ui.wrap import clean
 
 
 class ExportScreen(Protocol):

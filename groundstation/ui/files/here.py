@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from groundstation.snapshot import RecordingView
-from groundstation.ui.local_files import LocalFile, list_files
-from groundstation.ui.log.summary import LogSummary, read_summary
+from groundstation.ui.base.local_files import LocalFile, list_files
+from groundstation.ui.files.log_summary import LogSummary, read_summary
 from groundstation.views.requests import RequestLine
 
 SUMMARIZED = ".tlog"

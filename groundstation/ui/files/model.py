@@ -17,10 +17,10 @@ from groundstation.intents.files import (
     RemoveFile,
 )
 from groundstation.intents.services import ServiceIntent
+from groundstation.ui.base.local_files import LocalFile
+from groundstation.ui.display.task_list import TaskList
 from groundstation.ui.files.here import FilesHere
 from groundstation.ui.files.tree import ROOT, TreeRow, build_tree
-from groundstation.ui.local_files import LocalFile
-from groundstation.ui.task_list import TaskList
 from groundstation.views.files import FilesRequest, FilesView, VehicleLog
 
 MAX_OPEN = 32

@@ -6,9 +6,9 @@ from collections.abc import Callable, Coroutine
 from typing import Any, Protocol
 
 from groundstation.intents.union import AnyIntent
+from groundstation.ui.display.wrap import clean
 from groundstation.ui.files.model import FilesModel, Panel
-from groundstation.ui.widgets.files.tables import size_text
-from groundstation.ui.wrap import clean
+from groundstation.ui.files.tables import size_text
 
 
 class RemovalContext(Protocol):

@@ -10,9 +10,9 @@ import msgspec
 from msgspec.structs import replace
 
 from groundstation.snapshot import LogLine
+from groundstation.ui.display.wrap import wrap
 from groundstation.ui.log.filter import LogFilter, tag_of
 from groundstation.ui.log.join import LogGroup, find_group
-from groundstation.ui.wrap import wrap
 from groundstation.views.log import LogPage, LogRequest
 
 KEPT = 2000

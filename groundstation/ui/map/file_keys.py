@@ -6,8 +6,8 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any, Protocol
 
-from groundstation.ui.map.files import MapFileError, open_layer, open_plan, save_plan
 from groundstation.ui.map.model import MapModel
+from groundstation.ui.map.plan.files import MapFileError, open_layer, open_plan, save_plan
 from groundstation.ui.widgets.line_field import FieldUse, LineField
 
 LAYER_SUFFIXES = (".geojson", ".json")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from groundstation.ui.map.commands import find_command
-from groundstation.ui.map.fields import ItemField, change_command, change_field
 from groundstation.ui.map.model import MapModel
+from groundstation.ui.map.plan.commands import find_command
+from groundstation.ui.map.plan.fields import ItemField, change_command, change_field
 from groundstation.views.plan import PlanKind
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.display_state import ScreenKey
+from groundstation.ui.display.display_state import ScreenKey
 
 COARSE = 10
 """Cells that the cursor moves with shift."""

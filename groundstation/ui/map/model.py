@@ -8,17 +8,17 @@ from collections.abc import Sequence
 from groundstation.formats.layer import LayerDocument
 from groundstation.geo import LocalFrame, Place, Point
 from groundstation.intents.union import AnyIntent
-from groundstation.ui.map.checks import plan_fault
-from groundstation.ui.map.copies import PlanCopies
-from groundstation.ui.map.editor import PlanEditor
-from groundstation.ui.map.geometry import place_of
-from groundstation.ui.map.ground import Ground
-from groundstation.ui.map.layers import MapLayers, describe_layer
-from groundstation.ui.map.plan_intents import PlanIntents
-from groundstation.ui.map.rows import Items
-from groundstation.ui.map.scene import Route, find_reference, find_route
-from groundstation.ui.map.table_filter import TableFilter
-from groundstation.ui.request_numbers import RequestNumbers
+from groundstation.ui.display.request_numbers import RequestNumbers
+from groundstation.ui.map.draw.ground import Ground
+from groundstation.ui.map.draw.layers import MapLayers, describe_layer
+from groundstation.ui.map.draw.scene import Route, find_reference, find_route
+from groundstation.ui.map.plan.checks import plan_fault
+from groundstation.ui.map.plan.copies import PlanCopies
+from groundstation.ui.map.plan.editor import PlanEditor
+from groundstation.ui.map.plan.geometry import place_of
+from groundstation.ui.map.plan.plan_intents import PlanIntents
+from groundstation.ui.map.plan.rows import Items
+from groundstation.ui.map.plan.table_filter import TableFilter
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.plan import PlanDocument, PlanKind, PlanMode, PlanView
 from groundstation.views.requests import RequestLine

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from groundstation.geo import LocalFrame, Place, Point
 from groundstation.snapshot import VehicleView
-from groundstation.ui.map.copies import PlanCopies
-from groundstation.ui.map.picture import COMPLETE, no_position
-from groundstation.ui.map.scene import (
+from groundstation.ui.map.draw.plan_map_value import MapMark, PlanMapValue
+from groundstation.ui.map.draw.scene import (
     build_legs,
     build_marks,
     build_outlines,
@@ -17,7 +16,8 @@ from groundstation.ui.map.scene import (
     find_route,
     track_points,
 )
-from groundstation.ui.widgets.plan_map_value import MapMark, PlanMapValue
+from groundstation.ui.map.picture import COMPLETE, no_position
+from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.views.plan import PlanKind
 
 

@@ -9,13 +9,13 @@ from msgspec.structs import replace
 
 from groundstation.geo import Point, bearing
 from groundstation.snapshot import VehicleView
-from groundstation.ui.map.checks import check_fence, fence_shapes
-from groundstation.ui.map.commands import command_title
-from groundstation.ui.map.geometry import place_of
-from groundstation.ui.map.ground import NOT_FITTED, Looking
+from groundstation.ui.map.draw.ground import NOT_FITTED, Looking
+from groundstation.ui.map.draw.plan_map_value import MapMark, PlanMapValue
+from groundstation.ui.map.draw.scene import build_legs, build_marks, build_outlines, track_points
 from groundstation.ui.map.model import PLAN_NAMES, MapModel
-from groundstation.ui.map.scene import build_legs, build_marks, build_outlines, track_points
-from groundstation.ui.widgets.plan_map_value import MapMark, PlanMapValue
+from groundstation.ui.map.plan.checks import check_fence, fence_shapes
+from groundstation.ui.map.plan.commands import command_title
+from groundstation.ui.map.plan.geometry import place_of
 from groundstation.views.plan import PlanKind
 
 LEAST_WAY = 0.05

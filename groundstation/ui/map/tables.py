@@ -8,14 +8,21 @@ from itertools import pairwise
 
 from groundstation.geo import bearing
 from groundstation.snapshot import VehicleView
-from groundstation.ui.map.checks import item_fault, range_warning
-from groundstation.ui.map.commands import CHANGE_SPEED, DO_JUMP, POLYGONS, command_title, describe_command, short_title
-from groundstation.ui.map.fields import FRAMES, fields_of, number_text, value_of
-from groundstation.ui.map.geometry import place_of
 from groundstation.ui.map.model import PLAN_NAMES, MapModel
+from groundstation.ui.map.panels import PanelLine, PanelValue, ProgressValue
 from groundstation.ui.map.picture import fence_text, mark_of, outside_rows, progress_of, title_of, way_text
-from groundstation.ui.widgets.plan_panels import PanelLine, PanelValue, ProgressValue
-from groundstation.ui.widgets.plan_table import PlanTableRow, PlanTableValue
+from groundstation.ui.map.plan.checks import item_fault, range_warning
+from groundstation.ui.map.plan.commands import (
+    CHANGE_SPEED,
+    DO_JUMP,
+    POLYGONS,
+    command_title,
+    describe_command,
+    short_title,
+)
+from groundstation.ui.map.plan.fields import FRAMES, fields_of, number_text, value_of
+from groundstation.ui.map.plan.geometry import place_of
+from groundstation.ui.map.plan_table import PlanTableRow, PlanTableValue
 from groundstation.views.plan import MAX_ITEMS, PlanItem, PlanKind
 
 NARROW_VALUE = 5

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from groundstation.intents.services import RequestMessage, ServiceIntent, SetMessageRate
-from groundstation.ui.request_numbers import RequestNumbers, find_request
+from groundstation.ui.display.request_numbers import RequestNumbers, find_request
 from groundstation.views.messages import MessageView
 from groundstation.views.requests import RequestsRequest, RequestsView
 

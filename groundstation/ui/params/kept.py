@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from platformdirs import user_state_path
 
+from groundstation.ui.base.screen import ScreenContext
 from groundstation.ui.params.favourites import Favourites
 from groundstation.ui.params.model import ParamModel
-from groundstation.ui.screens.screen import ScreenContext
 
 
 def keep_params(context: ScreenContext) -> ParamModel:

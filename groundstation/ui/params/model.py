@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
 from groundstation.intents.union import AnyIntent
-from groundstation.ui.params.editor import ValueEditor
+from groundstation.ui.display.request_numbers import RequestNumbers
+from groundstation.ui.params.edit.editor import ValueEditor
+from groundstation.ui.params.edit.pending import PendingChange, PendingChanges
 from groundstation.ui.params.favourites import Favourites
-from groundstation.ui.params.pending import PendingChange, PendingChanges
 from groundstation.ui.params.scope import ALL, ParamScope, ScopeKind, ScopeRow, group_of, scope_rows
 from groundstation.ui.params.status import status_text, written_text
-from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.base import ViewRequest
 from groundstation.views.params import (
     ParamDiff,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from groundstation.ui.params.checks import needs_care
-from groundstation.ui.params.pending import PendingChange
+from groundstation.ui.params.edit.checks import needs_care
+from groundstation.ui.params.edit.pending import PendingChange
 from groundstation.views.params import ParamInfo, ParamPage
 from groundstation.views.requests import RequestLine
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from groundstation.intents.services import CompareParams, ResetParams, StoreParams
-from groundstation.ui.params.files import parse_save, read_file
+from groundstation.ui.base.screen import ConsoleScreen
+from groundstation.ui.params.edit.files import parse_save, read_file
+from groundstation.ui.params.edit.saving import ParamSaving
 from groundstation.ui.params.model import ParamModel
-from groundstation.ui.params.saving import ParamSaving
 from groundstation.ui.params.scope import group_of
-from groundstation.ui.screens.screen import ConsoleScreen
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.views.params import ParamExport, ParamExportRequest
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol, runtime_checkable
 
 from groundstation.snapshot import ReplayStatus
-from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.base.screen import ConsoleScreen
 
 REFUSED = "replay: nothing is sent to a vehicle"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from groundstation.ui.widgets.files.tables import size_text
+from groundstation.ui.files.tables import size_text
 from groundstation.views.replay import ReplayEvent, ReplayRequest, ReplayView
 
 

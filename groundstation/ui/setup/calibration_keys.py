@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from groundstation.intents.setup import Calibrate, ConfirmPosition, EndCalibration, WatchSticks
+from groundstation.ui.base.screen import ConsoleScreen
+from groundstation.ui.params.edit.pending import PendingChange
 from groundstation.ui.params.model import ParamModel
-from groundstation.ui.params.pending import PendingChange
-from groundstation.ui.screens.screen import ConsoleScreen
 from groundstation.ui.setup.model import SetupModel
 from groundstation.views.doctor import STICKS, CalibrationRow, DoctorView
 

@@ -1,1 +1,1 @@
-"""Instruments: one module each, listed in groundstation/ui/instruments.py."""
+"""Instruments: one module each, listed in groundstation/ui/drive/instrument_table.py."""

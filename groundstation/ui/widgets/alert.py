@@ -9,8 +9,8 @@ import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.alerts import Alert, AlertLevel, active_alerts
-from groundstation.ui.display_state import DisplayState
+from groundstation.ui.display.alerts import Alert, AlertLevel, active_alerts
+from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.look.colours import AMBER, DEEP_RED, PANEL, TEXT, WARNING, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, strip
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import msgspec
 from textual.strip import Strip
 
-from groundstation.ui.alerts import Alert
+from groundstation.ui.display.alerts import Alert
+from groundstation.ui.display.wrap import wrap
 from groundstation.ui.look.colours import DIM, style
 from groundstation.ui.widgets.alert import LOOKS, MARKS
 from groundstation.ui.widgets.instrument import Instrument, strip
-from groundstation.ui.wrap import wrap
 
 MARGIN = 3
 """Cells of the mark, and of the space at both sides of it."""

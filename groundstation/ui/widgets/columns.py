@@ -8,9 +8,9 @@ import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
+from groundstation.ui.display.wrap import clean
 from groundstation.ui.look.colours import DIM, style
 from groundstation.ui.widgets.instrument import Part, strip
-from groundstation.ui.wrap import clean
 
 GAP = 1
 """Cells between two columns."""

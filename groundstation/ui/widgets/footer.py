@@ -9,7 +9,7 @@ from textual.strip import Strip
 
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import Keymap
-from groundstation.ui.display_state import DRIVE_INFO, DisplayState, ScreenInfo
+from groundstation.ui.display.display_state import DRIVE_INFO, DisplayState, ScreenInfo
 from groundstation.ui.keys.keynames import format_key, is_character, main_key
 from groundstation.ui.look.colours import DIM, PANEL, RED, TEXT, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip

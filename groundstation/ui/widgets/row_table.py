@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import msgspec
 from textual.strip import Strip
 
+from groundstation.ui.display.wrap import wrap
 from groundstation.ui.look.colours import BACKGROUND, BLUE, DIM, FAINT, TEXT, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, strip
-from groundstation.ui.wrap import wrap
 
 
 class Cell(msgspec.Struct, frozen=True):

@@ -10,7 +10,7 @@ from textual.strip import Strip
 from groundstation.input.keymap import Keymap
 from groundstation.snapshot import EmergencyProgress, LinkView, RecordingView, ReplayStatus, Snapshot, VehicleView
 from groundstation.snapshot.signing import SigningState, SigningView
-from groundstation.ui.display_state import DisplayState
+from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.look.colours import (
     AMBER,
     BLUE,

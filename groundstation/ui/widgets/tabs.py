@@ -9,10 +9,10 @@ from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
 from groundstation.screens import SCREENS, ScreenRow
-from groundstation.ui.display_state import DisplayState
+from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.display.tab_marks import TabMark, find_marks
 from groundstation.ui.keys.keynames import format_key, main_key
 from groundstation.ui.look.colours import DIM, FAINT, WHITE, YELLOW, style
-from groundstation.ui.tab_marks import TabMark, find_marks
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 WIDE = 120

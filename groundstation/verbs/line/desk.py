@@ -11,10 +11,10 @@ from dialects.enums import Severity
 from groundstation.formats.errors import FileFormatError
 from groundstation.intents.line import RunLine
 from groundstation.station.station import Station
+from groundstation.vehicles.demand.stop_commands import STOP_VERBS
 from groundstation.vehicles.fleet import Contact
-from groundstation.vehicles.stop_commands import STOP_VERBS
-from groundstation.verbs.arguments import is_chosen
-from groundstation.verbs.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.arguments import is_chosen
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.parser import ParsedLine, parse_line
 from groundstation.verbs.line.session import LineOutput, LineSession, here
 from groundstation.verbs.line.words import complete

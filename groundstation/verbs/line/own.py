@@ -6,9 +6,9 @@ import argparse
 
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
-from groundstation.station.handover import ANSWER_WITHIN
-from groundstation.vehicles.requests import RequestState
-from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
+from groundstation.station.driving.handover import ANSWER_WITHIN
+from groundstation.vehicles.requests.requests import RequestState
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.line.session import LineOutput, LineSession
 
 STOPPED_WITHIN = 5.0

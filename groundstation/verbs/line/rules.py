@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.line import own
 from groundstation.verbs.line.session import LineOutput, LineSession
 

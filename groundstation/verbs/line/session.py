@@ -11,12 +11,12 @@ import msgspec
 from groundstation.intents.base import Intent
 from groundstation.station.station import Station
 from groundstation.vehicles.fleet import Contact
-from groundstation.vehicles.requests import RequestReport
+from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.vehicles.services import VehicleServices
-from groundstation.vehicles.vehicle_details import VehicleDetails
-from groundstation.vehicles.vehicle_state import VehicleState
-from groundstation.verbs.in_control import is_in_control, other_driver
-from groundstation.verbs.session import RequestStart
+from groundstation.vehicles.state.vehicle_details import VehicleDetails
+from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.verbs.session.in_control import is_in_control, other_driver
+from groundstation.verbs.session.session import RequestStart
 
 LOOK_PERIOD = 0.05
 """s between two looks whether what a verb waits for is so."""

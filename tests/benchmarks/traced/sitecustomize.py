@@ -28,7 +28,7 @@ HOPS = {
     "groundstation.host.screen_port": (("ScreenPort._read", "piped", ""),),
     "groundstation.host.screens": (("ScreenSet.handle_batch", "decoded", ""),),
     "link.transport.udp": (("UdpTransport.send", "encoded", ""), ("UdpTransport._readable", "arrived", "")),
-    "groundstation.ui.app": (("ConsoleApp._show", "show", "shown"),),
+    "groundstation.ui.app.app": (("ConsoleApp._show", "show", "shown"),),
     "textual.app": (("App._display", "paint", "painted"),),
 }
 """Module -> functions, the name of the timestamp at their begin and at their end; "" for none."""

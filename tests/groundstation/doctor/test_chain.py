@@ -13,9 +13,9 @@ from groundstation.doctor.chain import CHAIN, count_faults, examine
 from groundstation.doctor.facts import DoctorFacts, PreArmText, SensorBits, SettingFact
 from groundstation.snapshot import LinkView, OperatorView, OutputView, VehicleView
 from groundstation.snapshot.drive import StopBound
-from groundstation.vehicles.settings_check import SETTINGS
-from groundstation.vehicles.stop_bounds import find_rules, stop_bounds
-from groundstation.vehicles.stop_rules import StopFacts
+from groundstation.vehicles.stops.settings_check import SETTINGS
+from groundstation.vehicles.stops.stop_bounds import find_rules, stop_bounds
+from groundstation.vehicles.stops.stop_rules import StopFacts
 from groundstation.views.doctor import DoctorRow, ParamFix, TerminalFacts
 from link.runtime.diagnosis import Health
 

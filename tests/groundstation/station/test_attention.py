@@ -5,7 +5,7 @@ from __future__ import annotations
 from groundstation.intents.services import FetchParams
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.intents.watch import Watch
-from groundstation.station.verb_relay import Verb
+from groundstation.station.relay.verb_relay import Verb
 from groundstation.views.charts import FieldId, SeriesRequest
 from groundstation.views.messages import MessageRequest
 from tests.groundstation.flotilla import Flotilla

@@ -8,9 +8,9 @@ from dialects import messages as m
 from groundstation.intents.driving import DriveKeyUp
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, Disarm, RequestControl
-from groundstation.station.arming import CONFIRM_WITHIN
-from groundstation.station.claims import Claims
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.station.driving.arming import CONFIRM_WITHIN
+from groundstation.station.driving.claims import Claims
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from tests.fakes.rover import FakeArduPilot
 from tests.groundstation.cockpits import FORWARD, Cockpit, cockpit_with, driving_cockpit
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import Command, Result, Sensor
 from groundstation.intents.vehicle import Arm
-from groundstation.station.command_results import SHOWN_FOR
+from groundstation.station.driving.command_results import SHOWN_FOR
 from groundstation.ui.log.join import find_group
 from groundstation.views.log import LogRequest
 from tests.fakes.vehicle import FakeVehicle

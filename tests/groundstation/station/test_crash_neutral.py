@@ -13,7 +13,7 @@ from groundstation import client
 from groundstation.intents.driving import DriveKeyDown, SetStyle
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm
-from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.process.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.core import Peer, Received
 from tests.fakes.lines import on_line

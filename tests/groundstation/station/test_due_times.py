@@ -9,9 +9,9 @@ import pytest
 from dialects.modes import Mode
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import LEASE_TIMEOUT
-from groundstation.station.operator import NEUTRAL_LEAD
+from groundstation.station.driving.operator import NEUTRAL_LEAD
 from groundstation.station.station import TICK_PERIOD
-from groundstation.vehicles.demand_stream import DRIVING_PERIOD
+from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
 
 STEP = 0.005

@@ -9,7 +9,7 @@ from groundstation.intents.driving import ClearEmergencyStop, EmergencyStop
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm
 from groundstation.snapshot import EmergencyProgress
-from groundstation.vehicles.stop_commands import FORCE_DISARM
+from groundstation.vehicles.demand.stop_commands import FORCE_DISARM
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit

@@ -14,7 +14,7 @@ from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import LEASE_TIMEOUT, REST_LEASE_TIMEOUT, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
-from groundstation.station.operator import OperatorSession
+from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.station import Station
 from link.core import Peer, Received
 

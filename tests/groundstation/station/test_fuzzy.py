@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.station.fuzzy import is_match, match_score
+from groundstation.station.messages.fuzzy import is_match, match_score
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from groundstation.intents.driving import PAD, DriveKeyUp, DrivePad, EmergencySt
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Disarm, SelectNextVehicle
-from groundstation.station.screen_lease import ScreenLease
+from groundstation.station.driving.screen_lease import ScreenLease
 from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit, driving_cockpit
 
 PERIOD = 0.05

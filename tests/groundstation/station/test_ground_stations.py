@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.enums import VehicleType
-from groundstation.station.ground_stations import MAX_STATIONS, GroundStations
+from groundstation.station.links.ground_stations import MAX_STATIONS, GroundStations
 from groundstation.views.links import StationRow
 from link.core import Peer, Received
 

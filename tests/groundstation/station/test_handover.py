@@ -10,7 +10,7 @@ from groundstation.intents.driving import DriveKeyUp
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Disarm, GiveControl, KeepControl, ReleaseControl, RequestControl
 from groundstation.snapshot import HandoverNotice
-from groundstation.station.handover import ANSWER_WITHIN
+from groundstation.station.driving.handover import ANSWER_WITHIN
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, OURS, Cockpit, armed_cockpit, cockpit_with, driving_cockpit

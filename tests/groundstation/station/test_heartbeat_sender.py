@@ -5,9 +5,9 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import SystemState
 from groundstation.intents.session import RenewLease
-from groundstation.station.heartbeat_sender import HeartbeatSender
+from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.station.station import Station
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES
 from link.core import Peer, Received
 from tests.groundstation.cockpits import Cockpit
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from groundstation.snapshot import LinkView
-from groundstation.station.lasting_alerts import MOST, LastingAlerts
+from groundstation.station.process.lasting_alerts import MOST, LastingAlerts
 from tests.groundstation.ui.examples import snapshot, vehicle
 
 BAD = snapshot(

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from groundstation.station.link_stats import LinkStats
+from groundstation.station.links.link_stats import LinkStats
 from link.core import LinkReport, Peer, SourceCount
 
 

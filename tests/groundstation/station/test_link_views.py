@@ -12,7 +12,7 @@ from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.ipc import MAX_PACKET, encode
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES
 from groundstation.views.base import ViewRequest
 from groundstation.views.links import (
     ControlRequest,

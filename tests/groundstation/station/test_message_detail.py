@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from dialects import codec
 from dialects import messages as m
 from groundstation.ipc import MAX_PACKET, encode
-from groundstation.station.message_capture import KEPT, MessageCapture
-from groundstation.station.message_detail import MessageDetail
-from groundstation.station.message_traffic import MessageTraffic
+from groundstation.station.messages.message_capture import KEPT, MessageCapture
+from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.views.messages import CapturePage, CaptureRequest, MessageRequest, MessageView
 
 REQUEST = MessageRequest(1, 1, False, "SYS_STATUS", "voltage_battery")

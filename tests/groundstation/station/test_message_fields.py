@@ -9,7 +9,7 @@ import pytest
 from dialects import codec
 from dialects import messages as m
 from dialects.messages import MESSAGES
-from groundstation.station.message_fields import build_fields
+from groundstation.station.messages.message_fields import build_fields
 from groundstation.views.messages import MessageField
 
 

@@ -7,8 +7,8 @@ import pytest
 from dialects import messages as m
 from groundstation.intents.watch import Watch
 from groundstation.ipc import MAX_PACKET, encode
-from groundstation.station.message_detail import MessageDetail
-from groundstation.station.message_traffic import MAX_KINDS, MAX_ROWS, MessageTraffic
+from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_traffic import MAX_KINDS, MAX_ROWS, MessageTraffic
 from groundstation.views.base import View
 from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
 from link.core import LinkReport, SourceCount

@@ -12,8 +12,8 @@ from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyG
 from groundstation.intents.setup import StopMotorTest, TurnMotor
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.intents.watch import Watch
-from groundstation.station.motor_test import LONGEST
-from groundstation.vehicles.motor_outputs import build_stop, build_turn, is_turn, motors_of
+from groundstation.station.driving.motor_test import LONGEST
+from groundstation.vehicles.readings.motor_outputs import build_stop, build_turn, is_turn, motors_of
 from groundstation.views.doctor import DoctorRequest
 from tests.fakes.rover import FakeArduPilot
 from tests.groundstation.cockpits import Cockpit

@@ -10,10 +10,10 @@ from dialects.axes import NEUTRAL, Axes
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import LogLine
-from groundstation.station.operator_log import MAX_KEYS, REPORT_WITHIN, OperatorLog
-from groundstation.vehicles.key_to_motor import KeyTimings
-from groundstation.vehicles.latency import LatencyMeter, SentDemand
-from groundstation.vehicles.message_log import MessageLog
+from groundstation.station.notes.operator_log import MAX_KEYS, REPORT_WITHIN, OperatorLog
+from groundstation.vehicles.readings.key_to_motor import KeyTimings
+from groundstation.vehicles.readings.latency import LatencyMeter, SentDemand
+from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.views.log import LogPage, LogRequest
 from tests.test_stops import Drive
 

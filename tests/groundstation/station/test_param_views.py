@@ -7,7 +7,7 @@ from typing import TypeVar
 from groundstation.formats.docs_files import read_docs
 from groundstation.intents.services import CompareParams, FetchParams, ResetParams, StoreParams, WriteParams
 from groundstation.intents.watch import Watch
-from groundstation.station.param_views import ParamViews
+from groundstation.station.views.param_views import ParamViews
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.params import (
     ParamDiff,

@@ -10,8 +10,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
 from dialects.messages import MESSAGES
-from groundstation.station.message_detail import MessageDetail
-from groundstation.station.message_traffic import MessageTraffic
+from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.views.messages import MessageRequest, MessagesRequest, MessageView
 from link.protocol.channel import Channel
 from link.tlog.tlog import read_records

@@ -11,7 +11,7 @@ from dialects.enums import Command
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.plan import ClearPlan
 from groundstation.intents.vehicle import Arm, Disarm
-from groundstation.station.verb_relay import Verb
+from groundstation.station.relay.verb_relay import Verb
 from groundstation.views.requests import RequestsRequest
 from link.fleet.keys import read_frame
 from link.fleet.roles import needed_role

@@ -8,8 +8,8 @@ from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencySto
 from groundstation.intents.session import LEASE_TIMEOUT, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, Disarm, GiveControl, KeepControl, RequestControl, SetMode
-from groundstation.station.operator import THAW
-from groundstation.station.screen_lease import ANSWER_WITHIN, DEAD_AFTER, Screen, ScreenLease
+from groundstation.station.driving.operator import THAW
+from groundstation.station.driving.screen_lease import ANSWER_WITHIN, DEAD_AFTER, Screen, ScreenLease
 from tests.groundstation.cockpits import FORWARD, driving_cockpit
 
 REPEAT = 0.03

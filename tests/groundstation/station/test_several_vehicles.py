@@ -12,7 +12,7 @@ from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyG
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, Disarm, SelectNextVehicle, SelectVehicle, SetMode
 from groundstation.snapshot import Snapshot, VehicleView
-from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.process.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.protocol.channel import Channel
 from tests.fakes.vehicle import QUERIES, FakeVehicle

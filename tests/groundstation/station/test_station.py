@@ -8,7 +8,7 @@ from dialects import messages as m
 from groundstation.intents.driving import HOLD_TIME
 from groundstation.intents.session import LEASE_TIMEOUT, REST_PERIOD, RenewLease
 from groundstation.intents.vehicle import Arm, Disarm
-from groundstation.station.driven import DEMAND_MEMORY
+from groundstation.station.driving.driven import DEMAND_MEMORY
 from groundstation.station.station import REST_AFTER, TICK_PERIOD
 from tests.groundstation.cockpits import Cockpit, armed_cockpit
 

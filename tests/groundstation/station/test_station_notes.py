@@ -10,7 +10,7 @@ from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, ScaleLimits,
 from groundstation.intents.services import FetchParams
 from groundstation.intents.session import ReportScreen, SetKeyGate
 from groundstation.intents.vehicle import Disarm, ReleaseControl
-from groundstation.station.station_notes import REPEATED_WITHIN
+from groundstation.station.notes.station_notes import REPEATED_WITHIN
 from link.core import LinkReport
 from tests.groundstation.cockpits import FORWARD, LEFT, Cockpit, armed_cockpit, driving_cockpit
 

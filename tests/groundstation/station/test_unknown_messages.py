@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from groundstation.station.message_traffic import MessageTraffic
+from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.views.messages import MessageRequest, MessageRow, MessagesRequest
 from link.core import LinkReport
 from link.protocol.channel import Channel

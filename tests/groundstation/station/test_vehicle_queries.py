@@ -6,7 +6,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command
-from groundstation.vehicles.stream_requests import CAPACITY_SHARE, LOAD
+from groundstation.vehicles.probes.stream_requests import CAPACITY_SHARE, LOAD
 from link.core import Peer, Received
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle

@@ -9,7 +9,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, OperatorFlag, SystemState, VehicleType
 from dialects.messages import INVALID_AXIS, UINT16_MAX
-from groundstation.station.verb_relay import Verb, VerbRelay
+from groundstation.station.relay.verb_relay import Verb, VerbRelay
 from groundstation.station_socket.relay import ALIVE_WITHIN, KEEP
 from link.core import Received
 from tests.fakes.rover import FakeArduPilot

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from groundstation.ui.display_state import DisplayState
-from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.display.display_state import DisplayState
 
 
 class ExtraScreen(ConsoleScreen):

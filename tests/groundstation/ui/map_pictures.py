@@ -6,9 +6,9 @@ from collections.abc import Awaitable, Callable
 
 from textual.pilot import Pilot
 
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.map.model import MapModel
-from groundstation.ui.screens.map import MapScreen
+from groundstation.ui.map.screen import MapScreen
 from groundstation.views.plan import PlanKind
 from tests.groundstation.ui import frames
 

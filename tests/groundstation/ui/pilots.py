@@ -15,11 +15,11 @@ from textual.pilot import Pilot
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
+from groundstation.ui.app.help import HelpScreen
+from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import PLAIN, Look
-from groundstation.ui.screens.help import HelpScreen
-from groundstation.ui.screens.screen import ConsoleScreen
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames

@@ -16,7 +16,7 @@ from textual.drivers.linux_driver import LinuxDriver
 
 from groundstation.intents.session import RenewLease
 from groundstation.intents.union import AnyIntent
-from groundstation.ui.run import run
+from groundstation.ui.app.run import run
 from groundstation.ui.terminal.console_driver import ConsoleDriver
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.groundstation.ui.ptys import STANDARD

@@ -17,7 +17,7 @@ from threading import Thread
 from typing import TypeVar
 
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.terminal.tty_output import TerminalFile
 from tests.groundstation.ui.examples import Recorder

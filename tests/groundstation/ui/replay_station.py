@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.union import AnyIntent
 from groundstation.replay.desk import ReplayDesk
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import Look
 from tests.groundstation.replay.logs import finish

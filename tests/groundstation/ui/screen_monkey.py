@@ -26,7 +26,7 @@ from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.screens import SCREENS
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.live_station import LiveStation

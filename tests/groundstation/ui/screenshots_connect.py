@@ -15,7 +15,7 @@ from textual.pilot import Pilot
 
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from link.runtime.child_process import start_module
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.ui import frames

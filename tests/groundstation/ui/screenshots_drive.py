@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.map_pictures import map_picture

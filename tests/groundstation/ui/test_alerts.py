@@ -11,9 +11,9 @@ from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.snapshot import EmergencyProgress, HandoverNotice, LinkView, RecordingView, Snapshot
 from groundstation.snapshot.lease import LeaseView
-from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts
-from groundstation.ui.display_state import DisplayState, ScreenInfo
-from groundstation.ui.hints import hint
+from groundstation.ui.display.alerts import LIMITS, AlertLevel, active_alerts
+from groundstation.ui.display.display_state import DisplayState, ScreenInfo
+from groundstation.ui.display.hints import hint
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD, GateClosure
 from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
 from tests.groundstation.ui.ptys import STANDARD

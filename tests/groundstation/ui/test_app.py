@@ -12,8 +12,8 @@ from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.session import REST_PERIOD, Quit, RenewLease, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.snapshot import StationOutage
-from groundstation.ui.app import AT_REST, TICK, WITHOUT_SNAPSHOT
-from groundstation.ui.display_state import DisplayState
+from groundstation.ui.app.app import AT_REST, TICK, WITHOUT_SNAPSHOT
+from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console, helps_pushed, type_in

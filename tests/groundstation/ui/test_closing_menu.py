@@ -9,9 +9,9 @@ import pytest
 from groundstation.intents.plan import ChooseMode
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.vehicle import SetMode
-from groundstation.ui.screens.goto import GoToMenu
-from groundstation.ui.screens.links import LinksScreen
-from groundstation.ui.screens.log import LogScreen
+from groundstation.ui.app.goto import GoToMenu
+from groundstation.ui.links.screen import LinksScreen
+from groundstation.ui.log.screen import LogScreen
 from tests.groundstation.ui.example_map import pages, picture, plan_view, track
 from tests.groundstation.ui.pilots import console, type_in
 from tests.waits import until

@@ -9,7 +9,7 @@ import pytest
 from rich.segment import Segment
 from textual.strip import Strip
 
-from groundstation.ui.screens.links import LinksScreen
+from groundstation.ui.links.screen import LinksScreen
 from groundstation.ui.terminal import drawn_lines, interpreter
 from tests.groundstation.ui.pilots import console
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.geometry import Region
 
-from groundstation.ui.drive_layout import layout_classes
+from groundstation.ui.drive.layout import layout_classes
 from groundstation.ui.widgets.instrument import Instrument
 from tests.groundstation.ui.examples import MESSAGES_PAGE, SPEEDS, TRACK, snapshot
 from tests.groundstation.ui.pilots import Console, console

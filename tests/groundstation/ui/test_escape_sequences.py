@@ -207,7 +207,7 @@ def test_any_characters_end_within_a_bound(characters: list[str]) -> None:
 
 
 async def test_split_keys_on_a_pty_change_neither_mode_nor_screen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("groundstation.ui.app.PING", "")
+    monkeypatch.setattr("groundstation.ui.app.app.PING", "")
     for _ in range(5):
         if await _split_keys_were_neutral():
             return

@@ -15,9 +15,9 @@ from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.screens import SCREENS, ScreenRow
-from groundstation.ui.app import ConsoleApp
-from groundstation.ui.navigation import load_screen
-from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.app.app import ConsoleApp
+from groundstation.ui.app.navigation import load_screen
+from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from groundstation.ui.widgets.line_field import FieldUse
 from tests.groundstation.ui.live_station import LiveStation

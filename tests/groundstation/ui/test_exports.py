@@ -9,7 +9,7 @@ import pytest
 
 from groundstation.export.log_time import parse_log_time
 from groundstation.replay.desk import ReplayDesk
-from groundstation.ui.exports import ExportRequest, Exports, parse_request
+from groundstation.ui.files.exports import ExportRequest, Exports, parse_request
 from groundstation.ui.replay.model import part_text
 from groundstation.ui.widgets.line_field import LineField
 from groundstation.views.replay import ReplayView

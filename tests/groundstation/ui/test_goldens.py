@@ -16,7 +16,7 @@ from groundstation.intents.watch import Watch
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.snapshot.drive import KeyToMotor, StopBound
-from groundstation.ui.display_state import DisplayState
+from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.look.appearance import Look
 from groundstation.views.base import View
 from groundstation.views.line import RUNNING, LineView

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.ui.question import Question
+from groundstation.ui.base.question import Question
 from groundstation.ui.widgets.alert import fit_hint
 
 BACK = "ESC goes back to Drive, the only screen where keys drive"

@@ -9,7 +9,7 @@ import pytest
 
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.vehicle import Arm
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.terminal.key_parser import find_latin_sequence
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames

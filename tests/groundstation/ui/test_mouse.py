@@ -154,7 +154,7 @@ async def test_the_wheel_drove_and_does_no_longer(button: int, monkeypatch: pyte
 
 @pytest.mark.parametrize("report", REPORTS.values(), ids=REPORTS)
 async def test_reports_that_arrive_byte_by_byte_send_nothing(report: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("groundstation.ui.app.PING", "")  # no answer to a ping comes in the middle of a report
+    monkeypatch.setattr("groundstation.ui.app.app.PING", "")  # no answer to a ping comes in the middle of a report
     async with app_on_a_pty() as (_, station, terminal):
         await until(lambda: CAPTURE_MOUSE.encode() in terminal.drawn)
         await terminal.type_each(report * 8, 0.003)

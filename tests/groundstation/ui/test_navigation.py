@@ -11,13 +11,13 @@ from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.vehicle import Disarm, RequestControl, SelectNextVehicle, SetMode
 from groundstation.screens import SCREENS, ScreenRow
+from groundstation.ui.app.help import HelpScreen
+from groundstation.ui.app.navigation import ROOT, load_screen
+from groundstation.ui.base.screen import ConsoleScreen
+from groundstation.ui.drive.instruments.heading_tape import HeadingTape
+from groundstation.ui.drive.screen import DriveScreen
 from groundstation.ui.keys.key_gate import OTHER_SCREEN
-from groundstation.ui.navigation import ROOT, load_screen
-from groundstation.ui.screens.drive import DriveScreen
-from groundstation.ui.screens.help import HelpScreen
-from groundstation.ui.screens.log import LogScreen
-from groundstation.ui.screens.screen import ConsoleScreen
-from groundstation.ui.widgets.heading_tape import HeadingTape
+from groundstation.ui.log.screen import LogScreen
 from groundstation.ui.widgets.status import StatusBar
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.extra_screen import ExtraScreen

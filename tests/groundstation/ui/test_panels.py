@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.ui.panels import PanelHeights, share_rows
+from groundstation.ui.base.panels import PanelHeights, share_rows
 
 SMALL = PanelHeights((3, 2, 4), (4, 3, 3))
 LARGE = PanelHeights((18, 9, 5), (4, 3, 3))

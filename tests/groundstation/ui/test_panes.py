@@ -11,8 +11,8 @@ from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
 from groundstation.intents.driving import DriveKeyDown, Stop
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.watch import Watch
-from groundstation.ui.panes import PANES, PaneInput
-from groundstation.ui.widgets.pane import PaneFrame
+from groundstation.ui.drive.pane import PaneFrame
+from groundstation.ui.drive.panes import PANES, PaneInput
 from groundstation.views.base import ViewRequest
 from groundstation.views.drive import SpeedRequest, TrackRequest
 from groundstation.views.messages import MessagesRequest

@@ -13,9 +13,9 @@ from textual.pilot import Pilot
 
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
+from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.params.model import ParamModel
-from groundstation.ui.screens.screen import ConsoleScreen
 from tests.fakes.params import Param, many_params
 from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.ui import frames

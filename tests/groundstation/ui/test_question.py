@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.question import ANSWER_WITHIN, Question
+from groundstation.ui.base.question import ANSWER_WITHIN, Question
 
 
 class Asked:

@@ -10,8 +10,8 @@ from groundstation.actions import ACTIONS, OperatorAction
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.screens import SCREENS
-from groundstation.ui.navigation import load_screen
-from groundstation.ui.palette import action_commands
+from groundstation.ui.app.navigation import load_screen
+from groundstation.ui.app.palette import action_commands
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.test_goldens import SMALL, STANDING
 from tests.waits import until

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.screens import SCREENS
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import PLAIN
 from tests.groundstation.recorded_station import RecordedStation

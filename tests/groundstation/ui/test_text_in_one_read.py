@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from groundstation.screens import SCREENS
-from groundstation.ui.screens.command import CommandLine
-from groundstation.ui.screens.drive import DriveScreen
-from groundstation.ui.screens.log import LogScreen
-from groundstation.ui.screens.messages import MessagesScreen
-from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.app.command_line import CommandLine
+from groundstation.ui.base.screen import ConsoleScreen
+from groundstation.ui.drive.screen import DriveScreen
+from groundstation.ui.log.screen import LogScreen
+from groundstation.ui.messages.screen import MessagesScreen
 from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.waits import until

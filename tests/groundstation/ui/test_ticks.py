@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from groundstation.ui.ticks import Ticks
+from groundstation.ui.app.ticks import Ticks
 
 PERIOD = 0.01
 

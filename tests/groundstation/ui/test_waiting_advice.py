@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from groundstation.snapshot import LinkView, Snapshot
-from groundstation.ui.waiting_advice import AdviceKind, advise, describe_link
+from groundstation.ui.drive.waiting_advice import AdviceKind, advise, describe_link
 from link.endpoint import SCHEMES, parse_endpoint
 from tests.groundstation.ui.examples import waiting
 from tests.groundstation.ui.pilots import console

@@ -8,11 +8,11 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from groundstation.ui.screens.files import FilesScreen
-from groundstation.ui.screens.links import LinksScreen
-from groundstation.ui.screens.screen import ConsoleScreen
-from groundstation.ui.where import build_where
-from groundstation.ui.widgets.message_bytes import MessageBytes
+from groundstation.ui.base.screen import ConsoleScreen
+from groundstation.ui.files.screen import FilesScreen
+from groundstation.ui.links.screen import LinksScreen
+from groundstation.ui.links.where import build_where
+from groundstation.ui.messages.byte_counts import MessageBytes
 from groundstation.views.links import VehiclesView
 from tests.groundstation.ui.example_files import FILES, TASKS
 from tests.groundstation.ui.frames import texts

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 
 from groundstation.intents.driving import ClearEmergencyStop
 from groundstation.intents.vehicle import Arm
-from groundstation.ui.app import ConsoleApp
+from groundstation.ui.app.app import ConsoleApp
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import Recorder, snapshot, vehicle
 from tests.groundstation.ui.ptys import Terminal, app_on_a_pty

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from dialects import messages as m
-from groundstation.vehicles.blind_stop import LATER, BlindStop
-from groundstation.vehicles.stop_commands import StopKind
+from groundstation.vehicles.demand.blind_stop import LATER, BlindStop
+from groundstation.vehicles.demand.stop_commands import StopKind
 from link.core import Peer, Received
 
 IDS = (254, 190)

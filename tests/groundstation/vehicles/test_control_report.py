@@ -6,7 +6,7 @@ import pytest
 
 from dialects.enums import ControlFlag
 from dialects.messages import ControlStatus, RoverControl
-from groundstation.vehicles.control_report import ControlReport
+from groundstation.vehicles.state.control_report import ControlReport
 
 OURS, SESSION = (255, 190), 7
 

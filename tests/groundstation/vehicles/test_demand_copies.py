@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from dialects.axes import NEUTRAL, Axes
-from groundstation.vehicles.demand_copies import DEMAND_BYTES, MOST, PERIOD, SHARE, DemandCopies
-from groundstation.vehicles.demand_stream import CLOSEST, DRIVING_PERIOD, DemandStream
+from groundstation.vehicles.demand.demand_copies import DEMAND_BYTES, MOST, PERIOD, SHARE, DemandCopies
+from groundstation.vehicles.demand.demand_stream import CLOSEST, DRIVING_PERIOD, DemandStream
 from link.transport.memory import LossyPipe
 
 AHEAD = Axes(0.6, 0.0)

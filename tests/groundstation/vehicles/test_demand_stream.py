@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects.axes import NEUTRAL, Axes
-from groundstation.vehicles.demand_stream import CLOSEST, DRIVING_PERIOD, FINAL_NEUTRALS, DemandStream
+from groundstation.vehicles.demand.demand_stream import CLOSEST, DRIVING_PERIOD, FINAL_NEUTRALS, DemandStream
 
 AHEAD = Axes(0.6, 0.0)
 

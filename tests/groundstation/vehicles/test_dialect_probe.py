@@ -6,7 +6,7 @@ import itertools
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
-from groundstation.vehicles.dialect_probe import LONGEST_RETRY
+from groundstation.vehicles.probes.dialect_probe import LONGEST_RETRY
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import Cockpit

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import Autopilot
 from groundstation.vehicles.fleet import Fleet
-from groundstation.vehicles.message_log import MessageLog
-from groundstation.vehicles.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
-from groundstation.verbs.core import VerbCore
+from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
+from groundstation.verbs.session.core import VerbCore
 from link.core import Peer, Received
 
 

@@ -8,7 +8,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.snapshot.drive import HealthLine
-from groundstation.vehicles.health import HealthReadings
+from groundstation.vehicles.health.health import HealthReadings
 from link.protocol.channel import Channel
 
 GYRO, COMPASS, GPS, RC = 1, 4, 32, 1 << 16

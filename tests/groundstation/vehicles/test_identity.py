@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from groundstation.vehicles.identity import RETRY_AFTER, TRIES, VERSION, RequestedMessage, VehicleIdentity
+from groundstation.vehicles.state.identity import RETRY_AFTER, TRIES, VERSION, RequestedMessage, VehicleIdentity
 from tests.link.services_world import from_vehicle
 
 ALL_MODES = RequestedMessage(m.AvailableModes.id)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.vehicles.key_to_motor import KeyTimings
-from groundstation.vehicles.latency import LatencyMeter, SentDemand
+from groundstation.vehicles.readings.key_to_motor import KeyTimings
+from groundstation.vehicles.readings.latency import LatencyMeter, SentDemand
 
 
 def test_latency_counts_the_first_report_on_a_changed_demand_only() -> None:

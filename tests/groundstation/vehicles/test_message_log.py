@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dialects.messages import StatusText
 from groundstation.ipc import MAX_PACKET, encode
 from groundstation.snapshot.log_origin import LogOrigin
-from groundstation.vehicles.message_log import MAX_LENGTH, MAX_LINES, NEWEST, PAGE, STATE, MessageLog
+from groundstation.vehicles.state.message_log import MAX_LENGTH, MAX_LINES, NEWEST, PAGE, STATE, MessageLog
 from groundstation.views.log import LogPage, LogRequest
 
 

@@ -8,10 +8,10 @@ import zlib
 import pytest
 
 from dialects import messages as m
-from groundstation.vehicles.file_requests import FileRequests
-from groundstation.vehicles.identity import METADATA, VERSION, VehicleIdentity
-from groundstation.vehicles.metadata_requests import MetadataRequests
-from groundstation.vehicles.requests import RequestBook
+from groundstation.vehicles.requests.file_requests import FileRequests
+from groundstation.vehicles.requests.metadata_requests import MetadataRequests
+from groundstation.vehicles.requests.requests import RequestBook
+from groundstation.vehicles.state.identity import METADATA, VERSION, VehicleIdentity
 from link.services.ftp.client import FtpClient
 from tests.link import ftp_vehicle
 from tests.link.services_world import Pair, from_vehicle

@@ -7,7 +7,7 @@ import pytest
 from dialects import messages as m
 from groundstation.geo import METRES_PER_DEGREE, Place
 from groundstation.snapshot.drive import MissionProgress
-from groundstation.vehicles.mission_progress import MissionMessages
+from groundstation.vehicles.state.mission_progress import MissionMessages
 from link.services.mission.items import MissionItem
 
 WAYPOINT, LOITER_TIME, CHANGE_SPEED = 16, 19, 178

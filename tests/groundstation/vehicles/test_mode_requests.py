@@ -6,7 +6,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
-from groundstation.vehicles.requests import RequestReport, RequestState
+from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from tests.link.command_vehicle import received
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation.vehicles.plan_progress import FRESH, MAX_REACHED, PlanProgress
+from groundstation.vehicles.state.plan_progress import FRESH, MAX_REACHED, PlanProgress
 from tests.link.command_vehicle import received
 
 NOT_STARTED, ACTIVE, PAUSED, COMPLETE = 2, 3, 4, 5

@@ -11,8 +11,8 @@ from dialects.enums import Autopilot
 from dialects.messages import ManualControl, ParamValue
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import ReportKeyReleases
-from groundstation.vehicles.px4_checks import PX4
-from groundstation.vehicles.settings_check import SettingsCheck
+from groundstation.vehicles.stops.px4_checks import PX4
+from groundstation.vehicles.stops.settings_check import SettingsCheck
 from link.core import Peer, Received
 from link.services.param.values import REAL32
 from tests.fakes.params import Param

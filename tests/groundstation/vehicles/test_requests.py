@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects.enums import Severity
-from groundstation.vehicles.requests import MAX_REQUESTS, RequestBook, RequestReport, RequestState
+from groundstation.vehicles.requests.requests import MAX_REQUESTS, RequestBook, RequestReport, RequestState
 
 WARNING = Severity.WARNING
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from groundstation.vehicles.senders import Senders
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.state.senders import Senders
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Peer, Received
 
 ARMED, DISARMED, HOLD, AUTO = 81 | 128, 81, 4, 10

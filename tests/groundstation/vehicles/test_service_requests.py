@@ -5,10 +5,10 @@ from __future__ import annotations
 import random
 
 from dialects.enums import MissionType
-from groundstation.vehicles.file_requests import FileRequests
-from groundstation.vehicles.log_requests import LogRequests
-from groundstation.vehicles.plan_requests import PlanRequests
-from groundstation.vehicles.requests import RequestBook, RequestState
+from groundstation.vehicles.requests.file_requests import FileRequests
+from groundstation.vehicles.requests.log_requests import LogRequests
+from groundstation.vehicles.requests.plan_requests import PlanRequests
+from groundstation.vehicles.requests.requests import RequestBook, RequestState
 from link.services.ftp.client import FtpClient
 from link.services.ftp.files import MemoryFolder
 from link.services.log.client import LogClient, RemoteLog

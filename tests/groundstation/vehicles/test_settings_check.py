@@ -7,8 +7,8 @@ import math
 import pytest
 
 from dialects.messages import ParamRequestRead, ParamValue
-from groundstation.vehicles.ardupilot_checks import ARDUPILOT
-from groundstation.vehicles.settings_check import SettingsCheck
+from groundstation.vehicles.stops.ardupilot_checks import ARDUPILOT
+from groundstation.vehicles.stops.settings_check import SettingsCheck
 from link.core import Peer, Received
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dialects.messages import Heartbeat
 from groundstation.snapshot.signing import SigningState, SigningView
 from groundstation.vehicles.fleet import Fleet
-from groundstation.vehicles.message_log import MessageLog
-from groundstation.vehicles.signing_watch import WINDOW
+from groundstation.vehicles.probes.signing_watch import WINDOW
+from groundstation.vehicles.state.message_log import MessageLog
 from link.protocol.signing_guard import SigningPolicy
 from link.signing.clock import TICKS
 from link.signing.role import Role

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects.modes import Mode
 from groundstation.intents.vehicle import Arm, RequestControl, SetMode
-from groundstation.vehicles.message_log import STATE
+from groundstation.vehicles.state.message_log import STATE
 from groundstation.views.log import LogRequest
 from tests.fakes.rover import FakeArduPilot
 from tests.groundstation.cockpits import Cockpit

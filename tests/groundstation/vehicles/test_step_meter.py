@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.vehicles.key_to_motor import KeyTimings
-from groundstation.vehicles.latency import SentDemand
-from groundstation.vehicles.step_meter import StepMeter
+from groundstation.vehicles.readings.key_to_motor import KeyTimings
+from groundstation.vehicles.readings.latency import SentDemand
+from groundstation.vehicles.readings.step_meter import StepMeter
 
 STILL, MOVING = (1500.0, 1500.0), (1500.0, 1700.0)
 

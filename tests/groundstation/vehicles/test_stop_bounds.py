@@ -6,8 +6,8 @@ import pytest
 
 from dialects.enums import Autopilot, VehicleType
 from groundstation.snapshot.drive import StopBound
-from groundstation.vehicles.stop_bounds import find_rules, stop_bounds
-from groundstation.vehicles.stop_rules import StopFacts
+from groundstation.vehicles.stops.stop_bounds import find_rules, stop_bounds
+from groundstation.vehicles.stops.stop_rules import StopFacts
 
 ROVER = {
     "MAN_TIMEOUT": 0.45, "FS_TIMEOUT": 1.5, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 5.0, "OPR_TIMEOUT": 10.0,

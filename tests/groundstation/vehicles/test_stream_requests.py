@@ -6,7 +6,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, DataStream, Result
-from groundstation.vehicles.stream_requests import (
+from groundstation.vehicles.probes.stream_requests import (
     CAPACITY_SHARE,
     FRAME,
     LOAD,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.vehicles.track import MAX_POINTS, Track
+from groundstation.vehicles.readings.track import MAX_POINTS, Track
 
 
 def test_a_vehicle_that_stands_makes_one_point() -> None:

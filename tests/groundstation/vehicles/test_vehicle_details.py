@@ -6,7 +6,7 @@ import pytest
 
 from dialects import messages as m
 from groundstation.geo import Place
-from groundstation.vehicles.vehicle_details import MAX_COMPONENTS, VehicleDetails, to_place
+from groundstation.vehicles.state.vehicle_details import MAX_COMPONENTS, VehicleDetails, to_place
 from link.core import Peer, Received
 
 PEER = Peer(0, "far")

@@ -9,9 +9,9 @@ from dialects.enums import Autopilot
 from dialects.vehicle_types import NO_VEHICLES
 from groundstation.connect.heard import HeardVehicles
 from groundstation.vehicles.fleet import Fleet
-from groundstation.vehicles.message_log import MessageLog
-from groundstation.vehicles.vehicle_heartbeat import is_vehicle, replaces
-from groundstation.verbs.core import ALONE_AFTER, VerbCore
+from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
+from groundstation.verbs.session.core import ALONE_AFTER, VerbCore
 from link.core import Peer, Received
 
 PEER = Peer(0, "vehicle")

@@ -15,7 +15,7 @@ from dialects.enums import Autopilot, DriveType, Sensor, SystemState
 from groundstation.ipc import decode_from_station, encode
 from groundstation.snapshot import VehicleView
 from groundstation.station.station import Station
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Peer, Received
 
 PEER = Peer(0, "vehicle")

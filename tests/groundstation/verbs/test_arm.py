@@ -7,7 +7,7 @@ import threading
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.waits import wait_until

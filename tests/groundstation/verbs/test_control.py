@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.verbs.verb_runs import run_verb
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.fakes.params import Param
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.driving_process import check_signal, check_standstill

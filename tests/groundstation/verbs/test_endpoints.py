@@ -8,8 +8,8 @@ import pytest
 
 from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.recent.recent_file import RecentFile
-from groundstation.verbs import endpoints
-from groundstation.verbs.endpoints import choose_endpoints
+from groundstation.verbs.session import endpoints
+from groundstation.verbs.session.endpoints import choose_endpoints
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.station_socket.connect import running_stations
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.table import VERBS
 from tests.e2e.programs import Vehicle
 from tests.e2e.relay import Relay

@@ -9,8 +9,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.command_doc import update
-from groundstation.verbs.examples import AUTOPILOT_EXAMPLES, EXAMPLES
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.manual.examples import AUTOPILOT_EXAMPLES, EXAMPLES
 from groundstation.verbs.table import ONLY, VERBS
 from tests.fakes.params import Param
 from tests.fakes.services import ForeignVehicle, foreign_vehicle

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from link.runtime.install_hint import install_command
 from tests.groundstation.export.logs import ARDUROVER, drive
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from link.services.ftp.protocol import crc32
 from tests.fakes.services import PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.verbs.arguments import vehicle_id
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.arguments import vehicle_id
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.e2e.fleet_programs import RouterProcess, make_fleet
 from tests.e2e.programs import Vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from groundstation.station_socket.relay import KEEP
-from groundstation.verbs.kept_session import KeptSession
+from groundstation.verbs.session.kept_session import KeptSession
 
 OURS, OTHER = 254, 100
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from groundstation.verbs.later import LaterModule, LaterName
+from groundstation.verbs.common.later import LaterModule, LaterName
 from groundstation.verbs.table import VERBS
 
 NAMES = [
@@ -17,7 +17,7 @@ NAMES = [
     for value in (action.run, action.check, action.guarded, action.arguments)
     if isinstance(value, LaterName)
 ]
-HEAVY = ("textual", "groundstation.station.station", "groundstation.config.settings", "groundstation.verbs.plan",
+HEAVY = ("textual", "groundstation.station.station", "groundstation.config.settings", "groundstation.verbs.mission.plan",
          "groundstation.ipc", "groundstation.watchdog", "groundstation.export", "groundstation.views.union",
          "groundstation.vehicles.file", "groundstation.vehicles.param", "groundstation.formats.param_file",
          "link.services.ftp", "link.services.param.client", "link.services.mission", "link.services.log",
@@ -31,13 +31,11 @@ def test_every_name_exists(name: LaterName) -> None:
 
 def test_a_name_that_is_missing_is_found_out() -> None:
     with pytest.raises(AttributeError):
-        LaterModule("status").nothing.resolve()
+        LaterModule("messages.status").nothing.resolve()
 
 
 def test_a_verb_loads_neither_a_screen_nor_other_verbs() -> None:
-    code = (
-        "import sys, groundstation.__main__, groundstation.verbs.main, groundstation.verbs.status; print(*sys.modules)"
-    )
+    code = "import sys, groundstation.__main__, groundstation.verbs.main, groundstation.verbs.messages.status; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    assert "groundstation.verbs.status" in loaded
+    assert "groundstation.verbs.messages.status" in loaded
     assert [name for name in loaded if name.startswith(HEAVY)] == []

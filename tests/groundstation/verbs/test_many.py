@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode, worst_code
+from groundstation.verbs.common.exit_codes import ExitCode, worst_code
 from groundstation.verbs.table import VERBS
 from tests.fakes.params import Param
 from tests.fakes.services import PX4, foreign_vehicle

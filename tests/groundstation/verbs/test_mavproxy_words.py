@@ -8,7 +8,7 @@ import pytest
 
 from groundstation.cli.main import main
 from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
-from groundstation.verbs.mavproxy_words import ACTIONS, WORDS
+from groundstation.verbs.manual.mavproxy_words import ACTIONS, WORDS
 from groundstation.verbs.table import ONLY, VERBS
 
 SAID = [

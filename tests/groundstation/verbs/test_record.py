@@ -13,8 +13,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from dialects.messages import StatusText
-from groundstation.verbs.exit_codes import ExitCode
-from groundstation.verbs.record import FileRecording
+from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.messages.record import FileRecording
 from link.tlog.tlog import read_records
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.verbs.verb_runs import run_verb

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.ros1.stand_in import StandIn
 from tests.groundstation.verbs.verb_runs import run_verb

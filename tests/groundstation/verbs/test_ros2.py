@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode
-from groundstation.verbs.ros2 import DOMAIN_VARIABLE
+from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.ros.ros2 import DOMAIN_VARIABLE
 from link.runtime.install_hint import install_command
 from tests.groundstation.verbs.verb_runs import run_verb
 

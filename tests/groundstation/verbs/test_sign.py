@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from dialects.enums import Autopilot
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from link.signing.key_file import load_keys, save_keys, station_key_file
 from link.signing.keys import KeyRing, SigningKey, new_key
 from link.signing.role import Role
@@ -165,7 +165,7 @@ def test_a_vehicle_gets_its_first_key_over_a_cable_and_nothing_else_has_it(
 def test_an_ardupilot_gets_the_key_and_is_known_by_its_signature(
     capsys: Capture, tmp_path: Path, cable: SerialCable, listens: bool, code: ExitCode, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("groundstation.verbs.sign_setup.TRIES", 2)
+    monkeypatch.setattr("groundstation.verbs.setup.sign_setup.TRIES", 2)
     run_verb(capsys, "sign", "new", "copter")
     wire = PymavlinkWire(listens=listens)
     with on_line(FakeVehicle(autopilot=Autopilot.ARDUPILOT), endpoint=str(tmp_path / "tty-one"), wire=wire):

@@ -9,10 +9,10 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from dialects import messages as m
-from groundstation.verbs.contact import VehicleContact
-from groundstation.verbs.exit_codes import ExitCode
-from groundstation.verbs.output import Output
-from groundstation.verbs.status_changes import ChangePrinter
+from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.messages.status_changes import ChangePrinter
+from groundstation.verbs.session.contact import VehicleContact
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.vehicles.test_vehicle_state import heartbeat, received
 from tests.groundstation.verbs.verb_runs import run_verb

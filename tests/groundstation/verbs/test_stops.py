@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.station_socket.connect import running_stations
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.ports import free_port

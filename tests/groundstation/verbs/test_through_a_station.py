@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.station_socket.connect import running_stations
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from link.tlog.tlog import read_records
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen

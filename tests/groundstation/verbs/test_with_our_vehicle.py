@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.e2e.programs import Vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.ports import free_port

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from groundstation.cli.main import main
-from groundstation.verbs.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode
 from tests.waits import PATIENCE
 
 _AGAIN = (ExitCode.NO_ANSWER, ExitCode.NO_VEHICLE)

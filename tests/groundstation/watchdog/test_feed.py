@@ -11,7 +11,7 @@ from contextlib import ExitStack
 import pytest
 
 from dialects.messages import ManualControl
-from groundstation.station.driven import DrivenVehicle
+from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.watchdog.feed import WatchdogFeed
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
 from link.endpoint import Side

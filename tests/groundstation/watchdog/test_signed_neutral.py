@@ -7,7 +7,7 @@ import pytest
 
 from dialects.enums import Autopilot
 from dialects.messages import Heartbeat, RoverOperatorPresence
-from groundstation.station.driven import DrivenVehicle
+from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.watchdog.report import DemandRoute, StationReport, decode_report, encode_report
 from groundstation.watchdog.watchdog import Watchdog
 from link.protocol.framer import Framer

@@ -14,8 +14,8 @@ from dialects.modes import Mode, base_mode
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.snapshot import StationOutage
-from groundstation.station.driven import DrivenVehicle
-from groundstation.station.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT, StallMonitor
+from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT, StallMonitor
 from groundstation.station.station import Station
 from groundstation.watchdog.report import DemandRoute, StationReport
 from groundstation.watchdog.watchdog import SEND_FOR, Watchdog

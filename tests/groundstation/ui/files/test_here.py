@@ -7,7 +7,7 @@ from pathlib import Path
 
 from groundstation.snapshot import RecordingView
 from groundstation.ui.files.model import FilesModel
-from groundstation.ui.widgets.files.tables import here_value
+from groundstation.ui.files.tables import here_value
 
 NAME = "2026-11-22_14-05-09.tlog"
 

@@ -9,10 +9,10 @@ from msgspec.structs import replace
 from msgspec.structs import replace as replaced
 
 from groundstation.snapshot import LogLine
+from groundstation.ui.display.wrap import wrap
 from groundstation.ui.log.filter import LogFilter
 from groundstation.ui.log.model import KEPT, LogModel, format_lines
-from groundstation.ui.wrap import wrap
-from groundstation.vehicles.message_log import MAX_LINES
+from groundstation.vehicles.state.message_log import MAX_LINES
 from groundstation.views.log import LogPage, LogRequest
 
 HEIGHT = 5

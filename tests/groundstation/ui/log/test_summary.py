@@ -9,7 +9,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.codec import encode_payload, frame
-from groundstation.ui.log.summary import HEAD, TAIL, LogSummary, read_summary, summarize
+from groundstation.ui.files.log_summary import HEAD, TAIL, LogSummary, read_summary, summarize
 from link.tlog.tlog import encode_record
 
 BEGUN = 1_790_000_000.0

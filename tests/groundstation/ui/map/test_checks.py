@@ -7,8 +7,8 @@ import math
 import msgspec
 import pytest
 
-from groundstation.ui.map.checks import check_fence, fence_shapes, item_fault, plan_fault, range_warning
-from groundstation.ui.map.geometry import distance_to_line, is_inside, place_of
+from groundstation.ui.map.plan.checks import check_fence, fence_shapes, item_fault, plan_fault, range_warning
+from groundstation.ui.map.plan.geometry import distance_to_line, is_inside, place_of
 from groundstation.views.plan import PlanItem
 from tests.groundstation.ui.map.plans import AROUND, item, square, task
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from groundstation.ui.map.copies import PlanCopies
+from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.map.model import MapModel
-from groundstation.ui.request_numbers import RequestNumbers
+from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.views.plan import (
     PAGE,
     PlanItem,

@@ -9,10 +9,10 @@ import msgspec
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from groundstation.ui.map.commands import CIRCLE_IN, DO_JUMP, POLYGON_IN, POLYGON_OUT
-from groundstation.ui.map.editor import MAX_UNDO, PlanEditor
-from groundstation.ui.map.fields import change_command
-from groundstation.ui.map.rows import PlanDiff, item_key, polygon_spans
+from groundstation.ui.map.plan.commands import CIRCLE_IN, DO_JUMP, POLYGON_IN, POLYGON_OUT
+from groundstation.ui.map.plan.editor import MAX_UNDO, PlanEditor
+from groundstation.ui.map.plan.fields import change_command
+from groundstation.ui.map.plan.rows import PlanDiff, item_key, polygon_spans
 from groundstation.views.plan import MAX_ITEMS, PlanItem, PlanKind
 from tests.groundstation.ui.map.plans import at, item, square, task
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.ui.map.commands import command_title, find_command, short_title
-from groundstation.ui.map.fields import ItemField, change_command, change_field, fields_of, number_text, value_of
+from groundstation.ui.map.plan.commands import command_title, find_command, short_title
+from groundstation.ui.map.plan.fields import ItemField, change_command, change_field, fields_of, number_text, value_of
 from groundstation.views.plan import PlanItem, PlanKind
 from tests.groundstation.ui.map.plans import item, square, task
 

@@ -10,9 +10,9 @@ import pytest
 from msgspec.msgpack import encode
 
 from groundstation.geo import Place
-from groundstation.ui.map.files import MapFileError, open_plan, save_plan
-from groundstation.verbs.exit_codes import VerbError
-from groundstation.verbs.plan_converter import main, write
+from groundstation.ui.map.plan.files import MapFileError, open_plan, save_plan
+from groundstation.verbs.common.exit_codes import VerbError
+from groundstation.verbs.mission.plan_converter import main, write
 from groundstation.views.plan import PlanDocument
 from tests.groundstation.ui.map.plans import HOME, item, square, task
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.ui.map.ground import NOT_FITTED, Ground, Looking
-from groundstation.ui.map.window import FITTED, SCALES, MapWindow, fit_window
+from groundstation.ui.map.draw.ground import NOT_FITTED, Ground, Looking
+from groundstation.ui.map.draw.window import FITTED, SCALES, MapWindow, fit_window
 from tests.groundstation.ui.map.plans import AROUND, HOME, at
 
 ACROSS, DOWN = 180, 120

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from dialects.command_params import write_module
-from groundstation.ui.map import mission_commands
-from groundstation.ui.map.mission_command import CommandParam
-from groundstation.ui.map.mission_commands import MISSION_COMMANDS
+from groundstation.ui.map.plan import mission_commands
+from groundstation.ui.map.plan.mission_command import CommandParam
+from groundstation.ui.map.plan.mission_commands import MISSION_COMMANDS
 
 
 def test_the_table_is_that_of_the_definitions() -> None:

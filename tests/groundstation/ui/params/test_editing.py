@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from groundstation.ui.params.checks import Level, check_value, meaning_of, needs_care, parse_number
-from groundstation.ui.params.editor import ValueEditor
-from groundstation.ui.params.pending import MAX_UNDO, PendingChange, PendingChanges
-from groundstation.ui.params.reasons import REASONS, reason_for
+from groundstation.ui.params.edit.checks import Level, check_value, meaning_of, needs_care, parse_number
+from groundstation.ui.params.edit.editor import ValueEditor
+from groundstation.ui.params.edit.pending import MAX_UNDO, PendingChange, PendingChanges
+from groundstation.ui.params.edit.reasons import REASONS, reason_for
 from groundstation.ui.params.scope import group_of
 from groundstation.ui.params.status import question_text, written_text
 from groundstation.views.params import ParamInfo

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.ui.params.edit.files import MAX_SIZE, SaveChoice, parse_save, read_file
 from groundstation.ui.params.favourites import Favourites
-from groundstation.ui.params.files import MAX_SIZE, SaveChoice, parse_save, read_file
 
 HERE = Path("/here")
 

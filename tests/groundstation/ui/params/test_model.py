@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from groundstation.intents.services import FetchParams, WriteParams
+from groundstation.ui.display.request_numbers import RequestNumbers
+from groundstation.ui.params.edit.pending import MAX_UNDO
 from groundstation.ui.params.model import ParamModel
-from groundstation.ui.params.pending import MAX_UNDO
 from groundstation.ui.params.scope import CHANGED
-from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
 from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.examples import param_page

@@ -9,8 +9,8 @@ from groundstation.intents.charts import PinSeries
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.session import SetKeyGate, StartSimulator
 from groundstation.intents.watch import Watch
+from groundstation.ui.charts.screen import ChartsScreen
 from groundstation.ui.keys.key_gate import OTHER_SCREEN
-from groundstation.ui.screens.charts import ChartsScreen
 from groundstation.views.charts import FieldsRequest, SeriesPage, SeriesRequest
 from tests.groundstation.ui.example_charts import DEMAND, NOW, SPEED, TURN, drive, fields_page, points
 from tests.groundstation.ui.examples import DRIVE_WATCH, NOON, snapshot, waiting

@@ -10,12 +10,12 @@ from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.line import RunLine
 from groundstation.intents.links import AddLink
 from groundstation.intents.watch import Watch
-from groundstation.ui.command_history import CommandHistory, complete_text
+from groundstation.ui.app.command_history import CommandHistory, complete_text
+from groundstation.ui.app.command_line import CommandLine
+from groundstation.ui.connect.screen import ConnectScreen
 from groundstation.ui.keys.key_gate import TEXT_FIELD
-from groundstation.ui.screens.command import CommandLine
-from groundstation.ui.screens.connect import ConnectScreen
-from groundstation.ui.screens.log import LogScreen
-from groundstation.ui.screens.map import MapScreen
+from groundstation.ui.log.screen import LogScreen
+from groundstation.ui.map.screen import MapScreen
 from groundstation.views.line import ASKS, DONE, FAILED, LineRequest, LineView
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.pilots import Console, console, type_in

@@ -16,7 +16,7 @@ from groundstation.intents.vehicle import SelectVehicle
 from groundstation.intents.watch import Watch
 from groundstation.recent.recent_file import RecentFile
 from groundstation.snapshot import Snapshot
-from groundstation.ui.screens.connect import ConnectScreen
+from groundstation.ui.connect.screen import ConnectScreen
 from groundstation.views.connect import ConnectRequest, ConnectView, HeardRow, LinkAttempt
 from tests.groundstation.ui.example_connect import (
     CONNECT,

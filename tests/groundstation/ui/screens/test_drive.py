@@ -11,7 +11,7 @@ from groundstation.intents.driving import HOLD_TIME, ClearEmergencyStop, DriveKe
 from groundstation.intents.session import SetKeyGate, StartSimulator
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.snapshot import EmergencyProgress, LinkView
-from groundstation.ui.alerts import LIMITS
+from groundstation.ui.display.alerts import LIMITS
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting, wheels
 from tests.groundstation.ui.pilots import console

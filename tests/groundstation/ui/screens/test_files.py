@@ -19,7 +19,7 @@ from groundstation.intents.files import (
 from groundstation.intents.services import CancelRequest
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import RecordingView
-from groundstation.ui.task_list import TaskList
+from groundstation.ui.display.task_list import TaskList
 from groundstation.views.base import View
 from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView

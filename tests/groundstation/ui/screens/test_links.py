@@ -25,7 +25,7 @@ from groundstation.intents.vehicle import (
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import HandoverNotice, Snapshot
 from groundstation.ui.keys.key_gate import OTHER_SCREEN
-from groundstation.ui.screens.links import LinksScreen
+from groundstation.ui.links.screen import LinksScreen
 from groundstation.views.base import View
 from groundstation.views.links import ControlRequest, ControlView, LinkRow, LinksRequest, LinksView, VehiclesRequest
 from tests.groundstation.ui.examples import DRIVE_WATCH, snapshot, vehicle

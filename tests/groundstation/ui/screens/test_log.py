@@ -10,9 +10,9 @@ from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import LogLine
+from groundstation.ui.base.local_files import short_path
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
-from groundstation.ui.local_files import short_path
-from groundstation.ui.screens.log import LogScreen
+from groundstation.ui.log.screen import LogScreen
 from groundstation.views.log import LogPage, LogRequest
 from groundstation.views.requests import RequestsRequest
 from tests.groundstation.ui.examples import DRIVE_WATCH, LOG_PAGE, NOON, snapshot, vehicle

@@ -23,7 +23,7 @@ from groundstation.intents.services import CancelRequest
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
 from groundstation.ui.map.model import MapModel
-from groundstation.ui.screens.map import MapScreen
+from groundstation.ui.map.screen import MapScreen
 from groundstation.views.base import View
 from groundstation.views.plan import PlanKind, PlanRequest, PlanSummary, PlanTrackRequest
 from tests.groundstation.ui.example_map import (

@@ -13,7 +13,7 @@ from groundstation.intents.services import RequestMessage, SetMessageRate
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.watch import Watch
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
-from groundstation.ui.screens.messages import MessagesScreen
+from groundstation.ui.messages.screen import MessagesScreen
 from groundstation.views.messages import (
     CapturePage,
     CaptureRequest,

@@ -21,7 +21,7 @@ from groundstation.intents.session import SetKeyGate
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
-from groundstation.ui.screens.params import ParamsScreen
+from groundstation.ui.params.screen import ParamsScreen
 from groundstation.views.base import ViewRequest
 from groundstation.views.params import (
     ParamDiffRequest,

@@ -22,7 +22,7 @@ from groundstation.intents.vehicle import SetMode
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
 from groundstation.ui.params.model import ParamModel
-from groundstation.ui.screens.setup import SetupScreen
+from groundstation.ui.setup.screen import SetupScreen
 from groundstation.ui.terminal.key_parser import KeyUp
 from groundstation.views.doctor import DoctorRequest, DoctorView, ParamFix, StickRow
 from groundstation.views.requests import RequestLine

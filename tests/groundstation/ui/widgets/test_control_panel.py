@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from groundstation.snapshot.signing import SigningState, SigningView
-from groundstation.ui.widgets.control_panel import ControlPanel, ControlPanelValue
+from groundstation.ui.links.control_panel import ControlPanel, ControlPanelValue
 from groundstation.views.links import Program
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.link_examples import CONTROL

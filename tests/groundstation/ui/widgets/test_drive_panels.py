@@ -8,13 +8,13 @@ import pytest
 
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.snapshot.drive import HealthLine, KeyToMotor, MissionProgress, StopBound, Timing
-from groundstation.ui.display_state import DisplayState
+from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.drive.instruments.health import HealthPanel
+from groundstation.ui.drive.instruments.key_to_motor import WayPanel, WayValue
+from groundstation.ui.drive.instruments.mission import MissionStrip, MissionValue
+from groundstation.ui.drive.instruments.stops import StopsLine, StopsPanel, StopsValue, share_colour
+from groundstation.ui.drive.instruments.stops_model import all_stops, is_near
 from groundstation.ui.look.colours import AMBER, DIM, GREEN, RED
-from groundstation.ui.stops_model import all_stops, is_near
-from groundstation.ui.widgets.health import HealthPanel
-from groundstation.ui.widgets.key_to_motor import WayPanel, WayValue
-from groundstation.ui.widgets.mission import MissionStrip, MissionValue
-from groundstation.ui.widgets.stops import StopsLine, StopsPanel, StopsValue, share_colour
 from tests.groundstation.ui.examples import FOREIGN_STOPS, FOREIGN_WAY, HEALTH, MISSION, STOPS, helm, snapshot, vehicle
 from tests.groundstation.ui.frames import texts
 from tests.groundstation.ui.ptys import STANDARD

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
+from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.widgets.footer import FooterValue, KeyFooter
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.ptys import STANDARD

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.ui.widgets.heading_tape import heading_marks
+from groundstation.ui.drive.instruments.heading_tape import heading_marks
 
 
 @pytest.mark.parametrize(("heading", "middle"), [(0, "N"), (90, "E"), (359, "N"), (225, "SW"), (120, "120")])

@@ -7,7 +7,7 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.ui.widgets.horizon import Horizon, HorizonValue, ground_fraction
+from groundstation.ui.drive.instruments.horizon import Horizon, HorizonValue, ground_fraction
 from tests.groundstation.ui.frames import texts
 
 

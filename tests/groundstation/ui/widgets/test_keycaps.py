@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.widgets.keycaps import Keycaps, KeycapsValue, lit_actions
+from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue, lit_actions
 from tests.groundstation.ui.ptys import STANDARD
 
 

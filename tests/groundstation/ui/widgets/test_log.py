@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from groundstation.snapshot import LogLine
-from groundstation.ui.widgets.log import LogPanel
+from groundstation.ui.log.panel import LogPanel
 from tests.groundstation.ui.frames import texts
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from groundstation.ui.look.colours import DIM, TEXT, style
-from groundstation.ui.widgets.message_detail import MessageDetail, MessageDetailValue
-from groundstation.ui.widgets.message_table import MessageTable, MessageTableValue
+from groundstation.ui.messages.detail import MessageDetail, MessageDetailValue
+from groundstation.ui.messages.table import MessageTable, MessageTableValue
 from groundstation.views.messages import MessageRow, MessageView
 from tests.groundstation.ui.frames import texts
 

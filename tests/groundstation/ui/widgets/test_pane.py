@@ -10,9 +10,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from groundstation.ui.charts.columns import Columns
-from groundstation.ui.charts.points import Points
-from groundstation.ui.look.ascii import to_ascii
-from groundstation.ui.widgets.charts.pane import (
+from groundstation.ui.charts.pane import (
     PATTERNS,
     PaneLine,
     PaneValue,
@@ -21,7 +19,9 @@ from groundstation.ui.widgets.charts.pane import (
     plot_dots,
     scale_text,
 )
-from groundstation.ui.widgets.charts.timeline import ChartTimeline, ChartTimelineValue, TimelineMark, TimelineMode
+from groundstation.ui.charts.points import Points
+from groundstation.ui.charts.timeline import ChartTimeline, ChartTimelineValue, TimelineMark, TimelineMode
+from groundstation.ui.look.ascii import to_ascii
 from tests.groundstation.ui.frames import texts
 
 WIDTH = 38

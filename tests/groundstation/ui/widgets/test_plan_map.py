@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from groundstation.ui.map.copies import PlanCopies
+from groundstation.ui.map.draw.plan_map import PlanMap
+from groundstation.ui.map.draw.plan_map_value import Leg, MapLeg, MapMark, PlanMapValue
+from groundstation.ui.map.draw.window import MapWindow
 from groundstation.ui.map.pane import build_pane
-from groundstation.ui.map.window import MapWindow
-from groundstation.ui.widgets.plan_map import PlanMap
-from groundstation.ui.widgets.plan_map_value import Leg, MapLeg, MapMark, PlanMapValue
+from groundstation.ui.map.plan.copies import PlanCopies
 from tests.groundstation.ui.example_map import pages, picture, plan_view, track
 from tests.groundstation.ui.frames import texts
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.widgets.rates import RatesPanel
+from groundstation.ui.drive.instruments.rates import RatesPanel
 from tests.groundstation.ui.examples import MESSAGE_ROWS, MESSAGES_PAGE
 from tests.groundstation.ui.frames import texts
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from groundstation.ui.widgets.speed import speed_text
+from groundstation.ui.drive.instruments.speed import speed_text
 from tests.groundstation.ui.examples import vehicle
 
 

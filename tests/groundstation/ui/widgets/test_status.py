@@ -8,7 +8,7 @@ import pytest
 
 from groundstation.snapshot import EmergencyProgress, RecordingView
 from groundstation.snapshot.signing import SigningState, SigningView
-from groundstation.ui.display_state import DisplayState, ScreenInfo
+from groundstation.ui.display.display_state import DisplayState, ScreenInfo
 from groundstation.ui.look.ascii import to_ascii
 from groundstation.ui.widgets.status import StatusBar, StatusBarValue
 from tests.groundstation.ui.examples import helm, snapshot, vehicle

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.snapshot import OutputView
+from groundstation.ui.drive.instruments.sticks import Bar, StickBars, bar_cells, build_bars
 from groundstation.ui.look.roles import Role
-from groundstation.ui.widgets.sticks import Bar, StickBars, bar_cells, build_bars
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.frames import texts
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from groundstation.screens import SCREENS, ScreenRow
-from groundstation.ui.display_state import DisplayState
+from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.display.request_numbers import RequestNumbers
+from groundstation.ui.display.tab_marks import TabMark
 from groundstation.ui.look.colours import BLUE, RED
 from groundstation.ui.params.model import ParamModel
-from groundstation.ui.request_numbers import RequestNumbers
-from groundstation.ui.tab_marks import TabMark
 from groundstation.ui.widgets.tabs import TabBar, TabBarValue
 from tests.groundstation.ui.examples import param_page, snapshot
 from tests.groundstation.ui.ptys import STANDARD

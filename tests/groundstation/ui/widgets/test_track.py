@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.ui.drive.instruments.track import TrackMap, TrackValue, fit_view
 from groundstation.ui.widgets.canvas import Canvas
-from groundstation.ui.widgets.track import TrackMap, TrackValue, fit_view
 
 metres = st.floats(-1e5, 1e5)
 near = st.floats(-20, 20)

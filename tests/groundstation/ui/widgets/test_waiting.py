@@ -5,8 +5,8 @@ from __future__ import annotations
 import msgspec
 
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.ui.display_state import DisplayState
-from groundstation.ui.widgets.waiting import WaitingValue
+from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.drive.waiting import WaitingValue
 from tests.groundstation.ui.examples import waiting
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])

@@ -9,7 +9,7 @@ from groundstation.intents.line import RunLine
 from groundstation.intents.session import RenewLease
 from groundstation.station.component import COMPONENT
 from groundstation.station.station import Station
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.line.desk import LABEL
 from groundstation.verbs.line.loader import LineLoader
 from groundstation.views.line import ASKS, DONE, FAILED, RUNNING, LineRequest, LineView

@@ -6,8 +6,8 @@ import pytest
 
 from dialects.enums import Autopilot, VehicleType
 from dialects.kinds import find_kind
-from groundstation.vehicles.vehicle_state import VehicleState
-from groundstation.verbs.exit_codes import VerbError
+from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.verbs.common.exit_codes import VerbError
 from groundstation.verbs.line.parser import parse_line
 from groundstation.verbs.line.rules import LINE_RULES
 from groundstation.verbs.line.words import complete

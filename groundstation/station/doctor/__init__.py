@@ -1,0 +1,1 @@
+"""Diagnosis of the chain from the operator's keys to the wheels."""

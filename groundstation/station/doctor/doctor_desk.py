@@ -1,0 +1,297 @@
+"""Doctor desk: examines the chain once a second, builds its view, and carries out what the Setup screen wants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from groundstation.doctor.chain import count_faults, examine
+from groundstation.doctor.prearm_advice import find_advice
+from groundstation.intents.base import Intent
+from groundstation.intents.setup import (
+    Calibrate,
+    ConfirmPosition,
+    EndCalibration,
+    StopMotorTest,
+    TurnMotor,
+    WatchSticks,
+)
+from groundstation.snapshot import Snapshot
+from groundstation.station.doctor.doctor_facts import VehicleReport, collect, sensor_rows
+from groundstation.station.driving.motor_test import THROTTLE_MAX, MotorTester
+from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.services.service_calls import SETUP
+from groundstation.station.services.service_desk import ServiceDesk
+from groundstation.station.services.vehicle_queries import VehicleQueries
+from groundstation.station.view_feed import ViewSource
+from groundstation.vehicles.calibration.calibration import CalibrationState
+from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.health.arming_checks import ArmingChecks
+from groundstation.vehicles.readings.motor_outputs import TestedMotor, motors_of
+from groundstation.vehicles.readings.outputs import servo_functions, servo_names
+from groundstation.vehicles.state.doctor_params import DoctorParams
+from groundstation.views.base import ViewRequest
+from groundstation.views.doctor import (
+    CheckText,
+    DoctorRequest,
+    DoctorRow,
+    DoctorView,
+    MotorRow,
+    ParamFix,
+)
+from groundstation.views.requests import RequestLine
+from link.core import Outgoing, Received
+
+PERIOD = 1.0
+"""s between two examinations."""
+QUICK = 0.2
+"""s between two views: a motor test and a calibration are watched closely."""
+CHECKS = "pre-arm checks"
+
+
+class DoctorDesk:
+    """What the Setup screen and the verb `doctor` need. `ids` are our system and component id."""
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        services: ServiceDesk,
+        queries: VehicleQueries,
+        links: LinkStats,
+        operator: OperatorSession,
+        ids: tuple[int, int],
+    ) -> None:
+        self._fleet, self._services, self._queries = fleet, services, queries
+        self._links, self._ids = links, ids
+        self.tester = MotorTester(fleet, operator, ids)
+        self.faults = 0
+        """How many links of the chain stop the operator."""
+        self._reports: dict[int, VehicleReport] = {}
+        self._snapshot = Snapshot()
+        self._request = DoctorRequest()
+        self._rows: tuple[DoctorRow, ...] = ()
+        self._due = -math.inf
+        self._outbox: list[Outgoing] = []
+
+    @property
+    def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
+        """Request -> its source."""
+        return {DoctorRequest: ViewSource(self._build, QUICK)}
+
+    # ---- core ----
+
+    def receive(self, contact: Contact, received: Received, now: float) -> None:
+        """Take a message of a vehicle."""
+        report = self._report(contact)
+        report.checks.receive(received, now)
+        report.params.receive(received, now)
+        report.calibration.receive(received)
+        self.tester.receive(received, now)
+
+    def handle_text(self, contact: Contact, text: str, now: float) -> None:
+        """Take a whole STATUSTEXT of a vehicle."""
+        report = self._report(contact)
+        report.checks.handle_text(text, now)
+        report.calibration.handle_text(text)
+        if contact is self._fleet.selected:
+            self.tester.handle_text(text, now)
+
+    def tick(self, now: float, *, watched: bool) -> None:
+        """Renew or end a motor test, read the parameters while the screen is watched."""
+        self.tester.tick(now, watched=watched)
+        chosen = self._fleet.selected
+        for contact in self._fleet:
+            self._follow_sticks(contact)
+            if contact.lost_at is not None and contact.state.system in self._reports:
+                self._reports[contact.state.system].params.restart()  # it may come back with other values
+        for system, report in self._reports.items():
+            wanted = watched and chosen is not None and chosen.state.system == system
+            self._outbox += report.params.tick(now, watched=wanted)
+
+    def _follow_sticks(self, contact: Contact) -> None:
+        """Read the parameters of the channels that are moved; end the calibration in an armed vehicle."""
+        report = self._reports.get(contact.state.system)
+        if report is None or not report.calibration.sticks.running:
+            return
+        contact.drive.params.want(report.calibration.sticks.values)
+        if contact.state.armed:
+            report.calibration.end_sticks("RC sticks: ended, the vehicle is armed")
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them."""
+        outbox, self._outbox = self._outbox, []
+        calibrations = (report.calibration.messages_to_send() for report in self._reports.values())
+        return self.tester.messages_to_send() + outbox + [each for messages in calibrations for each in messages]
+
+    def look(self, snapshot: Snapshot, now: float) -> None:
+        """Examine the chain, if that is due."""
+        self._snapshot = snapshot
+        if now >= self._due:
+            self._due = now + PERIOD
+            self._rows = self._examine(now)
+            self.faults = count_faults(self._rows)
+
+    # ---- the operator ----
+
+    def handle(self, intent: Intent, now: float) -> None:
+        """Carry out an intent of the Setup screen. Any other input of the operator ends a motor test."""
+        handler = _HANDLERS.get(type(intent))
+        if handler is not None:
+            handler(self, intent, now)
+        elif intent.is_input:
+            self.tester.stop("stopped: another key", now)
+
+    def _turn(self, intent: TurnMotor, now: float) -> None:
+        self.tester.press(intent, self._motors(self._fleet.selected), now)
+
+    def _stop(self, intent: StopMotorTest, now: float) -> None:
+        self.tester.stop("stands", now)
+
+    def _confirm(self, intent: ConfirmPosition, now: float) -> None:
+        if intent.system in self._reports:
+            self._reports[intent.system].calibration.confirm_position()
+
+    def _end_calibration(self, intent: EndCalibration, now: float) -> None:
+        if intent.system in self._reports:
+            self._reports[intent.system].calibration.end_compass(accept=intent.accept)
+
+    def _begin_calibration(self, intent: Calibrate, now: float) -> None:
+        self.tester.stop("stopped: calibration", now)
+        if intent.system in self._reports:
+            self._reports[intent.system].calibration.begin(intent.kind)
+
+    def _watch_sticks(self, intent: WatchSticks, now: float) -> None:
+        self.tester.stop("stopped: calibration", now)
+        contact = self._fleet.selected
+        if contact is None or contact.state.system != intent.system:
+            return
+        calibration = self._report(contact).calibration
+        if not intent.on:
+            calibration.end_sticks("")
+        elif not contact.state.armed:
+            calibration.begin_sticks()
+
+    # ---- the view ----
+
+    def _examine(self, now: float) -> tuple[DoctorRow, ...]:
+        contact = self._fleet.selected
+        system = 0 if contact is None else contact.state.system
+        facts = collect(
+            self._snapshot,
+            contact,
+            self._reports.get(system),
+            self._links,
+            system=self._request.station or self._ids[0],
+            terminal=self._request.terminal,
+            tested=self.tester.tested.get(system, frozenset()),
+            now=now,
+        )
+        return examine(facts)
+
+    def _build(self, request: DoctorRequest, now: float, wall: float) -> DoctorView:
+        if request != self._request:
+            self._request, self._due = request, -math.inf
+        self.look(self._snapshot, now)
+        contact = self._fleet.selected
+        if contact is None:
+            return DoctorView(rows=self._rows)
+        self._queries.request_version(contact, now)
+        report, requests = self._report(contact), self._requests(contact.state.system)
+        sticks, values = report.calibration.sticks, contact.drive.params.values
+        checked = next((line for line in reversed(requests) if line.what == CHECKS), None)
+        return DoctorView(
+            system=contact.state.system,
+            name=contact.state.name,
+            armed=contact.state.armed,
+            rows=self._rows,
+            sensors=sensor_rows(report.checks.bits),
+            texts=tuple(
+                CheckText(each.text, find_advice(each.text), each.age // 1) for each in report.checks.texts(now)
+            ),
+            checked=checked,
+            checked_ago=report.checks.checked_ago(now),
+            motors=self._motor_rows(contact, report),
+            motor_limit=min(THROTTLE_MAX, report.params.values.get("MOT_TEST_MAX", 30.0) / 100),
+            test=self.tester.view,
+            calibrations=report.calibration.rows(contact.state.autopilot, requests),
+            calibration=report.calibration.text,
+            waits_for_position=report.calibration.position is not None,
+            calibration_share=report.calibration.compass.share,
+            compass_ready=report.calibration.compass.ready,
+            sticks=sticks.rows if sticks.running else None,
+            stick_changes=sticks.changes(values) if sticks.running else (),
+            sticks_unread=sticks.unread(values) if sticks.running else (),
+            facts=_vehicle_facts(contact),
+            requests=requests,
+        )
+
+    def _requests(self, system: int) -> tuple[RequestLine, ...]:
+        found = self._services.requests_of(SETUP, system)
+        return (*(line for line in found.ended if line.system == system), *found.running)
+
+    def _motors(self, contact: Contact | None) -> tuple[TestedMotor, ...]:
+        if contact is None:
+            return ()
+        state = contact.state
+        functions = servo_functions(contact.drive.params.values)
+        return motors_of(state.autopilot, state.drive_info, functions, rover_dialect=state.has_rover_dialect)
+
+    def _motor_rows(self, contact: Contact, report: VehicleReport) -> tuple[MotorRow, ...]:
+        vehicle = self._snapshot.vehicle
+        values = {output.name: output.value for output in vehicle.outputs} if vehicle is not None else {}
+        tested = self.tester.tested.get(contact.state.system, frozenset())
+        return tuple(
+            MotorRow(
+                number, motor.name, motor.output, values.get(motor.name), number in tested, _reversal(motor, report)
+            )
+            for number, motor in enumerate(self._motors(contact), 1)
+        )
+
+    def _report(self, contact: Contact) -> VehicleReport:
+        state = contact.state
+        report = self._reports.get(state.system)
+        if report is None or report.component != state.component:
+            target = (state.system, state.component)
+            report = self._reports[state.system] = VehicleReport(
+                ArmingChecks(state.component),
+                DoctorParams(state.autopilot, self._ids, target),
+                CalibrationState(self._ids, target),
+                state.component,
+            )
+        return report
+
+
+def _reversal(motor: TestedMotor, report: VehicleReport) -> ParamFix | None:
+    """Return the change that lets a motor turn the other way, where its parameter is known."""
+    value = report.params.values.get(motor.reverse)
+    return None if value is None else ParamFix(motor.reverse, value, 0.0 if value else 1.0)
+
+
+def _vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
+    """Return what the vehicle is."""
+    state, values = contact.state, contact.drive.params.values
+    known = len(contact.services.params.client.params) if contact.services is not None else 0
+    axes = "operator presence" if state.has_rover_dialect else "MANUAL_CONTROL"
+    lines = {
+        "firmware": contact.details.firmware,
+        "system": f"{state.system}/{state.component}",
+        "dialect": "rover" if state.has_rover_dialect else "common",
+        "demands": axes,
+        "motors": ", ".join(servo_names(values).values()) if servo_functions(values) else "",
+        "params": f"{known} known" if known else "",
+        "signing": "on, verified" if contact.verified else "with a key that is not here" if contact.signs else "",
+    }
+    return tuple((name, text) for name, text in lines.items() if text)
+
+
+_HANDLERS: dict[type[Intent], Callable[[DoctorDesk, Any, float], None]] = {
+    Calibrate: DoctorDesk._begin_calibration,
+    TurnMotor: DoctorDesk._turn,
+    StopMotorTest: DoctorDesk._stop,
+    ConfirmPosition: DoctorDesk._confirm,
+    EndCalibration: DoctorDesk._end_calibration,
+    WatchSticks: DoctorDesk._watch_sticks,
+}
+"""Intent -> method. Other inputs of the operator end a motor test."""

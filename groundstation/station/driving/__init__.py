@@ -1,0 +1,1 @@
+"""Driving: control of the vehicle, arming, demands, emergency stop, hand-over and shutdown."""

@@ -1,0 +1,334 @@
+"""Commands to vehicles (COMMAND_LONG): arming, modes, emergency stop, and the station's own queries."""
+
+from __future__ import annotations
+
+import msgspec
+
+from dialects.enums import Command, Result, Severity
+from dialects.kinds import MANUAL
+from dialects.messages import Message
+from dialects.mode_tables import HOLD
+from groundstation.snapshot import EmergencyProgress
+from groundstation.station.driving.arming import ArmSequence, ArmStep, send_mode
+from groundstation.station.driving.claims import Claims
+from groundstation.station.driving.command_results import CommandResults
+from groundstation.station.driving.emergency import EmergencyLock
+from groundstation.station.driving.stop_questions import FALLS, StopQuestions
+from groundstation.vehicles.demand.blind_stop import BlindStop
+from groundstation.vehicles.demand.stop_commands import DANGEROUS, DISARM, StopKind, hold_command, send_stop
+from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.vehicle_state import VehicleState
+from link.core import Outgoing, Received
+from link.services.command.client import CommandClient, CommandOutcome
+
+QUERY_COMMANDS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
+"""Commands that the station sends on its own: their results are not logged."""
+
+DISARM_RETRY, DISARM_TIMEOUT = 1.5, 6.0
+"""s after which disarm is repeated while the heartbeat reports armed, and after which that is reported as a failure."""
+
+
+BLIND_FOR = 30.0
+"""s for which a blind stop is repeated, as one of a verb: a radio link may be cut for some seconds."""
+
+
+class _Disarm(msgspec.Struct):
+    vehicle: VehicleState
+    due: float
+    until: float
+
+
+class Commander:
+    """Sends commands to all vehicles. `system` and `component` are our ids."""
+
+    def __init__(self, log: MessageLog, system: int, component: int) -> None:
+        self._log = log
+        self._results = CommandResults(log)
+        self._client = CommandClient(system, component)
+        self._arming: ArmSequence | None = None
+        self._disarms: dict[int, _Disarm] = {}
+        self._locks: dict[int, EmergencyLock] = {}
+        self._claims = Claims()
+        self._stop_questions = StopQuestions()
+        self._ids = (system, component)
+        self._blind: BlindStop | None = None
+        self._blind_until = 0.0
+        self._late: set[int] = set()
+        """Vehicles that were heard while the blind stop was sent."""
+        self._outbox: list[Outgoing] = []
+        self._vehicles: dict[int, VehicleState] = {}
+        """Vehicles that were sent a command, by system id."""
+        self._query_outcomes: list[CommandOutcome] = []
+
+    # ---- commands of the operator ----
+
+    def send(self, vehicle: VehicleState, label: str, command: Command, *params: float, now: float) -> None:
+        """Send a command; `label` names it in the log and in refusals."""
+        self._results.set_label(vehicle.system, command, label)
+        self._send(vehicle, now, command, *params)
+
+    def arm(self, vehicle: VehicleState, now: float) -> None:
+        """Send neutral demands, change from HOLD to MANUAL, then arm; refused for a kind that keys do not drive."""
+        if vehicle.model.refusal:
+            self._results.add_refusal(vehicle.system, f"arm: {vehicle.name}: {vehicle.model.refusal}", now)
+            return
+        if vehicle.system in self._locks or vehicle.emergency_stop:
+            self._results.add_refusal(vehicle.system, "arm: emergency stop active, clear it first", now)
+            return
+        self._disarms.pop(vehicle.system, None)
+        self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {MANUAL}")
+        self._vehicles[vehicle.system] = vehicle
+        self._arming = ArmSequence.start(vehicle, now)
+
+    def disarm(self, vehicle: VehicleState, now: float) -> None:
+        """Disarm, and repeat until the heartbeat agrees: the vehicle may still act on an earlier arm command."""
+        self._arming = None
+        self._disarms[vehicle.system] = _Disarm(vehicle, now + DISARM_RETRY, now + DISARM_TIMEOUT)
+        self._vehicles[vehicle.system] = vehicle
+        send_stop(self._client, vehicle, DISARM, now)
+
+    def release_control(self, vehicle: VehicleState, now: float, *, station: int = 0) -> None:
+        """Release control: at once as far as we are concerned, and with a command for a vehicle that manages it.
+
+        Our own vehicle gives it to the `station` that has asked for it; with 0 to any that has.
+        """
+        self._claims.remove(vehicle.system)
+        self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL, 0, 0, 0, station, now=now)
+
+    def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
+        """Change the mode to the one of this name (dialects/kinds.py); refused if its kind has no such mode."""
+        hold = hold_command(vehicle) if name == HOLD else None
+        if hold is not None:
+            send_stop(self._client, vehicle, hold, now)
+        if hold is not None or send_mode(self._client, vehicle, name, now):
+            self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {name}")
+            return
+        why = vehicle.model.refusal or f"it has no mode {name}"
+        self._results.add_refusal(vehicle.system, f"mode {name}: {vehicle.name}: {why}", now)
+
+    def emergency_stop(self, vehicle: VehicleState, now: float) -> None:
+        """Stop and lock the motors; repeated until the vehicle has done it. One in the air is asked about first."""
+        if vehicle.may_fall and not self._stop_questions.confirms(vehicle.system, now):
+            self._log.add(now, "station", f"{vehicle.name} {FALLS}", Severity.CRITICAL)
+            return
+        self._stop_questions.forget(vehicle.system)
+        self._arming = None
+        self._log.add(now, "station", f"EMERGENCY STOP {vehicle.name}", Severity.EMERGENCY)
+        self._locks[vehicle.system] = EmergencyLock(vehicle, now)
+        self.tick(now)
+
+    def stop_blindly(self, now: float, kind: StopKind = StopKind.EMERGENCY) -> None:
+        """Stop all vehicles, also those that are not heard: they may hear us without having a place for us."""
+        if self._blind is None or self._blind.kind is not StopKind.EMERGENCY:
+            self._log.add(now, "station", f"{kind.value.upper()} sent to all vehicles (system 0)", Severity.EMERGENCY)
+            self._blind, self._late = BlindStop(kind, 0, self._ids, now), set()
+        self._blind_until = now + BLIND_FOR
+        self.tick(now)
+
+    @property
+    def blind_stop(self) -> BlindStop | None:
+        """The stop that goes to vehicles that are not heard, while it is sent."""
+        return self._blind
+
+    def stop_late(self, vehicle: VehicleState, now: float) -> None:
+        """Stop a vehicle that is heard after the stop of all, in its own form, until it reports it."""
+        kind = self._blind.kind if self._blind is not None and vehicle.system not in self._late else None
+        self._late.add(vehicle.system)
+        if kind is StopKind.EMERGENCY and vehicle.system not in self._locks:
+            self.emergency_stop(vehicle, now)
+        elif kind is StopKind.DISARM:
+            self.disarm(vehicle, now)
+        elif kind is StopKind.HOLD:
+            self.set_mode(vehicle, HOLD, now)
+
+    def describe_blind_stop(self) -> str:
+        """Return what is known of the stop of vehicles that are not heard; "" while none is sent."""
+        return f"{self._blind.kind.value.upper()} {self._blind.describe()}" if self._blind is not None else ""
+
+    def clear_emergency_stop(self, vehicle: VehicleState, now: float) -> None:
+        """Release the lock; it stays until the vehicle has accepted."""
+        self._blind = None
+        if vehicle.system in self._locks or vehicle.emergency_stop:
+            self._locks.setdefault(vehicle.system, _answered_lock(vehicle, now)).clear(self._client, now)
+
+    # ---- queries of the station ----
+
+    def request_message(self, vehicle: VehicleState, message_id: int, now: float) -> None:
+        """Request one message; the result is not logged."""
+        self._send(vehicle, now, Command.REQUEST_MESSAGE, message_id)
+
+    def set_message_interval(self, vehicle: VehicleState, message_id: int, rate: float, now: float) -> None:
+        """Request a message at `rate` Hz; the result is not logged."""
+        self._send(vehicle, now, Command.SET_MESSAGE_INTERVAL, message_id, round(1e6 / rate))
+
+    def pop_query_outcomes(self) -> list[CommandOutcome]:
+        """Return the results of the station's own queries since the last call."""
+        outcomes, self._query_outcomes = self._query_outcomes, []
+        return outcomes
+
+    # ---- state ----
+
+    def is_locked(self, system: int) -> bool:
+        """Return whether our emergency stop is active."""
+        return system in self._locks
+
+    def emergency_progress(self, system: int, now: float) -> EmergencyProgress | None:
+        """Return how far our emergency stop of this vehicle is; None without one."""
+        lock = self._locks.get(system)
+        return lock.progress(now) if lock else None
+
+    def stop_question(self, system: int, now: float) -> float | None:
+        """Return the s left to press the emergency stop of a vehicle in the air once more; None without a question."""
+        return self._stop_questions.left(system, now)
+
+    def is_arming(self, system: int) -> bool:
+        """Return whether the vehicle is being armed; neutral demands then go out although it is disarmed."""
+        return self._arming is not None and self._arming.vehicle.system == system
+
+    @property
+    def busy(self) -> bool:
+        """Whether a command is under way or is to be repeated."""
+        stopping = self._disarms or self._locks or self._blind
+        return self._arming is not None or bool(stopping) or self._client.busy
+
+    def is_pending(self, command: Command, vehicle: VehicleState) -> bool:
+        """Return whether this vehicle has not acknowledged a command of this kind yet."""
+        return self._client.is_waiting(command, vehicle.system)
+
+    def claim(self, vehicle: VehicleState, now: float) -> None:
+        """Note that a vehicle has accepted arming from a verb that goes through this station."""
+        self._claims.add(vehicle, now, by_arming=True)
+
+    def is_claimed(self, system: int) -> bool:
+        """Return whether this vehicle accepted arming or a control request from us and has not disarmed since.
+
+        That counts as control of a vehicle that sends no CONTROL_STATUS.
+        """
+        return system in self._claims
+
+    def last_refusal(self, system: int, now: float) -> str | None:
+        """Return what this vehicle refused last and why, while that may still hold."""
+        vehicle = self._vehicles.get(system)
+        ready_at = None if vehicle is None else now if vehicle.armed else vehicle.ready_at
+        return self._results.last_refusal(system, ready_at, now)
+
+    # ---- time and messages ----
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle a message of a vehicle: a COMMAND_ACK, or what its state shows of our claim."""
+        self._claims.update(now)
+        self._client.receive(received, now)
+        self._handle_outcomes(now)
+
+    def receive_of_unheard(self, received: Received) -> None:
+        """Take an answer to a blind stop."""
+        if self._blind is not None:
+            self._blind.receive(received)
+
+    def handle_refused(self, message: Message, why: str, now: float) -> None:
+        """End the command whose message is not sent, because our role does not allow it."""
+        self._client.refuse(message, why)
+        self._handle_outcomes(now)
+
+    def handle_statustext(self, system: int, text: str, severity: int, now: float) -> None:
+        """Attach a warning of the vehicle to its refusal, which it may explain."""
+        self._results.handle_statustext(system, text, severity, now)
+
+    def tick(self, now: float) -> None:
+        """Repeat and time out what is in progress."""
+        self._claims.update(now)
+        for lock in self._locks.values():
+            lock.tick(self._client, now)
+        self._send_blind_stop(now)
+        if self._arming is not None:
+            self._arming.tick(self._client, now)
+            self._end_arming(self._arming, now)
+        for disarm in list(self._disarms.values()):
+            self._retry_disarm(disarm, now)
+        self._client.tick(now)
+        self._handle_outcomes(now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now and clear the queue."""
+        outbox, self._outbox = self._outbox, []
+        return outbox + self._client.messages_to_send()
+
+    # ---- results ----
+
+    def _send(self, vehicle: VehicleState, now: float, command: Command, *params: float) -> None:
+        system, component = vehicle.system, vehicle.component
+        self._vehicles[system] = vehicle
+        self._client.send(command, *params, target_system=system, target_component=component, now=now)
+
+    def _retry_disarm(self, disarm: _Disarm, now: float) -> None:
+        vehicle = disarm.vehicle
+        doubt = vehicle.senders.find_doubt(now)
+        if not doubt:
+            del self._disarms[vehicle.system]
+        elif now >= disarm.until:
+            del self._disarms[vehicle.system]
+            self._results.add_refusal(vehicle.system, f"disarm: {vehicle.name}: {doubt}", now)
+        elif now >= disarm.due and not self.is_pending(Command.COMPONENT_ARM_DISARM, vehicle):
+            disarm.due = now + DISARM_RETRY
+            send_stop(self._client, vehicle, DISARM, now)
+
+    def _send_blind_stop(self, now: float) -> None:
+        if self._blind is not None and now >= self._blind_until:
+            self._log.add(now, "station", self.describe_blind_stop(), Severity.CRITICAL)
+            self._blind = None
+        elif self._blind is not None:
+            self._outbox += [
+                Outgoing(message) for message in self._blind.tick(now, heard=bool(self._late or self._vehicles))
+            ]
+
+    def _end_arming(self, arming: ArmSequence, now: float) -> None:
+        if arming.step is ArmStep.DONE and self._arming is arming:
+            self._arming = None
+            if arming.failure:
+                self._results.add_refusal(arming.vehicle.system, arming.failure, now)
+
+    def _handle_outcomes(self, now: float) -> None:
+        for outcome in self._client.outcomes():
+            if outcome.command in QUERY_COMMANDS:
+                self._query_outcomes.append(outcome)
+            else:
+                self._results.handle_outcome(outcome, now)
+                self._apply_outcome(outcome, now)
+
+    def _apply_outcome(self, outcome: CommandOutcome, now: float) -> None:
+        system = outcome.target_system
+        if _grants_control(outcome):
+            by_arming = outcome.command == Command.COMPONENT_ARM_DISARM
+            self._claims.add(self._vehicles[system], now, by_arming=by_arming)
+        lock = self._locks.get(system)
+        if lock is not None:
+            lock.handle_outcome(outcome)
+            if _released(outcome):
+                del self._locks[system]
+        if self._arming is not None and self._arming.vehicle.system == system:
+            self._arming.handle_outcome(outcome, self._client, now)
+            self._end_arming(self._arming, now)
+        if outcome.command == Command.COMPONENT_ARM_DISARM and outcome.result is not Result.ACCEPTED:
+            self._disarms.pop(system, None)  # refused or no answer; that has been logged
+
+
+def _grants_control(outcome: CommandOutcome) -> bool:
+    """Return whether this result gives us control of a vehicle that sends no CONTROL_STATUS.
+
+    It does when the vehicle accepts arming or a control request, or does not know control requests.
+    """
+    if outcome.command == Command.COMPONENT_ARM_DISARM:
+        return outcome.params[0] == 1 and outcome.result is Result.ACCEPTED
+    requested = outcome.command == Command.REQUEST_OPERATOR_CONTROL and outcome.params[0] == 1
+    return requested and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)
+
+
+def _answered_lock(vehicle: VehicleState, now: float) -> EmergencyLock:
+    """Return the lock of a stop that somebody else requested, so that it can be cleared."""
+    return EmergencyLock(vehicle, now, switch_answered=True, disarm_answered=True, accepted=True)
+
+
+def _released(outcome: CommandOutcome) -> bool:
+    """Return whether the lock is off: released, or unknown to the vehicle, which is then only disarmed."""
+    switched = outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE and outcome.params[0] == DANGEROUS
+    return switched and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)

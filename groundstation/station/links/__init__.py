@@ -1,0 +1,1 @@
+"""Links of the station: statistics, other ground stations, heartbeats."""

@@ -1,0 +1,1 @@
+"""Messages that arrive: rates, fields, filters, captures."""

@@ -1,0 +1,1 @@
+"""Notes of the station: the operator's log and the events in its recording."""

@@ -1,0 +1,1 @@
+"""Messages that verbs send through a running station."""

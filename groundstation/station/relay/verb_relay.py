@@ -1,0 +1,310 @@
+"""VerbRelay: verbs that go through this station. Their messages leave as the station's own. Time is an argument.
+
+Commands and stops always pass: they are the user's. A demand that moves passes only while no screen drives and no other
+verb does, and ends with neutral when the verb ends, is killed or stands still. The station proves its session to the
+vehicle that its screen drives; for others, and without a screen, a verb's proofs become those of the session.
+
+A verb that only looks keeps no vehicle from its failsafe, unless it follows: it begins at most KEEP s after a verb that
+took part, and goes on with the session until a screen drives. It steps aside while another verb takes part.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import msgspec
+
+from dialects import messages as m
+from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.enums import Command, OperatorFlag, Result, Severity
+from dialects.messages import INVALID_AXIS
+from dialects.traits import ACKED
+from groundstation.station.driving.commander import Commander
+from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.station_socket.relay import ALIVE_WITHIN, KEEP
+from groundstation.vehicles.demand.demand_neutrals import DEMANDS
+from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
+from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
+from link.core import LinkReport, Outgoing, Peer, Received
+
+FRESH = 3.0
+"""s for which the newest message of a kind is news for a verb that connects."""
+
+CONSTANT = frozenset((m.AutopilotVersion.id, m.RoverDriveInfo.id, m.HomePosition.id))
+"""Ids of messages that a vehicle sends once, and that hold as long as it is heard."""
+
+MAX_KINDS = 64 * MAX_VEHICLES
+"""Kinds of messages, of all senders together, whose newest is kept."""
+
+ARMS_WITHIN = 5.0
+"""s for a vehicle to answer the arming of a verb."""
+
+
+class Verb(msgspec.Struct, eq=False):
+    """One verb. `deliver` gets what the station receives, `report` its links, `refuse` why a demand is not sent."""
+
+    name: str
+    takes_part: bool
+    deliver: Callable[[Sequence[Received]], None]
+    report: Callable[[Sequence[LinkReport]], None]
+    refuse: Callable[[str], None]
+    follows: bool = False
+    """It keeps the session going that a verb has used just before."""
+    heard_at: float = 0.0
+    demands: dict[tuple[type[m.Message], int], m.Message] = msgspec.field(default_factory=dict)
+    """Kind and vehicle -> the newest demand that moves."""
+    refused: str = ""
+    """Why no more demands are taken."""
+    tell_refusal: Callable[[m.Message, str], None] = lambda message, why: None
+    """Takes a message of the verb that our role does not allow, and why."""
+
+
+class _Ending(msgspec.Struct):
+    """A demand that ends with neutral."""
+
+    contact: Contact
+    messages: list[m.Message]
+    left: int
+    due: float
+
+
+class VerbRelay:
+    """The verbs of one station."""
+
+    def __init__(self, fleet: Fleet, operator: OperatorSession, commander: Commander, log: MessageLog) -> None:
+        self._fleet = fleet
+        self._operator = operator
+        self._commander = commander
+        self._log = log
+        self.screen_that_drives: Callable[[], str | None] = lambda: None
+        """Returns its name; None without one."""
+        self._verbs: list[Verb] = []
+        self._newest: dict[tuple[int, int, int, Peer | None], tuple[Received, float]] = {}
+        """System, component and message id -> the newest; a HEARTBEAT of each sender, because two may have one id."""
+        self._reports: tuple[LinkReport, ...] = ()
+        self._endings: list[_Ending] = []
+        self._arming: dict[int, float] = {}
+        """System id -> until when its acceptance of arming is the answer to a verb."""
+        self._used_at = -math.inf
+        """When a verb without a screen beside it last used the session."""
+        self._proven: dict[int, float] = {}
+        """System id -> when the session was last proven to it for a verb."""
+        self._outbox: list[Outgoing] = []
+        self._senders: list[tuple[m.Message, Verb]] = []
+        """Of the messages of verbs in `_outbox`."""
+        self._sent: list[tuple[m.Message, Verb]] = []
+        """The same of those that are being sent."""
+
+    def may_follow(self, now: float) -> bool:
+        """Return whether a verb that only looks may go on with the session of the verb before."""
+        return not self._operator.live and now - self._used_at <= KEEP
+
+    def join(self, verb: Verb, now: float) -> None:
+        """Take a verb, and tell it what is known."""
+        verb.heard_at = now
+        verb.report(self._reports)
+        # The HEARTBEAT first: a verb takes nothing from a vehicle that it does not know.
+        newest = sorted(self._newest.values(), key=lambda each: (not is_vehicle(each[0].message), each[1]))
+        verb.deliver([received for received, at in newest if now - at <= FRESH or self._holds(received, now)])
+        self._verbs.append(verb)
+
+    def leave(self, verb: Verb, now: float) -> None:
+        """Forget a verb that has ended; what it demanded ends with neutral."""
+        self._verbs.remove(verb)
+        self._end_demands(verb, now)
+
+    # ---- from the vehicles ----
+
+    def receive(self, received: Received, now: float) -> None:
+        """Pass a message on to all verbs, and keep it for the next one."""
+        number = type(received.message).id
+        if number not in ACKED:
+            if len(self._newest) >= MAX_KINDS:
+                self._newest.clear()
+            peer = received.peer if number == m.Heartbeat.id else None
+            self._newest[received.system, received.component, number, peer] = (received, now)
+        for verb in self._verbs:
+            verb.deliver((received,))
+        if isinstance(received.message, m.CommandAck):
+            self._note_arming(received.message, received.system, now)
+
+    def observe(self, reports: Sequence[LinkReport]) -> None:
+        """Pass the state of the links on."""
+        self._reports = tuple(reports)
+        for verb in self._verbs:
+            verb.report(self._reports)
+
+    def _holds(self, received: Received, now: float) -> bool:
+        """Return whether a message is still true, however old."""
+        contact = self._fleet.get(received.system) if type(received.message).id in CONSTANT else None
+        return contact is not None and contact.state.monitor.is_alive(now)
+
+    def _note_arming(self, ack: m.CommandAck, system: int, now: float) -> None:
+        """Note that a vehicle was armed for a verb: without CONTROL_STATUS that is control."""
+        contact = self._fleet.get(system)
+        if ack.command != Command.COMPONENT_ARM_DISARM or now > self._arming.pop(system, 0.0) or contact is None:
+            return
+        if ack.result == Result.ACCEPTED:
+            self._commander.claim(contact.state, now)
+
+    # ---- from the verbs ----
+
+    def handle(self, verb: Verb, message: m.Message, now: float) -> None:
+        """Send a message of a verb, if it may be sent."""
+        if isinstance(message, m.Heartbeat):
+            passes = not self._operator.live and (self._keeps(verb) or not self._any_armed)
+        elif isinstance(message, m.RoverOperatorPresence) or type(message) in DEMANDS:
+            passes = self._keeps(verb) and self._may_demand(verb, message, now)
+        else:
+            passes = True
+        if not passes:
+            return
+        if isinstance(message, m.RoverOperatorPresence):
+            self._operator.adopt_presence(message, now)
+        if isinstance(message, m.CommandLong) and message.command == Command.COMPONENT_ARM_DISARM and message.param1:
+            self._arming[message.target_system] = now + ARMS_WITHIN
+        self._prove(verb, message, now)
+        self._outbox.append(Outgoing(message))
+        self._senders.append((message, verb))
+
+    def hear(self, verb: Verb, now: float) -> None:
+        """Note that a verb runs. One that stood still has lost its demands, and makes no others."""
+        self._check_silence(verb, now)
+        verb.heard_at = now
+        if not self._operator.live and self._keeps(verb):
+            self._used_at = now
+
+    def tick(self, now: float) -> None:
+        """End the demands of verbs that stand still, or that a screen has taken over; send what ends them."""
+        screen = self.screen_that_drives()
+        if self._operator.live:
+            self._used_at = -math.inf
+        for verb in self._verbs:
+            verb.follows &= not self._operator.live
+            self._check_silence(verb, now)
+            if screen is not None and verb.demands:
+                self._refuse(verb, f"the {screen} drives", now)
+        for ending in list(self._endings):
+            self._continue(ending, now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them."""
+        outbox, self._outbox = self._outbox, []
+        self._sent, self._senders = self._senders, []
+        return outbox
+
+    def handle_refused(self, message: m.Message, why: str) -> bool:
+        """Tell the verb whose message our role does not allow; return whether it is one of a verb."""
+        verb = next((verb for sent, verb in self._sent if sent is message), None)
+        if verb is not None:
+            verb.tell_refusal(message, why)
+        return verb is not None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a verb is connected, or what one demanded is being ended."""
+        return bool(self._verbs or self._endings)
+
+    @property
+    def finished(self) -> bool:
+        """No neutral is left to send in the place of a verb."""
+        return not self._endings
+
+    @property
+    def _any_armed(self) -> bool:
+        return any(contact.state.armed for contact in self._fleet)
+
+    def _keeps(self, verb: Verb) -> bool:
+        """Return whether a verb keeps vehicles from missing their ground station."""
+        return verb.takes_part or (verb.follows and not any(each.takes_part for each in self._verbs))
+
+    def _may_demand(self, verb: Verb, message: m.Message, now: float) -> bool:
+        """Return whether to send a demand or a proof; refuse one that moves while somebody else drives."""
+        contact = self._fleet.get(m.target_system(message))
+        if contact is None:
+            return False
+        if not moves(message, contact):
+            verb.demands.pop((type(message), contact.state.system), None)
+            return not contact.demand_stream.streaming  # else the station sends them
+        other = next((each for each in self._verbs if each is not verb and each.demands), None)
+        screen = self.screen_that_drives()
+        if not verb.refused and (screen or other):
+            self._refuse(verb, f"the {screen or (other.name if other else '')} drives", now)
+        if verb.refused:
+            verb.refuse(verb.refused)
+            return False
+        verb.demands[type(message), contact.state.system] = message
+        return True
+
+    def _prove(self, verb: Verb, message: m.Message, now: float) -> None:
+        """Prove the session before a message that may need control; a live screen does so all the time."""
+        contact = self._fleet.get(getattr(message, "target_system", 0))
+        if contact is None or not contact.state.has_rover_dialect or not verb.takes_part or self._operator.live:
+            return
+        proof = isinstance(message, m.RoverOperatorPresence)
+        if not proof and now - self._proven.get(contact.state.system, -math.inf) >= IDLE_PROOF_PERIOD:
+            state = contact.state
+            presence = self._operator.build_presence((state.system, state.component), state.boot_time, now)
+            self._outbox.append(Outgoing(presence))
+            proof = True
+        if proof:
+            self._proven[contact.state.system] = now
+
+    def _check_silence(self, verb: Verb, now: float) -> None:
+        silence = now - verb.heard_at
+        if verb.demands and silence > ALIVE_WITHIN:
+            self._refuse(verb, f"{verb.name} stood still for {silence:.1f} s: its demand has ended", now)
+
+    def _refuse(self, verb: Verb, reason: str, now: float) -> None:
+        verb.refused = reason
+        if verb.demands:
+            self._log.add(now, "station", f"{verb.name} stopped: {reason}", Severity.WARNING)
+        self._end_demands(verb, now)
+
+    def _end_demands(self, verb: Verb, now: float) -> None:
+        """Send neutral in the place of a verb, several times."""
+        for (kind, system), demand in verb.demands.items():
+            contact = self._fleet.get(system)
+            if contact is not None and kind in DEMANDS:
+                messages = DEMANDS[kind](contact.state, _values(demand), now)
+                self._endings.append(_Ending(contact, messages, FINAL_NEUTRALS, now))
+        verb.demands.clear()
+        for ending in list(self._endings):
+            self._continue(ending, now)
+
+    def _continue(self, ending: _Ending, now: float) -> None:
+        if now < ending.due:
+            return
+        state = ending.contact.state
+        if state.has_rover_dialect and isinstance(ending.messages[0], m.ManualControl):
+            proof = self._operator.build_presence(
+                (state.system, state.component), state.boot_time, now, ending.messages[0]
+            )
+            self._outbox.append(Outgoing(proof))
+        self._outbox += [Outgoing(message) for message in ending.messages]
+        ending.left, ending.due = ending.left - 1, now + DRIVING_PERIOD
+        if not ending.left:
+            self._endings.remove(ending)
+
+
+def _values(message: m.Message) -> dict[str, Any]:
+    return {name: getattr(message, name) for name in message.fieldnames}
+
+
+def moves(message: m.Message, contact: Contact) -> bool:
+    """Return whether a demand requests motion, and does not only show that somebody is there."""
+    if isinstance(message, m.RoverOperatorPresence):
+        axes = (message.x, message.y, message.z, message.r) if message.flags & OperatorFlag.AXES else ()
+        return any(axis not in (0, INVALID_AXIS) for axis in axes)
+    if not isinstance(message, m.ManualControl):
+        return True
+    neutral = build_manual_control(NEUTRAL, message.target, axis_map(contact.state.autopilot))
+    axes = (message.x, message.y, message.z, message.r)
+    return any(
+        axis not in (rest, INVALID_AXIS)
+        for axis, rest in zip(axes, (neutral.x, neutral.y, neutral.z, neutral.r), strict=True)
+    )

@@ -1,0 +1,1 @@
+"""Requests of the operator to the services of a vehicle."""

@@ -1,0 +1,248 @@
+"""Requests of the operator to the services of vehicles, such as their parameters, and how they end.
+
+The services of a vehicle exist from the first request on: a vehicle that is only driven costs nothing.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping, MutableMapping
+
+from dialects.enums import Command, Severity
+from groundstation.intents.services import ServiceIntent
+from groundstation.snapshot.log_origin import LogOrigin
+from groundstation.station.driving.commander import Commander
+from groundstation.station.services.file_view import build_files
+from groundstation.station.services.service_calls import SERVICE_CALLS
+from groundstation.station.view_feed import ViewSource
+from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.requests import (
+    file_comparing,
+    folder_cache,
+    log_requests,
+    message_requests,
+    metadata_requests,
+    mission_requests,
+    param_comparing,
+    param_requests,
+    param_storage,
+    param_writer,
+    plan_requests,
+    transfer_requests,
+)
+from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult
+from groundstation.vehicles.requests.requests import RequestReport, RequestState
+from groundstation.vehicles.services import VehicleServices
+from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.views.base import ViewRequest
+from groundstation.views.files import FilesRequest, FilesView
+from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
+from link.core import Outgoing, Received
+
+KEPT_REPORTS = 16
+"""Requests of one service whose end a screen can still read."""
+
+_SEVERITIES = {RequestState.REFUSED: Severity.WARNING, RequestState.NO_ANSWER: Severity.WARNING}
+
+
+class ServiceDesk:
+    """The services of all vehicles. `system` and `component` are our ids; `texts`: see VehicleServices."""
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        commander: Commander,
+        log: MessageLog,
+        system: int,
+        component: int,
+        *,
+        texts: MutableMapping[int, bytes] | None = None,
+        is_held: Callable[[Contact, float], bool] = lambda contact, now: False,
+    ) -> None:
+        """`is_held` says whether the transfers of a vehicle wait: for the operator who drives over a slow line."""
+        self._is_held = is_held
+        self._fleet = fleet
+        self._commander = commander
+        self._log = log
+        self._ids = (system, component)
+        self._texts: MutableMapping[int, bytes] = {} if texts is None else texts
+        self._service_of: dict[int, str] = {}
+        """Number of a request -> name of its service."""
+        self._ended: dict[str, deque[RequestLine]] = {}
+        self._awaited: dict[int, Callable[[RequestReport], None]] = {}
+        """Number of a request -> what is reported of its end."""
+
+    # ---- requests ----
+
+    def start(self, intent: ServiceIntent, now: float) -> None:
+        """Make a request; without its vehicle it ends at once."""
+        call = SERVICE_CALLS[type(intent)]
+        self._service_of[intent.request] = call.service
+        contact = self._fleet.get(intent.system) if intent.system else self._fleet.selected
+        if contact is None:
+            report = RequestReport(intent.request, call.what, RequestState.REFUSED, "no vehicle yet")
+            self._end(report, 0, "station", now)
+            return
+        call.make(self.services_of(contact), intent, now)
+        self.collect(now)
+
+    def cancel(self, number: int, now: float) -> None:
+        """Cancel a request to any vehicle."""
+        for contact in self._fleet:
+            if contact.services is not None:
+                contact.services.cancel(number, now)
+        self.collect(now)
+
+    # ---- core ----
+
+    def receive(self, contact: Contact, received: Received, now: float) -> None:
+        """Handle a message of a vehicle."""
+        if contact.services is not None:
+            contact.services.receive(received, now)
+
+    def handle_text(self, contact: Contact, text: str, severity: int, now: float) -> None:
+        """Take a whole STATUSTEXT of a vehicle."""
+        if contact.services is not None:
+            contact.services.handle_text(text, severity, now)
+
+    def tick(self, now: float) -> None:
+        """Repeat what is overdue, give up at last, report what has ended."""
+        for contact in self._fleet:
+            if contact.services is not None:
+                contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
+                pending = self._commander.is_pending(Command.REQUEST_MESSAGE, contact.state)
+                alive, held = contact.state.monitor.is_alive(now), self._is_held(contact, now)
+                contact.services.tick(now, may_query=not pending, alive=alive, held=held)
+        self.collect(now)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request to any vehicle is under way."""
+        return any(contact.services is not None and contact.services.book.running for contact in self._fleet)
+
+    def is_querying(self, contact: Contact) -> bool:
+        """Return whether a REQUEST_MESSAGE to this vehicle is under way: another would be taken for it."""
+        return contact.services is not None and contact.services.commands.is_waiting(Command.REQUEST_MESSAGE)
+
+    def is_setting_rate(self, contact: Contact) -> bool:
+        """Return whether a SET_MESSAGE_INTERVAL of the operator is under way: another would be taken for it."""
+        return contact.services is not None and contact.services.commands.is_waiting(Command.SET_MESSAGE_INTERVAL)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now and clear the queue."""
+        found = (contact.services for contact in self._fleet if contact.services is not None)
+        return [outgoing for services in found for outgoing in services.messages_to_send()]
+
+    # ---- the disk ----
+
+    def pop_disk_jobs(self) -> list[DiskJob]:
+        """Return what the disk shall do for the vehicles, once."""
+        found = (contact.services for contact in self._fleet if contact.services is not None)
+        return [job for services in found for job in services.pop_disk_jobs()]
+
+    def handle_disk(self, result: DiskResult, now: float) -> None:
+        """Take what the disk has answered."""
+        for contact in self._fleet:
+            if contact.services is not None:
+                contact.services.handle_disk(result, now)
+        self.collect(now)
+
+    def cancel_transfers(self, now: float) -> None:
+        """Cancel all transfers when the station ends; what has arrived is kept."""
+        for contact in self._fleet:
+            if contact.services is not None:
+                contact.services.transfers.cancel_all(now)
+
+    # ---- views ----
+
+    @property
+    def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
+        """Request -> its source."""
+        return {
+            RequestsRequest: ViewSource(self.build_requests, period=0.25),
+            FilesRequest: ViewSource(self.build_files, period=0.25),
+        }
+
+    @property
+    def progress(self) -> float | None:
+        """How far the downloads and uploads under way are, 0..1; None without one."""
+        running = [line for line in self._running() if line.service == "files"]
+        known = [(line.done, line.total) for line in running if line.total]
+        whole = sum(total for _, total in known)
+        return None if not running else sum(done for done, _ in known) / whole if whole else 0.0
+
+    def build_files(self, request: FilesRequest, now: float, wall: float) -> FilesView | None:
+        """Build the view of the files of the selected vehicle; None without a vehicle."""
+        selected = self._fleet.selected
+        return None if selected is None else build_files(selected, request)
+
+    def build_requests(self, request: RequestsRequest, now: float, wall: float) -> RequestsView:
+        """Build the view of all requests."""
+        return RequestsView(tuple(self._running()), tuple(line for lines in self._ended.values() for line in lines))
+
+    def requests_of(self, service: str, system: int) -> RequestsView:
+        """Return the requests of one service: what runs at this vehicle, and what has ended."""
+        running = (line for line in self._running() if line.service == service and line.system == system)
+        return RequestsView(tuple(running), tuple(self._ended.get(service, ())))
+
+    # ---- parts ----
+
+    def _running(self) -> list[RequestLine]:
+        """Return the requests under way; steps of a request have numbers below 0."""
+        return [
+            self._line(report, contact.state.system, _waits(contact.services, report.number))
+            for contact in self._fleet
+            if contact.services is not None
+            for report in contact.services.book.running
+            if report.number >= 0
+        ]
+
+    def services_of(self, contact: Contact) -> VehicleServices:
+        """Return the services of a vehicle."""
+        if contact.services is None:
+            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component), self._texts)
+            contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
+        return contact.services
+
+    def await_end(self, number: int, tell: Callable[[RequestReport], None]) -> None:
+        """Call `tell` when the request with this number has ended, in place of keeping its report for screens."""
+        self._awaited[number] = tell
+
+    def collect(self, now: float) -> None:
+        """Log what has ended."""
+        for contact in self._fleet:
+            if contact.services is None:
+                continue
+            for report in contact.services.pop_reports(now):
+                if report.state.ended:
+                    self._end(report, contact.state.system, contact.state.name, now)
+
+    def _end(self, report: RequestReport, system: int, name: str, now: float) -> None:
+        severity = _SEVERITIES.get(report.state, Severity.INFO)
+        self._log.add(now, "ack", f"{name}: {report.text}", severity, origin=LogOrigin(system))
+        if (tell := self._awaited.pop(report.number, None)) is not None:
+            tell(report)
+        elif report.number >= 0:
+            line = self._line(report, system)
+            self._ended.setdefault(line.service, deque(maxlen=KEPT_REPORTS)).append(line)
+            self._service_of.pop(report.number, None)
+
+    def _line(self, report: RequestReport, system: int, waits: str = "") -> RequestLine:
+        """Return a report for a screen; one that has a reason of the vehicle shows it last."""
+        return RequestLine(
+            number=report.number,
+            state=report.state.value,
+            what=report.what,
+            detail=f"{report.detail}: {report.reason}" if report.reason else report.detail,
+            done=report.done,
+            total=report.total,
+            service=self._service_of.get(report.number, ""),
+            waits=waits,
+            system=system,
+        )
+
+
+def _waits(services: VehicleServices, number: int) -> str:
+    if services.transfers.waits(number):
+        return "waits for the vehicle to be back"
+    return "waits: you drive, and the line is slow" if services.held else ""

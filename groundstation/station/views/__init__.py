@@ -1,0 +1,1 @@
+"""Views: data that one screen needs beside the snapshot."""

@@ -1,0 +1,215 @@
+"""Views of the Parameters screen: the rows and texts that it has room for, a comparison, the text of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from dialects.enums import Autopilot
+from groundstation.formats.docs_files import DocsFile
+from groundstation.formats.param_compare import compare
+from groundstation.formats.param_docs import ParamDocs
+from groundstation.formats.param_file import format_params
+from groundstation.formats.param_form import ParamForm
+from groundstation.station.services.service_desk import ServiceDesk
+from groundstation.station.view_feed import ViewSource
+from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of, is_changed
+from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.requests.param_requests import param_type_name
+from groundstation.vehicles.requests.param_writer import MAX_CHANGES
+from groundstation.views.base import ViewRequest
+from groundstation.views.params import (
+    ParamDiff,
+    ParamDiffRequest,
+    ParamExport,
+    ParamExportRequest,
+    ParamInfo,
+    ParamInfoRequest,
+    ParamInfos,
+    ParamPage,
+    ParamPageRequest,
+    ParamRow,
+)
+from link.services.param.client import Param
+
+MAX_ROWS = 200
+"""Rows of one page: more than the largest terminal shows."""
+MAX_INFOS = 64
+"""Parameters whose texts are sent at once."""
+MAX_GAPS = 10
+"""Missing indexes that are named."""
+MAX_TEXT = 200_000
+"""Characters of a file, less than a packet of the pipe; QGroundControl's form of 1235 parameters has 60,000."""
+PERIOD = 0.25
+"""Least s between two views of a kind."""
+_AUTOPILOTS = {int(Autopilot.ARDUPILOT): "ardupilot", int(Autopilot.PX4): "px4"}
+
+
+class ParamViews:
+    """Builds the views of the selected vehicle. `files` are texts that the user has for vehicles without their own."""
+
+    def __init__(self, fleet: Fleet, desk: ServiceDesk, files: tuple[DocsFile, ...] = ()) -> None:
+        self._fleet = fleet
+        self._desk = desk
+        self._files = files
+        self._ranks = ParamRanks()
+
+    @property
+    def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
+        """Request -> its source."""
+        return {
+            ParamPageRequest: ViewSource(self._build_page, PERIOD),
+            ParamInfoRequest: ViewSource(self._build_infos, PERIOD),
+            ParamDiffRequest: ViewSource(self._build_diff, PERIOD),
+            ParamExportRequest: ViewSource(self._build_export, PERIOD),
+        }
+
+    # ---- page ----
+
+    def _build_page(self, request: ParamPageRequest, now: float, wall: float) -> ParamPage | None:
+        contact = self._fleet.selected
+        if contact is None:
+            return None
+        params, docs = self._params(contact), self._docs(contact)
+        client = contact.services.params.client if contact.services else None
+        if contact.services is not None and params and not contact.services.params.fetching:
+            contact.services.metadata.want()
+        missing = client.missing if client else ()
+        groups = groups_of(params)
+        chosen = choose(params, docs, groups, request, self._ranks)
+        first = max(0, min(request.first, len(chosen) - 1))
+        system, file = contact.state.system, self._file_values(contact)
+        requests = self._desk.requests_of("params", system)
+        return ParamPage(
+            system=system,
+            rows=tuple(_row(each, docs, file) for each in chosen[first : first + min(request.rows, MAX_ROWS)]),
+            first=first,
+            matching=len(chosen),
+            known=len(params),
+            total=client.total if client else None,
+            has_defaults=any(_default(each, docs) is not None for each in params.values()),
+            running=requests.running,
+            ended=requests.ended,
+            groups=count_groups(params, groups),
+            changed=sum(map(is_changed, params.values())),
+            missing=len(missing),
+            gaps=missing[:MAX_GAPS],
+            autopilot=_AUTOPILOTS.get(int(contact.state.autopilot), "other"),
+            texts=self._texts(contact, docs),
+            file=contact.services.param_file.name if contact.services else "",
+        )
+
+    def _texts(self, contact: Contact, docs: ParamDocs) -> str:
+        """Return where the texts come from, or why there are none."""
+        if docs.source:
+            return docs.source
+        own = contact.services.metadata.problem if contact.services else ""
+        return own or next((file.problem for file in self._files if file.problem and _is_for(file, contact)), "")
+
+    # ---- texts ----
+
+    def _build_infos(self, request: ParamInfoRequest, now: float, wall: float) -> ParamInfos | None:
+        contact = self._fleet.selected
+        if contact is None:
+            return None
+        params, docs, file = self._params(contact), self._docs(contact), self._file_values(contact)
+        names = (name for name in request.names[:MAX_INFOS] if name in params)
+        return ParamInfos(contact.state.system, tuple(_info(params[name], docs, file) for name in names))
+
+    # ---- files ----
+
+    def _build_diff(self, request: ParamDiffRequest, now: float, wall: float) -> ParamDiff | None:
+        contact = self._fleet.selected
+        if contact is None:
+            return None
+        opened = contact.services.param_file if contact.services else None
+        if opened is None or opened.file is None:
+            return ParamDiff(contact.state.system, "")
+        found = compare(opened.file, self._params(contact), contact.state.component)
+        different = tuple(sorted((name, param.value, wanted) for name, wanted, param in found.different))
+        return ParamDiff(
+            contact.state.system,
+            opened.name,
+            found.same,
+            different[:MAX_CHANGES],
+            len(found.only_vehicle),
+            found.only_file[:MAX_CHANGES],
+        )
+
+    def _build_export(self, request: ParamExportRequest, now: float, wall: float) -> ParamExport | None:
+        contact = self._fleet.selected
+        if contact is None:
+            return None
+        params = self._params(contact)
+        if request.changed_only and all(param.default is None for param in params.values()):
+            return ParamExport(request.number, "", 0, "this vehicle does not report defaults: save all")
+        groups = groups_of(params)
+        page = ParamPageRequest(changed_only=request.changed_only, group=request.group)
+        chosen = choose(params, ParamDocs(), groups, page, ParamRanks())
+        if not chosen:
+            return ParamExport(request.number, "", 0, "there is nothing to save")
+        state = contact.state
+        text = format_params(chosen, ParamForm(request.form), vehicle=state.system, component=state.component)
+        if len(text) > MAX_TEXT:
+            return ParamExport(request.number, "", 0, "too many parameters for the screen: groundstation param save")
+        return ParamExport(request.number, text, len(chosen))
+
+    # ---- parts ----
+
+    def _params(self, contact: Contact) -> Mapping[str, Param]:
+        return contact.services.params.client.params if contact.services else {}
+
+    def _docs(self, contact: Contact) -> ParamDocs:
+        """Return the vehicle's own texts, else those of the user's first file that fits."""
+        own = contact.services.metadata.docs if contact.services else ParamDocs()
+        if own.docs:
+            return own
+        return next((file.docs for file in self._files if file.docs.docs and _is_for(file, contact)), own)
+
+    def _file_values(self, contact: Contact) -> Mapping[str, float]:
+        return contact.services.param_file.values if contact.services else {}
+
+
+def _is_for(file: DocsFile, contact: Contact) -> bool:
+    return file.autopilot in (None, contact.state.autopilot)
+
+
+def _default(param: Param, docs: ParamDocs) -> float | None:
+    """Return the default as the vehicle reports it, else as its texts say."""
+    return param.default if param.default is not None else docs.get(param.name).default
+
+
+def _row(param: Param, docs: ParamDocs, file: Mapping[str, float]) -> ParamRow:
+    doc = docs.get(param.name)
+    return ParamRow(
+        name=param.name,
+        value=param.value,
+        kind=param_type_name(param.kind),
+        default=_default(param, docs),
+        changed=is_changed(param),
+        unit=doc.unit,
+        meaning=doc.meaning(param.value),
+        file=file.get(param.name),
+    )
+
+
+def _info(param: Param, docs: ParamDocs, file: Mapping[str, float]) -> ParamInfo:
+    doc = docs.get(param.name)
+    return ParamInfo(
+        name=param.name,
+        value=param.value,
+        kind=param_type_name(param.kind),
+        index=param.index,
+        default=_default(param, docs),
+        title=doc.title,
+        text=doc.text,
+        unit=doc.unit,
+        low=doc.low,
+        high=doc.high,
+        step=doc.step,
+        values=doc.values,
+        bits=doc.bits,
+        reboot=doc.reboot,
+        read_only=doc.read_only,
+        not_armed=doc.not_armed,
+        file=file.get(param.name),
+    )

@@ -1,0 +1,1 @@
+"""The app: start, exit, navigation, command line, palette and help."""

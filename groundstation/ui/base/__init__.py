@@ -1,0 +1,1 @@
+"""Base of all screens: their class, questions, list keys, files on this machine."""

@@ -1,0 +1,1 @@
+"""The Connect screen: vehicles that are heard, recent endpoints, serial ports, simulators."""

@@ -1,0 +1,1 @@
+"""State that screens draw: snapshot, alerts, hints, running tasks, wrapped texts."""

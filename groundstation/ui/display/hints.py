@@ -1,0 +1,58 @@
+"""What to do next, in a line of its own that no alert hides."""
+
+from __future__ import annotations
+
+from groundstation.snapshot import ReplayStatus, VehicleView
+from groundstation.ui.display.display_state import DisplayState
+
+
+def hint(now: DisplayState) -> str:
+    """Return what to do next."""
+    if not now.screen.drives:
+        return now.screen.hint
+    if now.snapshot.replay is not None:
+        return _replay_hint(now, now.snapshot.replay)
+    return f"{_drive_hint(now)}{_gamepad_hint(now)}"
+
+
+def _gamepad_hint(now: DisplayState) -> str:
+    """Return which button of the gamepad arms, or drives if keys would."""
+    vehicle = now.snapshot.vehicle
+    if now.gamepad is None or vehicle is None or vehicle.undriven or now.snapshot.lease.driver:
+        return ""
+    drivable = vehicle.in_control and vehicle.mode == "MANUAL" and not vehicle.obeys
+    return f" · {now.gamepad.hint(armed=vehicle.armed)}" if drivable or not vehicle.armed else ""
+
+
+def _replay_hint(now: DisplayState, replay: ReplayStatus) -> str:
+    return f"replay of {replay.file}: keys do not drive · {now.key('app.goto')} 0 plays, seeks, searches"
+
+
+def _drive_hint(now: DisplayState) -> str:
+    vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
+    if vehicle is None:
+        return f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} quits"
+    if now.snapshot.lease.driver:
+        return f"SPACE stops, {now.key('stop.emergency')} cuts the motors, {now.key('app.quit')} leaves the station"
+    if vehicle.undriven:
+        asks = "asks, then " if vehicle.may_fall else ""
+        return f"{vehicle.undriven} · {now.key('stop.emergency')} {asks}cuts the motors"
+    if not vehicle.armed:
+        return _arming_hint(vehicle, now)
+    stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"
+    if vehicle.obeys:
+        return stops
+    if not vehicle.in_control:
+        return f"{now.key('vehicle.control')} asks for control · {stops}"
+    if vehicle.mode != "MANUAL":
+        return f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
+    verb = "hold" if operator.style == "hold" else "press"
+    return f"{verb} {now.key('drive.forward')} to drive · {stops}"
+
+
+def _arming_hint(vehicle: VehicleView, now: DisplayState) -> str:
+    if vehicle.prearm is False:
+        # The key all the same: PX4 is not ready until it gets MANUAL_CONTROL, which arming begins with.
+        reason = vehicle.prearm_reason or "pre-arm checks fail"
+        return f"disarmed: hold {now.key('vehicle.arm')} to arm · not ready, {reason}"
+    return f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}"

@@ -1,0 +1,1 @@
+"""The Drive screen: layout, instruments, panes, and the page shown while no vehicle is found."""

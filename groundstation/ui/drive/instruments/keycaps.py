@@ -1,0 +1,128 @@
+"""Key caps: the drive keys, lit while held, and beside them how the keys drive now."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+import msgspec
+from rich.style import Style
+from textual.strip import Strip
+
+from groundstation.input.keymap import Keymap
+from groundstation.intents.driving import PAD, DriveKeyDown, Stop
+from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.keys.keynames import format_key, main_key
+from groundstation.ui.look.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, MUTED, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
+
+GRID = (
+    ("drive.forward_left", "drive.forward", "drive.forward_right"),
+    ("drive.left", "drive.stop", "drive.right"),
+    ("drive.backward_left", "drive.backward", "drive.backward_right"),
+)
+"""Actions by position, as on the keyboard around `k`."""
+
+STYLES: dict[str, tuple[str, Callable[[], Style]]] = {
+    "hold": ("HOLD to drive", partial(style, GREEN, bold=True)),
+    "latch": (" LATCHED: drives on ", partial(badge, RED)),
+    "step": (" STEP: keeps driving ", partial(badge, AMBER)),
+}
+"""Drive style -> its label and look; the styles that keep driving without a key held are in loud colours."""
+
+
+class KeycapsValue(msgspec.Struct, frozen=True):
+    """The lit actions, and the operator's settings rounded to what can be seen to change."""
+
+    keymap: Keymap
+    lit: frozenset[str] = frozenset()
+    style: str = "hold"
+    reports_releases: bool = False
+    stop_bound: float = 0.0
+    throttle_limit: int = 100
+    steering_limit: int = 100
+    open: bool = False
+    ignored: bool = False
+    """The key that is held does not count."""
+    gamepad: bool = False
+    """The gamepad drives."""
+
+    @classmethod
+    def from_state(cls, now: DisplayState) -> KeycapsValue:
+        """Return the caps of a display state."""
+        operator = now.snapshot.operator
+        return cls(
+            keymap=now.keymap,
+            lit=lit_actions(frozenset(operator.held) | now.pressed, now.keymap),
+            style=operator.style,
+            reports_releases=operator.reports_releases,
+            stop_bound=round(operator.stop_bound, 2),
+            throttle_limit=round(100 * operator.throttle_limit),
+            steering_limit=round(100 * operator.steering_limit),
+            open=operator.gate_open,
+            ignored=bool(operator.ignored),
+            gamepad=PAD in operator.held,
+        )
+
+
+def lit_actions(keys: frozenset[str], keymap: Keymap) -> frozenset[str]:
+    """Return the actions whose caps to light: an arrow key lights the cap of its direction, too."""
+    actions = (keymap.get_action(key) for key in keys)
+    return frozenset(action.id for action in actions if action and isinstance(action.intent, (DriveKeyDown, Stop)))
+
+
+class Keycaps(Instrument[KeycapsValue]):
+    """Three rows of caps, with a line of text beside each."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Draw caps to the left and text to the right; what does not fit is cut, never wrapped."""
+        lines = []
+        for row, text in zip(GRID, self._texts(), strict=True):
+            caps = [part for action in row for part in self._cap(action)]
+            gap = max(1, width - length(caps) - length(text))
+            lines.append(strip(*caps, (" " * gap, style()), *text).crop(0, width))
+        return lines[:height]
+
+    def _cap(self, action: str) -> list[Part]:
+        key = main_key(self.value.keymap, action)
+        name = "·" if key is None else "␣" if key == "space" else format_key(key)
+        if action in self.value.lit:
+            look = badge(DEEP_RED if action == "drive.stop" else AMBER if self.value.ignored else YELLOW)
+        elif not self.value.open:
+            look = style(MUTED, FAINT)
+        else:
+            look = style(RED if action == "drive.stop" else TEXT, FAINT, bold=True)
+        return [(f" {name[:1]} ", look), (" ", style())]
+
+    def _texts(self) -> tuple[list[Part], list[Part], list[Part]]:
+        value = self.value
+        return (
+            style_parts(value),
+            bound_parts(value),
+            [
+                ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
+                (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
+            ],
+        )  # fmt: skip
+
+
+def style_parts(value: KeycapsValue) -> list[Part]:
+    """Return the drive style and the key that changes it, or that the gamepad drives."""
+    if value.gamepad:
+        return [("GAMEPAD drives", style(GREEN, bold=True))]
+    keys = value.keymap.get_keys("drive.style")
+    text, look = STYLES.get(value.style, (value.style, style))
+    label = (text, look())
+    return [(f"{format_key(keys[0])} ", style(DIM)), label] if keys else [label]
+
+
+def bound_parts(value: KeycapsValue) -> list[Part]:
+    """Return what ends a drive, and how soon: without key releases only a timer can."""
+    if value.gamepad:
+        return [("stops when you let go", style(DIM))]
+    if not math.isfinite(value.stop_bound):
+        return [("only a key stops it", style(AMBER))]
+    if value.reports_releases:
+        return [("stops when you let go", style(DIM))]
+    return [("timer: stops within ", style(DIM)), (f"{value.stop_bound:.2f} s", style(TEXT))]

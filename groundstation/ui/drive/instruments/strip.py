@@ -1,0 +1,108 @@
+"""Driving strip: what a driver must see, for terminals in which the console does not fit, down to 40x10."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import msgspec
+from textual.strip import Strip
+
+from groundstation.snapshot import LogLine, OperatorView
+from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.display.hints import hint
+from groundstation.ui.display.wrap import wrap
+from groundstation.ui.drive.instruments.keycaps import KeycapsValue, bound_parts, style_parts
+from groundstation.ui.drive.instruments.speed import speed_text
+from groundstation.ui.log.panel import LogPanel
+from groundstation.ui.look.colours import BLUE, DIM, PANEL, TEXT, badge, style
+from groundstation.ui.widgets.alert import LOOKS, MARKS, AlertValue
+from groundstation.ui.widgets.footer import FooterValue, KeyFooter
+from groundstation.ui.widgets.instrument import Instrument, Part, strip
+from groundstation.ui.widgets.status import (
+    StatusBarValue,
+    arming_badges,
+    driver_part,
+    health_parts,
+    mode_badge,
+    recording_parts,
+)
+
+HINT_LINES = 2
+"""Lines of the hint, above the footer."""
+
+
+class StripValue(msgspec.Struct, frozen=True):
+    """What the strip shows."""
+
+    status: StatusBarValue
+    alerts: AlertValue
+    caps: KeycapsValue
+    footer: FooterValue
+    hint: str
+    texts: tuple[LogLine, ...]
+    """The newest messages, for the lines that are left."""
+
+    @classmethod
+    def from_state(cls, now: DisplayState) -> StripValue:
+        """Return the strip of a display state."""
+        return cls(
+            StatusBarValue.from_state(now),
+            AlertValue.from_state(now),
+            KeycapsValue.from_state(now),
+            FooterValue.from_state(now),
+            hint(now),
+            now.snapshot.texts,
+        )
+
+
+class DrivingStrip(Instrument[StripValue]):
+    """State, speed and keys at the top, hint and footer at the bottom, between them the alerts, then messages."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Draw as many lines as there are; the alerts are whole as far as they fit."""
+        top = [strip(*line).crop(0, width) for line in self._state()]
+        alerts = list(self._alerts(width))
+        hints = self._hints(width)
+        room = max(0, height - len(top) - len(hints) - 1)
+        if len(alerts) > room:
+            room, hints = room + len(hints) - 1, hints[:1]
+        if len(alerts) > room:
+            alerts = [*alerts[: room - 1], self._more(width)] if room else []
+        texts = LogPanel(self.value.texts).draw(width, room - len(alerts)) if room > len(alerts) else []
+        blank = [strip((" " * width, style()))] * (room - len(alerts) - len(texts))
+        return [*top, *alerts, *blank, *texts, *hints, *KeyFooter(self.value.footer).draw(width, 1)]
+
+    def _hints(self, width: int) -> list[Strip]:
+        lines = wrap(f"› {self.value.hint}", width - 2)[:HINT_LINES]
+        return [strip((f" {line}".ljust(width), style(TEXT, PANEL))) for line in lines]
+
+    def _state(self) -> Iterator[list[Part]]:
+        """Yield the lines of the vehicle. Arming comes first: it is never cut off."""
+        vehicle, caps = self.value.status.snapshot.vehicle, self.value.caps
+        space: Part = (" ", style())
+        if vehicle is None:
+            yield [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
+            yield [space, (self.value.status.snapshot.waiting or "", style(TEXT))]
+            return
+        dot = recording_parts(self.value.status.snapshot.recording)
+        yield [*arming_badges(vehicle), mode_badge(vehicle), (f" {vehicle.name} ", badge(BLUE)), *dot]
+        status = self.value.status
+        who = driver_part(vehicle, station_runs=status.station_runs, watches=bool(status.snapshot.lease.driver))
+        yield [space, who, space, *health_parts(vehicle)]
+        demand = _demand(self.value.status.snapshot.operator)
+        yield [space, (f"{speed_text(vehicle)} m/s", style(TEXT, bold=True)), ("  " + demand, style(DIM))]
+        yield [space, *(bound_parts(caps) if caps.style == "hold" else style_parts(caps))]
+
+    def _alerts(self, width: int) -> Iterator[Strip]:
+        for alert in self.value.alerts.alerts:
+            for number, line in enumerate(wrap(alert.text, width - 3)):
+                mark = MARKS[alert.level] if number == 0 else " "
+                yield strip((f" {mark} {line}".ljust(width), LOOKS[alert.level]()))
+
+    def _more(self, width: int) -> Strip:
+        look = LOOKS[self.value.alerts.alerts[-1].level]()
+        return strip((f" … {self.value.alerts.list_key} lists all".ljust(width), look)).crop(0, width)
+
+
+def _demand(operator: OperatorView) -> str:
+    return f"throttle {100 * operator.throttle:+.0f}% turn {100 * operator.steering:+.0f}%"

@@ -1,0 +1,246 @@
+"""Drive screen: the instruments and a pane. Keys that drive, stop or command take another way, see key_gate.py."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from msgspec.structs import replace
+from textual import events
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+from textual.css.scalar import Scalar
+from textual.widgets import Static
+
+from groundstation.intents.session import StartSimulator
+from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.display.alerts import active_alerts
+from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.drive.instrument_table import INSTRUMENTS
+from groundstation.ui.drive.instruments.stops import StopsPanel
+from groundstation.ui.drive.instruments.strip import DrivingStrip, StripValue
+from groundstation.ui.drive.layout import CLASSES, CONSOLE_SIZE, MIN_STRIP_SIZE, Size, is_smaller, layout_classes
+from groundstation.ui.drive.pane import CLOSER, WIDER, PaneFrame
+from groundstation.ui.drive.panes import SECOND, SPEED_CHART, PaneInput, speed_samples
+from groundstation.ui.map.plan.copies import PlanCopies
+from groundstation.ui.terminal.key_parser import KeyRepeat
+from groundstation.ui.widgets.chart import ChartValue
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.drive import SpeedRequest, SpeedView
+
+BORDERS = 2
+"""Rows of the border of a panel."""
+
+SLOW = 0.5
+"""s between updates of slow rows. Each update changes all their lines, which is expensive over SSH."""
+
+
+class DriveScreen(ConsoleScreen):
+    """The instruments of one display state."""
+
+    CSS_PATH = "screen.tcss"
+    ROWS = INSTRUMENTS
+
+    def __init__(self, context: ScreenContext) -> None:
+        super().__init__(context)
+        self._slow_at = -SLOW
+        self._too_small_text = ""
+        self._strip = DrivingStrip(StripValue.from_state(self._state), id="strip")
+        self._plans = PlanCopies()
+        self._panes = (
+            PaneFrame(0, self._state, self._plans, id="pane"),
+            PaneFrame(SECOND, self._state, self._plans, id="pane2"),
+        )
+        self._chart = SPEED_CHART(ChartValue(), id="speeds")
+        self._views: dict[type[View], View] = {}
+        # Before the first style update, which would have to be made again.
+        self.add_class(*(name for name, applies in _conditions(self._state).items() if applies), update=False)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """What is shown."""
+        return self._state.snapshot
+
+    def compose(self) -> ComposeResult:
+        """Lay out the places of INSTRUMENTS; drive.tcss sets their sizes."""
+        self._choose_layout(self.app.size)  # before there are widgets, which need no second style then
+        with Vertical(id="console"):
+            yield from self.build_place("top")
+            with Horizontal(id="body"):
+                with Vertical(id="left"):
+                    yield self._panes[0]
+                    yield from self.build_place("left")
+                yield self._panes[1]
+                with Vertical(id="instruments"):
+                    with Horizontal(id="motion") as motion:
+                        motion.border_title = "motion"
+                        yield from self.build_place("motion")
+                    yield from self.build_place("heading")
+                    with Vertical(id="drive") as drive:
+                        drive.border_title = "drive"
+                        yield from self.build_place("drive")
+                    yield self._chart
+                with Vertical(id="readings"):
+                    yield from self.build_place("readings")
+            yield from self.build_place("bottom")
+        yield self._strip
+        yield Static(id="too-small")
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Show what fits: a layout of the console, the driving strip, or the size that is needed."""
+        self._choose_layout(self.size)
+        self._show_small()
+
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Show what has changed while another screen was on top."""
+        if self.is_mounted:
+            self.show_state(self._state)
+
+    def _choose_layout(self, size: Size) -> None:
+        """Set the classes of a size: at once, because each update matches all style rules with all widgets."""
+        chosen = layout_classes(size)
+        too_small = is_smaller(size, MIN_STRIP_SIZE)
+        small = {"-too-small": too_small, "-strip": is_smaller(size, CONSOLE_SIZE) and not too_small}
+        self.update_classes({name: name in chosen for name in CLASSES} | small)
+
+    @property
+    def too_small(self) -> bool:
+        """Not even the driving strip fits."""
+        return is_smaller(self.size, MIN_STRIP_SIZE)
+
+    @property
+    def _small(self) -> bool:
+        return is_smaller(self.size, CONSOLE_SIZE)
+
+    def _show_small(self) -> None:
+        if self.too_small:
+            self._show_too_small()
+        elif self._small:
+            self._strip.show(StripValue.from_state(self._state))
+
+    def _show_too_small(self) -> None:
+        width, height = self.size
+        text = (
+            f"This terminal has {width} x {height} characters.\n"
+            f"Driving needs {MIN_STRIP_SIZE[0]} x {MIN_STRIP_SIZE[1]}.\n\n"
+            f"{format_arming(self.snapshot.vehicle)}\n\n"
+            "Keys neither drive nor arm now;\nstop, disarm and emergency stop work."
+        )
+        if text != self._too_small_text:
+            self._too_small_text = text
+            self.query_one("#too-small", Static).update(text)
+
+    def show_body(self, now: DisplayState) -> None:
+        """Show what depends on the size, the vehicle and the alerts."""
+        self._show_small()
+        self.update_classes(_conditions(now))
+
+    # ---- panes ----
+
+    @property
+    def actions(self) -> dict[str, Callable[[], None]]:
+        """Id of an action -> what it does."""
+        return {
+            "view.pane": self._show_next_pane,
+            "view.closer": lambda: self._panes[0].zoom(CLOSER),
+            "view.wider": lambda: self._panes[0].zoom(WIDER),
+        }
+
+    def requests(self) -> tuple[ViewRequest, ...]:
+        """Return the views of what is shown."""
+        if self._small or self.snapshot.vehicle is None:
+            return ()
+        wanted = [request for pane in self._shown_panes for request in pane.requests]
+        chart = [SpeedRequest()] if self.has_class("-chart") else []
+        return tuple(dict.fromkeys([*wanted, *chart]))
+
+    def show_view(self, view: View) -> None:
+        """Show what the station sent for a pane or the chart."""
+        self._plans.show_view(view)
+        first = type(view) not in self._views
+        self._views[type(view)] = view
+        if isinstance(view, SpeedView):
+            self._chart.show(speed_samples(PaneInput(self._state, self._views)))
+        if first:  # else it waits for the next update of the pane
+            for pane in self._shown_panes:
+                pane.show_view(self._views)
+
+    @property
+    def _shown_panes(self) -> tuple[PaneFrame, ...]:
+        return self._panes if self.has_class("-large") else self._panes[:1]
+
+    def _show_next_pane(self) -> None:
+        for pane in self._panes:
+            pane.turn_on()
+        self._show_panes()
+
+    def _show_panes(self) -> None:
+        for pane in self._shown_panes:
+            pane.show(self._state, self._views)
+        self._panes[0].set_hint(self._state.key("view.pane"))
+
+    # ---- instruments ----
+
+    def show_rows(self) -> None:
+        """Show the state in the instruments of this layout, in slow ones less often."""
+        due = self._is_slow_due(self.snapshot)
+        for row in INSTRUMENTS:
+            shown = not row.layout or self.has_class(row.layout)
+            if shown and (due or not row.slow or (row.urgent is not None and row.urgent(self._state))):
+                self.show_row(row)
+        if due:
+            self._fit_stops()
+        if self.snapshot.vehicle is not None and not self._small:
+            self._show_panes()
+
+    def _fit_stops(self) -> None:
+        """Give the panel of the stop bounds no more rows than it has lines."""
+        panel = self._built["stops"]
+        most = Scalar.from_number((panel.wanted if isinstance(panel, StopsPanel) else 0) + BORDERS)
+        if panel.styles.max_height != most:
+            panel.styles.max_height = most
+
+    def _is_slow_due(self, snapshot: Snapshot) -> bool:
+        if snapshot.vehicle is None or 0 <= snapshot.uptime - self._slow_at < SLOW:
+            return False
+        self._slow_at = snapshot.uptime
+        return True
+
+    def light_keycaps(self, pressed: frozenset[str]) -> None:
+        """Light the caps of keys that are down, without waiting for the next display state."""
+        self._state = replace(self._state, pressed=pressed)
+        for row in INSTRUMENTS:
+            if row.id == "keycaps":
+                self.show_row(row)
+
+    def perform_key(self, event: events.Key) -> bool:
+        """Handle actions of the app; keys that drive, stop or command were sent by the input thread."""
+        if isinstance(event, KeyRepeat):
+            return False
+        action = self.context.keymap.get_action(event.key)
+        if action is not None and action.intent is None:
+            self.context.perform(action)
+            return True
+        if action is None and event.key == "enter" and self.snapshot.vehicle is None:
+            self.context.send(StartSimulator())
+            return True
+        return False
+
+
+def _conditions(now: DisplayState) -> dict[str, bool]:
+    """Return the style classes that depend on the state, and whether they apply."""
+    vehicle = now.snapshot.vehicle
+    no_legs = vehicle is None or vehicle.mission is None or not vehicle.mission.legs
+    return {"-waiting": vehicle is None, "-no-legs": no_legs, "-alert": bool(active_alerts(now))}
+
+
+def format_arming(vehicle: VehicleView | None) -> str:
+    """Return what a driver must know in any case: name, mode, armed or not, emergency stop, silence."""
+    if vehicle is None:
+        return "no vehicle yet"
+    parts = [vehicle.name, vehicle.mode, "ARMED" if vehicle.armed else "DISARMED"]
+    if vehicle.emergency_stop:
+        parts.append("EMERGENCY STOP")
+    if not vehicle.alive:
+        parts.append("no heartbeat")
+    return " · ".join(parts)

@@ -1,0 +1,1 @@
+"""Drawing of the map: scene, layers, ground, window."""

@@ -1,0 +1,1 @@
+"""Plans as they are edited on the Map screen: rows, fields, commands, checks, files."""

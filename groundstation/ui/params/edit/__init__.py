@@ -1,0 +1,1 @@
+"""Editing of parameters: values being typed, pending changes, checks, files."""

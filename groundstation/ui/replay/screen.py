@@ -1,0 +1,228 @@
+"""Replay screen: the timeline and the events of a log, the map and the drive of its moment, and the keys that move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from textual import events
+from textual.containers import Horizontal, Vertical
+from textual.widget import Widget
+
+from groundstation.intents import replay as r
+from groundstation.intents.union import AnyIntent
+from groundstation.ui.base.list_keys import rows_to_move
+from groundstation.ui.base.local_files import list_logs
+from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.display.display_state import DisplayState, ScreenKey
+from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
+from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
+from groundstation.ui.drive.panes import SPEED_CHART, PaneInput, speed_samples
+from groundstation.ui.files.export import ChosenLog, FileExport
+from groundstation.ui.files.exports import Exports
+from groundstation.ui.replay.events import events_value, logs_value
+from groundstation.ui.replay.model import ReplayModel, part_text, short_summary, summary
+from groundstation.ui.replay.timeline import AXIS, ReplayTimeline, TimelineValue
+from groundstation.ui.terminal.key_parser import KeyRepeat
+from groundstation.ui.widgets.chart import ChartValue
+from groundstation.ui.widgets.line_field import FieldUse
+from groundstation.ui.widgets.row_table import RowTable
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, TrackView
+from groundstation.views.replay import ReplayView
+
+TLOG = ".tlog"
+WIDE = 120
+
+
+class ReplayScreen(ConsoleScreen):
+    """Track, drive and events over the timeline; without a log the logs that are here."""
+
+    CSS_PATH = "screen.tcss"
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - Textual declares it so
+    KEYS = (
+        ScreenKey("p", "Play", "Play, or pause; SPACE pauses on every screen"),
+        ScreenKey("right", "1 s", "1 s on, with shift 10 s; left: back"),
+        ScreenKey("n", "Event", "Next event; N: the one before; up, down and ENTER choose one"),
+        ScreenKey("greater_than_sign", "Faster", "Play faster, up to 32 times; < slower, down to a quarter"),
+        ScreenKey("slash", "Search", "Next event with a text, next message of a name, or a condition: batt<11.5"),
+        ScreenKey("colon", "Time", "Go to 12:04:10 by the clock of the log, +30, -30, or 1:23 from its start"),
+        ScreenKey("full_stop", "Message", "One message on; comma: back"),
+        ScreenKey("r", "Backwards", "Play in the other direction"),
+        ScreenKey("m", "Mark", "Mark A, then B"),
+        ScreenKey("l", "Loop", "Play from A to B again and again"),
+        ScreenKey("E", "Export", "Write this log, or its part from A to B, for other programs; x stops it"),
+    )
+
+    def __init__(self, context: ScreenContext) -> None:
+        super().__init__(context)
+        self._model = context.keep(ReplayModel)
+        exports = context.keep(Exports, context.dialect)
+        self._export = FileExport(self, self._chosen_log, context.folder, exports, context.numbers.take)
+        self._track = TrackMap(TrackValue(), id="track")
+        self._bars = StickBars((), id="bars")
+        self._chart = SPEED_CHART(ChartValue(), id="chart")
+        self._events = RowTable(events_value(self._model), id="events")
+        self._timeline = ReplayTimeline(TimelineValue(), id="timeline")
+        self._logs = RowTable(logs_value(()), id="logs")
+        self._files = [each for each in list_logs(context.folder) if each.name.endswith(TLOG)]
+        self._cursor = 0
+        self._views: dict[type[View], View] = {}
+
+    # ---- what all screens define ----
+
+    def compose_body(self) -> Iterable[Widget]:
+        """Lay out what was then over the timeline."""
+        track = self.build_panel(self._track, "track then")
+        bars = self.build_panel(self._bars, "drive then")
+        middle = Vertical(bars, self.build_panel(self._chart, "speed then"), id="middle")
+        yield Horizontal(track, middle, self.build_panel(self._events, "events"), id="then")
+        yield self.build_panel(self._timeline, "timeline")
+        yield self.build_panel(self._logs, "logs here")
+
+    def on_mount(self) -> None:
+        """List the logs, and mark the panel that the arrows move in."""
+        self._events.add_class("-chosen")
+        self.set_class(not self._open, "-empty")
+        self._logs.show(logs_value(self._files, self._cursor))
+
+    @property
+    def _open(self) -> bool:
+        return self._state.snapshot.replay is not None
+
+    def requests(self) -> tuple[ViewRequest, ...]:
+        """Return the requests for the log and for what was then."""
+        if not self._open:
+            return ()
+        request = self._model.request(self._timeline.size.width - AXIS, self._events.size.height)
+        return request, TrackRequest(), SpeedRequest()
+
+    def show_view(self, view: View) -> None:
+        """Show a view."""
+        self._views[type(view)] = view
+        if isinstance(view, ReplayView):
+            self.say(self._model.show_view(view))
+        self.show_body(self._state)
+
+    def show_body(self, now: DisplayState) -> None:
+        """Show the log and its moment, or the logs that are here."""
+        self.set_class(not self._open, "-empty")
+        given = PaneInput(now, self._views)
+        track = given.view(TrackView)
+        points = track.points if track is not None else ()
+        self._track.show(TrackValue.from_vehicle(now.snapshot.vehicle, points, ascii=now.ascii))
+        self._bars.show(build_bars(now.snapshot))
+        if given.view(SpeedView) is not None:
+            self._chart.show(speed_samples(given))
+        self._events.show(events_value(self._model))
+        self._timeline.show(TimelineValue(self._model.view, now.ascii))
+        self._export.tell_end()
+        view = self._model.view
+        if view is not None:
+            self._timeline.border_subtitle = summary(view) if self.size.width >= WIDE else short_summary(view)
+            self._events.border_subtitle = f"{view.total} · / searches"
+
+    @property
+    def advice(self) -> str:
+        """Return what happened at this moment."""
+        return (
+            self._export.progress or self._model.advice
+            if self._open
+            else "ENTER shows a log in all screens, until Ctrl-Q; nothing is sent meanwhile"
+        )
+
+    # ---- keys ----
+
+    def perform_key(self, event: events.Key) -> bool:
+        """Handle the keys of this screen."""
+        if not self._open:
+            return self._choose_log(event)
+        intent = _INTENTS.get(event.key)
+        if event.key == "escape" and self._cancel():
+            return True
+        if rows := rows_to_move(event.key, self._events.size.height):
+            self._model.move_cursor(rows)
+        elif intent is not None:
+            self._send(intent)
+        elif event.key in _ACTIONS:
+            if not isinstance(event, KeyRepeat):
+                _ACTIONS[event.key](self)
+        else:
+            return False
+        return True
+
+    def _choose_log(self, event: events.Key) -> bool:
+        if rows := rows_to_move(event.key, self._logs.size.height):
+            self._cursor = max(0, min(self._cursor + rows, len(self._files) - 1))
+            self._logs.show(logs_value(self._files, self._cursor))
+        elif event.key not in ("enter", "o"):
+            return False
+        elif not isinstance(event, KeyRepeat):
+            self.open_log(self.context.folder / self._files[self._cursor].name if self._files else None)
+        return True
+
+    def _send(self, intent: AnyIntent) -> None:
+        self._model.cursor = None
+        self.context.send(intent)
+
+    def _cancel(self) -> bool:
+        """End a search, or the choice of an event."""
+        view = self._model.view
+        searching = view is not None and bool(view.searching)
+        if not searching and self._model.cursor is None:
+            return False
+        self._send(r.ReplaySearch(""))
+        return True
+
+    def _play(self) -> None:
+        replay = self._state.snapshot.replay
+        self._send(r.ReplayPlay(replay is not None and not replay.playing))
+
+    def _show_event(self) -> None:
+        if (chosen := self._model.chosen) is not None:
+            self._send(r.ReplayShowEvent(chosen))
+
+    def _ask_search(self) -> None:
+        use = FieldUse(self._search)
+        example = "text, HOME_POSITION, MODE==AUTO, batt<11.5, VFR_HUD.groundspeed>2"
+        self.field.open(use, text=self._model.search, placeholder=example)
+
+    def _search(self, text: str) -> None:
+        self._model.search = text
+        self._send(r.ReplaySearch(text))
+
+    def _ask_time(self) -> None:
+        use = FieldUse(lambda text: self._send(r.ReplayGoTo(text)) if text.strip() else None)
+        self.field.open(use, placeholder="12:04:10 · +30 · -30 · 1:23")
+
+    def _chosen_log(self) -> ChosenLog | str:
+        view = self._model.view
+        return ChosenLog(Path(view.path), part_text(view)) if view is not None else "the log is not read yet"
+
+
+_INTENTS: dict[str, AnyIntent] = {
+    "left": r.ReplayMove(-1.0),
+    "right": r.ReplayMove(1.0),
+    "shift+left": r.ReplayMove(-10.0),
+    "shift+right": r.ReplayMove(10.0),
+    "comma": r.ReplayStep(-1),
+    "full_stop": r.ReplayStep(1),
+    "n": r.ReplayNextEvent(1),
+    "N": r.ReplayNextEvent(-1),
+    "less_than_sign": r.ReplaySpeed(-1),
+    "greater_than_sign": r.ReplaySpeed(1),
+    "r": r.ReplayReverse(),
+    "m": r.ReplayMark(),
+    "l": r.ReplayLoop(),
+}
+"""Key -> its intent."""
+
+_ACTIONS: dict[str, Callable[[ReplayScreen], object]] = {
+    "p": ReplayScreen._play,
+    "enter": ReplayScreen._show_event,
+    "slash": ReplayScreen._ask_search,
+    "colon": ReplayScreen._ask_time,
+    "E": lambda screen: screen._export.ask(),
+    "x": lambda screen: screen._export.cancel(),
+}
+"""Key -> what it does; ReplayScreen.KEYS has their names."""

@@ -1,0 +1,1 @@
+"""Calibration of a vehicle's sensors."""

@@ -1,0 +1,1 @@
+"""Health of a vehicle: sensors, estimates, and reasons why it does not arm."""

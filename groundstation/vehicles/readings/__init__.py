@@ -1,0 +1,1 @@
+"""Readings that are computed from a vehicle's messages: latency, track, outputs, speed."""

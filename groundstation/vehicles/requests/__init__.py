@@ -1,0 +1,1 @@
+"""Requests to the services of a vehicle: commands, parameters, plans, files, logs, messages."""

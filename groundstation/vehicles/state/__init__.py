@@ -1,0 +1,1 @@
+"""State of a vehicle, as its messages report it."""

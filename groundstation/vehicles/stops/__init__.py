@@ -1,0 +1,1 @@
+"""What stops a vehicle, and when: its settings and what they mean."""

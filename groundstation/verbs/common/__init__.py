@@ -1,0 +1,1 @@
+"""Parts that all verbs share: arguments, output, exit codes, files on this machine."""

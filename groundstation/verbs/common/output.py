@@ -1,0 +1,93 @@
+"""What a verb prints: data to stdout, as aligned text or JSON lines; progress and errors to stderr."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from typing import Any
+
+from dialects.messages import printable
+from groundstation.vehicles.requests.requests import RequestReport
+
+PROGRESS_PERIOD = 0.1
+"""s between two progress lines."""
+
+
+class Output:
+    """Prints for one verb. `verb` names it in JSON, e.g. "param get"."""
+
+    def __init__(self, verb: str, *, as_json: bool, quiet: bool) -> None:
+        self.verb = verb
+        self.as_json = as_json
+        self._quiet = quiet
+        self._began = time.monotonic()
+        self._shows_progress = sys.stderr.isatty() and not quiet
+        self._progress_due = 0.0
+        self._progress_shown = False
+
+    def line(self, text: str) -> None:
+        """Print one or more lines of data, unless --json. Escape sequences in texts of a vehicle become harmless."""
+        if not self.as_json:
+            self._clear_progress()
+            sys.stdout.writelines(f"{printable(line)}\n" for line in text.split("\n"))
+
+    def record(self, **fields: Any) -> None:
+        """Print an object with --json."""
+        if self.as_json:
+            self._clear_progress()
+            sys.stdout.write(json.dumps(_finite(fields)) + "\n")
+
+    def flush(self) -> None:
+        """Pass on what was printed: somebody watches."""
+        sys.stdout.flush()
+
+    def result(self, ok: bool, vehicle: int | None, **fields: Any) -> None:
+        """Print how the verb ended, with --json."""
+        took = round(time.monotonic() - self._began, 3)
+        self.record(ok=ok, verb=self.verb, vehicle=vehicle, **fields, took=took)
+
+    def note(self, text: str) -> None:
+        """Print something worth knowing to stderr, unless --quiet."""
+        if not self._quiet:
+            self.error(text)
+
+    def error(self, text: str) -> None:
+        """Print an error to stderr, one line."""
+        self._clear_progress()
+        sys.stdout.flush()
+        sys.stderr.write(f"groundstation: {printable(' '.join(text.split()))}\n")
+        sys.stderr.flush()
+
+    def progress(self, report: RequestReport) -> None:
+        """Show how a request stands, on a terminal only."""
+        now = time.monotonic()
+        if not self._shows_progress or report.state.ended or now < self._progress_due:
+            return
+        self._progress_due = now + PROGRESS_PERIOD
+        self.count(report.what, report.done, report.total)
+
+    def count(self, what: str, done: int, total: int | None) -> None:
+        """Show how many of a total are done, on a terminal only."""
+        if not self._shows_progress:
+            return
+        of = f"/{total}" if total is not None else ""
+        sys.stderr.write(f"\r\x1b[K{printable(what)} {done}{of}")
+        sys.stderr.flush()
+        self._progress_shown = True
+
+    def _clear_progress(self) -> None:
+        if self._progress_shown:
+            sys.stderr.write("\r\x1b[K")
+            sys.stderr.flush()
+            self._progress_shown = False
+
+
+def _finite(value: Any) -> Any:
+    """Return the value as JSON can hold it: numbers that are not finite become null."""
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,1 @@
+"""Verbs that arm, drive and stop a vehicle, change its mode or restart it."""

@@ -1,0 +1,127 @@
+"""`groundstation arm`: the arming of the station (station/driving/arming.py), confirmed by the heartbeat.
+
+What the vehicle takes to be armed is a live session: neutral demands and proofs go out while the verb runs. When it
+ends nobody drives, and the failsafes of the vehicle act. A verb that is interrupted before the vehicle has confirmed
+disarms it, because the vehicle may still act on the command.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+
+import msgspec
+
+from dialects import messages as m
+from dialects.enums import Command, Result
+from groundstation.station.driving.arming import ArmSequence, ArmStep
+from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
+from groundstation.vehicles.requests.requests import RequestBook, RequestReport, RequestState
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.control.stop_jobs import refusal_words
+from groundstation.verbs.control.stops import run_job
+from groundstation.verbs.session.kinds import need_driven
+from groundstation.verbs.session.reports import finish
+from groundstation.verbs.session.session import VerbSession
+from link.services.command.client import CommandClient, CommandOutcome
+
+ASK_PERIOD = 1.0
+"""s between two questions whether the pre-arm checks are passed."""
+ANSWER_WITHIN = 0.3
+"""s for SYS_STATUS behind the acknowledgement of its request; a vehicle without pre-arm checks never reports them."""
+
+
+class ArmJob(msgspec.Struct):
+    """The sequence as a request."""
+
+    number: int
+    sequence: ArmSequence
+
+    def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
+        """Take the next step; the last one is that the heartbeat reports armed."""
+        self.sequence.tick(client, now)
+        if self.sequence.step is not ArmStep.DONE:
+            return
+        if self.sequence.vehicle.armed:
+            book.accept(self.number)
+        elif self.sequence.failure is not None:
+            book.refuse(self.number, self.sequence.failure, now)
+            self.sequence.failure = None
+
+    def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:
+        """End with the first refusal."""
+        before = self.sequence.step
+        self.sequence.handle_outcome(outcome, client, now)
+        if before is ArmStep.DONE or self.sequence.step is not ArmStep.DONE:
+            return
+        mode = "MANUAL: " if outcome.command == Command.DO_SET_MODE else ""
+        if outcome.number is None:
+            book.fail(self.number, f"{mode}after all tries")
+        elif outcome.result is not Result.ACCEPTED:
+            book.refuse(self.number, f"{mode}{refusal_words(outcome)}", now)
+
+
+async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Arm; done when the heartbeat reports it."""
+    await session.need_only_vehicle(options.vehicle)
+    state = session.vehicle
+    if state.armed and not state.emergency_stop:
+        output.note(f"{state.name} is armed already")
+        output.result(True, state.system, armed=True, detail="armed already")
+        return ExitCode.DONE
+    report = await arm(session, options.wait, output)
+    if report.state is RequestState.ACCEPTED:
+        output.note(
+            f"{state.name} is armed; nobody drives it when this verb ends, and its failsafe for that may stop it, "
+            "disarm it or, in a mode that drives by itself, do what its settings say"
+        )
+    return finish(session, report, output, armed=state.armed)
+
+
+async def arm(session: VerbSession, wait: float, output: Output) -> RequestReport:
+    """Arm a vehicle that is disarmed, once it is ready, `wait` s after the start at most. Raises VerbError."""
+    contact, state = session.contact, session.vehicle
+    need_driven(session.vehicle)
+    if state.emergency_stop:
+        raise VerbError(
+            ExitCode.REFUSED, f"{state.name}: emergency stop; `groundstation estop --clear` releases it first"
+        )
+    await _wait_until_ready(session, wait, output)
+    contact.operator.demanding = contact.other_driver is None
+    try:
+        report = await run_job(
+            session, "arm", lambda number, now: ArmJob(number, ArmSequence.start(contact.state, now))
+        )
+    except asyncio.CancelledError:
+        command = Command.COMPONENT_ARM_DISARM
+        contact.client.send(command, 0, target_system=state.system, target_component=state.component, now=session.now)
+        session.flush()
+        raise
+    finally:
+        contact.operator.demanding = False
+    await session.wait_for(lambda: contact.operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
+    return report
+
+
+async def _wait_until_ready(session: VerbSession, wait: float, output: Output) -> None:
+    """Wait until the pre-arm checks are passed, `wait` s after the start at most; then arming is refused with why."""
+    commands = session.services.commands
+    until = session.began + wait
+    told = False
+    while True:
+        await session.request(
+            lambda number, now: commands.send(
+                number, Command.REQUEST_MESSAGE, (float(m.SysStatus.id),), "SYS_STATUS", now
+            )
+        )
+        # The message may follow the acknowledgement of its request.
+        await session.wait_for(lambda: session.vehicle.build_view(session.now).prearm is not None, ANSWER_WITHIN)
+        view = session.vehicle.build_view(session.now)
+        if view.prearm is not False or session.now >= until:
+            return
+        if not told:
+            output.note(f"{session.vehicle.name} is not ready to arm: {view.prearm_reason or 'waiting'}")
+            told = True
+        left = until - session.now
+        await session.wait_for(lambda: session.vehicle.ready_at is not None, max(0.0, min(ASK_PERIOD, left)))

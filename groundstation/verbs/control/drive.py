@@ -1,0 +1,167 @@
+"""`groundstation drive`: drive by hand without a screen, for a time or as a script of keys says.
+
+The demands are those of the screen: neutral first, 20 Hz, in the axes of the vehicle, inside the proof of the verb's
+session to our vehicle. They end with neutral however the verb ends; when its process is killed or stands still, its
+watchdog sends neutral (demand_guard.py).
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import os
+
+from dialects.axes import NEUTRAL, Axes
+from groundstation.config.effective import build_keymap, load_config, merge
+from groundstation.input.sticks import Sticks
+from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
+from groundstation.intents.base import Intent
+from groundstation.intents.driving import EmergencyStop
+from groundstation.intents.vehicle import Disarm, SetMode
+from groundstation.station.driving.emergency import EmergencyLock
+from groundstation.vehicles.requests.requests import RequestState
+from groundstation.verbs.common.arguments import LONGEST_HOLD, finite
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.local_file import read_text
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.control.arm import arm
+from groundstation.verbs.control.driving import (
+    DISARM_WITHIN,
+    disarm_vehicle,
+    drive_fault,
+    leave,
+    need_accepted,
+    need_control,
+    prepare,
+    stood_still,
+)
+from groundstation.verbs.control.key_script import KeyScript, SteadyDemand, parse_script
+from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
+from groundstation.verbs.control.stops import run_job
+from groundstation.verbs.session.kinds import need_driven
+from groundstation.verbs.session.reports import finish
+from groundstation.verbs.session.session import VerbSession
+
+LOOK_PERIOD = 0.01
+"""s between two looks whether a line of the script is due, and whether the vehicle still takes demands."""
+
+
+def percent(text: str) -> float:
+    """Parse a demand. Raises ArgumentTypeError."""
+    value = finite(text.removesuffix("%"))
+    if abs(value) > 100:
+        raise argparse.ArgumentTypeError(f"{text!r} is not from -100 to 100 %")
+    return value
+
+
+def limit(text: str) -> float:
+    """Parse the limit of the keys. Raises ArgumentTypeError."""
+    value = finite(text)
+    if not LOWEST_LIMIT <= value <= HIGHEST_LIMIT:
+        raise argparse.ArgumentTypeError(f"{text!r} is not from {LOWEST_LIMIT} to {HIGHEST_LIMIT:g}")
+    return value
+
+
+def check(options: argparse.Namespace) -> None:
+    """Read the script, or what to demand and how long. Raises VerbError, FileFormatError, ConfigError."""
+    steady = [options.throttle, options.steering, options.seconds]
+    if options.script is not None:
+        if any(each is not None for each in steady):
+            raise VerbError(ExitCode.USAGE, "--script goes without --throttle, --steering and --for")
+        options.course = _load(options)
+        return
+    if options.seconds is None or not (options.throttle or options.steering):
+        raise VerbError(ExitCode.USAGE, "write --throttle PERCENT --for S, --steering likewise, or --script FILE")
+    if options.seconds > LONGEST_HOLD:
+        raise VerbError(ExitCode.USAGE, f"--for: {LONGEST_HOLD:g} s at most; --script drives longer")
+    axes = Axes((options.throttle or 0.0) / 100, (options.steering or 0.0) / 100)
+    options.course = SteadyDemand(axes, options.seconds)
+
+
+def _load(options: argparse.Namespace) -> KeyScript:
+    settings = merge(load_config(options.config, os.environ), os.environ, {}).settings
+    keymap = build_keymap(settings)
+    lines = parse_script(read_text(options.script), options.script, keymap)
+    return KeyScript(lines, keymap, Sticks(Style.HOLD, options.speed or settings.speed))
+
+
+async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Drive; done when the time is over or the script has ended, and neutral was sent."""
+    await session.need_only_vehicle(options.vehicle)
+    state, armed_here = session.vehicle, False
+    need_driven(state)
+    need_control(session)
+    if not state.armed:
+        if not options.arm:
+            raise VerbError(ExitCode.REFUSED, f"{state.name} is disarmed: `drive --arm` arms it, and disarms it again")
+        armed = await arm(session, options.wait, output)
+        if armed.state is not RequestState.ACCEPTED:
+            return finish(session, armed, output)
+        armed_here = not options.stay_armed
+    try:
+        driven = await _drive(session, options.course)
+    finally:
+        report = await leave(session, disarm=armed_here)
+    if report is not None and report.state is not RequestState.ACCEPTED:
+        return finish(session, report, output)
+    output.note(f"{state.name} was driven for {driven:.1f} s, then neutral{', and is disarmed' if armed_here else ''}")
+    output.result(True, state.system, seconds=round(driven, 3), armed=state.armed)
+    return ExitCode.DONE
+
+
+async def _drive(session: VerbSession, course: KeyScript | SteadyDemand) -> float:
+    """Drive, and return for how many s. Raises VerbError when the vehicle takes no demands any more."""
+    await prepare(session)
+    operator = session.contact.operator
+
+    def demand(now: float) -> Axes:
+        return NEUTRAL if stood_still(session, now) is not None else course.axes(now)
+
+    operator.record_input(session.now)
+    course.begin(began := session.now)
+    operator.demand = demand
+    while not course.finished:
+        await asyncio.sleep(max(0.0, min(LOOK_PERIOD, course.due - session.now)))
+        _check(session, course.axes(session.now), began)
+        while (intents := course.play(session.vehicle.armed, session.now)) is not None:
+            operator.record_input(session.now)
+            for intent in intents:
+                await _carry_out(session, intent)
+    return session.now - began
+
+
+def _check(session: VerbSession, axes: Axes, began: float) -> None:
+    """Raise VerbError if this program stood still, or if a demand is not neutral and the vehicle does not take it."""
+    state, now = session.vehicle, session.now
+    stood = stood_still(session, now)
+    if stood is not None:
+        raise VerbError(ExitCode.BROKEN, f"this program stood still for {stood:.1f} s: the demand has ended")
+    if axes.neutral:
+        return
+    after = f"after {now - began:.1f} s"
+    if not state.monitor.is_alive(now):
+        raise VerbError(ExitCode.NO_ANSWER, f"{state.name}: link lost {after}; neutral")
+    need_control(session)
+    fault = drive_fault(session)
+    if fault is not None:
+        raise VerbError(ExitCode.REFUSED, f"{state.name} {fault} {after}; neutral")
+
+
+async def _carry_out(session: VerbSession, intent: Intent) -> None:
+    """Do what a key requests of the vehicle; the sticks are neutral meanwhile. Raises VerbError."""
+    contact, until = session.contact, session.now + DISARM_WITHIN
+    if isinstance(intent, SetMode):
+        modes, mode = session.services.modes, intent.mode
+        report = await session.request(lambda number, now: modes.set(number, mode, now))
+    elif isinstance(intent, Disarm):
+        report = await disarm_vehicle(session)
+    else:
+        assert isinstance(intent, EmergencyStop)
+        report = await run_job(
+            session,
+            "emergency stop",
+            lambda number, now: EmergencyJob(
+                number, EmergencyLock(contact.state, now), StopTimes(now, session.sure_at, until)
+            ),
+        )
+    need_accepted(report, session)

@@ -1,0 +1,102 @@
+"""Driving by a verb: control and mode before it, what ends it, and the final neutrals and disarming after it."""
+
+from __future__ import annotations
+
+import asyncio
+
+from dialects.axes import NEUTRAL
+from dialects.enums import Autopilot
+from dialects.kinds import MANUAL
+from dialects.modes import Mode
+from groundstation.station.driving.operator import NEUTRAL_LEAD
+from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
+from groundstation.vehicles.requests.requests import RequestReport, RequestState
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.control.control import ask_for_control
+from groundstation.verbs.control.stop_jobs import StopTimes, disarm_job
+from groundstation.verbs.control.stops import run_job
+from groundstation.verbs.session.kinds import need_driven
+from groundstation.verbs.session.session import TOLD_WITHIN, VerbSession
+
+DISARM_WITHIN = 10.0
+"""s for which the disarming at the end is repeated."""
+FRAME_PARAMETER = "CA_AIRFRAME"
+"""What decides on the axes of PX4."""
+
+
+async def prepare(session: VerbSession, *, leave_hold: bool = True) -> None:
+    """Take control, change HOLD to MANUAL unless told not to, and show neutral. Raises VerbError."""
+    contact, state = session.contact, session.vehicle
+    need_driven(session.vehicle)
+    if state.drives_itself:
+        raise VerbError(ExitCode.REFUSED, f"{state.name} drives itself ({state.mode}); `groundstation stop` stops it")
+    if state.has_rover_dialect and not state.driver:
+        need_accepted(await ask_for_control(session), session)
+    if leave_hold and state.mode in state.model.standing:
+        modes = session.services.modes
+        need_accepted(await session.request(lambda number, now: modes.set(number, MANUAL, now)), session)
+    await learn_frame(session)
+    contact.operator.demanding = True
+    if state.has_rover_dialect:
+        await session.wait_for(lambda: contact.in_control, TOLD_WITHIN)
+    await asyncio.sleep(NEUTRAL_LEAD)
+    need_control(session)
+
+
+async def learn_frame(session: VerbSession) -> None:
+    """Find out which axes turn the nose: in reverse they differ by how the vehicle steers."""
+    state, params = session.vehicle, session.services.params
+    if state.drive_info is not None and state.mode != Mode.ACRO.name:
+        session.contact.operator.frame = int(state.drive_info.drive_type)
+    if state.autopilot == Autopilot.PX4:
+        await session.request(lambda number, now: params.read(number, FRAME_PARAMETER, now))
+        known = params.client.params.get(FRAME_PARAMETER)
+        session.contact.operator.frame = None if known is None else int(known.value)
+
+
+def stood_still(session: VerbSession, now: float) -> float | None:
+    """Return for how many s this program stood still, so that its demand has ended, or None."""
+    return session.core.guard.stood_still(now) if session.core.guard else None
+
+
+def need_control(session: VerbSession) -> None:
+    """Raise VerbError if another program is in control, or this one may not drive."""
+    contact = session.contact
+    if contact.unproven:
+        raise VerbError(ExitCode.REFUSED, f"{contact.state.name}: {contact.unproven}")
+    if contact.other_driver is not None and not contact.state.control.silent:
+        text = f"GCS {contact.other_driver} is in control of {contact.state.name}"
+        raise VerbError(ExitCode.NOT_IN_CONTROL, f"{text}; `groundstation control request` asks for it")
+
+
+def drive_fault(session: VerbSession) -> str | None:
+    """Return why the vehicle takes no demands now, or None."""
+    state = session.vehicle
+    if state.model.refusal:
+        return f"is not driven: {state.model.refusal}"
+    if state.emergency_stop:
+        return "is in the emergency stop"
+    if not state.armed:
+        return "is disarmed"
+    return None if state.mode in state.model.keys else f"takes no demands in {state.mode}"
+
+
+def need_accepted(report: RequestReport, session: VerbSession) -> None:
+    """Raise VerbError for a request that was not accepted."""
+    if report.state is not RequestState.ACCEPTED:
+        raise VerbError(code_of(report, session.contact.other_driver), f"{session.vehicle.name}: {report.text}")
+
+
+async def disarm_vehicle(session: VerbSession) -> RequestReport:
+    """Disarm, repeated until the heartbeat reports it."""
+    state, times = session.vehicle, StopTimes(session.now, session.sure_at, session.now + DISARM_WITHIN)
+    return await run_job(session, "disarm", lambda number, now: disarm_job(number, state, times))
+
+
+async def leave(session: VerbSession, *, disarm: bool) -> RequestReport | None:
+    """Send the final neutrals, then disarm; return how that ended."""
+    operator = session.contact.operator
+    operator.demand = lambda _: NEUTRAL
+    operator.demanding = False
+    await session.wait_for(lambda: operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
+    return await disarm_vehicle(session) if disarm and session.vehicle.armed else None

@@ -1,0 +1,114 @@
+"""`groundstation param`: get, set, store and reset the parameters of a vehicle."""
+
+from __future__ import annotations
+
+import argparse
+import fnmatch
+from collections.abc import Iterable, Sequence
+
+from groundstation.vehicles.requests.param_requests import param_type_name
+from groundstation.vehicles.requests.requests import RequestState
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.session.reports import finish
+from groundstation.verbs.session.session import VerbSession
+from link.services.param.client import Param
+from link.services.param.float32 import same_float32, value_text
+
+WILDCARDS = "*?["
+
+
+async def get(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Print parameters by name, or all that match a pattern."""
+    if options.patterns and not any(set(WILDCARDS) & set(pattern) for pattern in options.patterns):
+        return await _get_named(session, [_name(each) for each in options.patterns], output)
+    code = await fetch(session, output)
+    chosen = matching(session.services.params.client.params.values(), options.patterns)
+    for param in chosen:
+        _print(param, output)
+    if options.patterns and not chosen:
+        raise VerbError(ExitCode.DIFFERS, f"no parameter matches {' or '.join(options.patterns)}")
+    return code
+
+
+async def set_value(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Set one parameter; done when the vehicle reports the new value."""
+    await session.need_only_vehicle(options.vehicle)
+    name = _name(options.name)
+    report = await session.request(lambda number, now: session.services.params.set(number, name, options.value, now))
+    known = session.services.params.client.params.get(name)
+    if report.state is RequestState.ACCEPTED:
+        output.line(f"{name} {value_text(options.value)} ({report.detail})")
+    return finish(session, report, output, param_id=name, param_value=known.value if known else None)
+
+
+async def store(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Have the vehicle store all parameters."""
+    await session.need_only_vehicle(options.vehicle)
+    return finish(
+        session, await session.request(session.services.param_storage.store), output, "has stored its parameters"
+    )
+
+
+async def reset(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Have the vehicle reset all parameters to their defaults."""
+    if not options.yes:
+        raise VerbError(ExitCode.USAGE, "this resets ALL parameters of the vehicle; --yes does it")
+    await session.need_only_vehicle(options.vehicle)
+    return finish(
+        session, await session.request(session.services.param_storage.reset), output, "has reset its parameters"
+    )
+
+
+# ---- common parts ----
+
+
+async def _get_named(session: VerbSession, names: Sequence[str], output: Output) -> int:
+    codes: set[int] = set()
+    for name in names:
+        report = await session.request(lambda number, now, n=name: session.services.params.read(number, n, now))  # type: ignore[misc]
+        if report.state is RequestState.ACCEPTED:
+            _print(session.services.params.client.params[name], output)
+        else:
+            output.error(f"{session.vehicle.name}: {report.text}")
+        codes.add(code_of(report))
+    return codes.pop() if len(codes) == 1 else ExitCode.PARTLY
+
+
+async def fetch(session: VerbSession, output: Output) -> int:
+    """Fetch all parameters; return PARTLY if some are missing. Raises VerbError if there are none."""
+    report = await session.request(session.services.params.fetch)
+    if report.state is RequestState.ACCEPTED:
+        return ExitCode.DONE
+    text = f"{session.vehicle.name}: {report.text}"
+    if not session.services.params.client.params:
+        raise VerbError(code_of(report), text)
+    output.error(text)
+    return ExitCode.PARTLY
+
+
+def matching(params: Iterable[Param], patterns: Sequence[str]) -> list[Param]:
+    """Return the parameters whose name matches one of the patterns, by name; without patterns all."""
+    upper = [pattern.upper() for pattern in patterns] or ["*"]
+    chosen = [param for param in params if any(fnmatch.fnmatchcase(param.name.upper(), each) for each in upper)]
+    return sorted(chosen, key=lambda param: param.name)
+
+
+def _print(param: Param, output: Output) -> None:
+    default = "" if param.default is None else f"  # default {value_text(param.default)}"
+    if param.default is not None and same_float32(param.value, param.default):
+        default = ""
+    output.line(f"{param.name:<16} {value_text(param.value)}{default}")
+    output.record(
+        param_id=param.name, param_value=param.value, param_type=param_type_name(param.kind), default=param.default
+    )
+
+
+def _name(text: str) -> str:
+    """Return a name as vehicles write it: in capitals. Escaped bytes stay as they are."""
+    return text if "\\x" in text else text.upper()
+
+
+def count(number: int) -> str:
+    """Return a number of parameters as text."""
+    return "1 parameter" if number == 1 else f"{number} parameters"

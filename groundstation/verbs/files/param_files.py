@@ -1,0 +1,114 @@
+"""`groundstation param`: save, load and compare files of parameters.
+
+Apart from the other actions, which import no formats of files: `param set` takes about as long as its imports.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+from groundstation.formats.param_compare import compare
+from groundstation.formats.param_file import ParamFile, format_params, parse_params
+from groundstation.formats.param_form import ParamForm
+from groundstation.vehicles.requests.requests import RequestState
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.local_file import check_new_file, read_text, write_text
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.files.param import count, fetch, matching
+from groundstation.verbs.session.reports import finish
+from groundstation.verbs.session.session import VerbSession
+from link.services.param.client import Param
+from link.services.param.float32 import same_float32, value_text
+
+
+async def save(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Write parameters to a file."""
+    check_new_file(options.file, overwrite=options.yes)
+    await _fetch_whole(session, output)
+    params = matching(session.services.params.client.params.values(), options.patterns)
+    if options.changed:
+        params = _changed(params)
+    state = session.vehicle
+    text = format_params(params, ParamForm(options.format), vehicle=state.system, component=state.component)
+    write_text(options.file, text)
+    output.note(f"{count(len(params))} of {state.name} saved to {options.file}")
+    output.result(True, state.system, file=options.file, parameters=len(params))
+    return ExitCode.DONE
+
+
+async def diff(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Print where a file and the vehicle differ."""
+    file = _read(options.file)
+    await _fetch_whole(session, output)
+    differing, missing = _compare(file, session)
+    for name, wanted, param in differing:
+        output.line(f"{name:<16} {value_text(wanted):<12} here {value_text(param.value)}")
+        output.record(param_id=name, file=wanted, vehicle=param.value)
+    for name in missing:
+        output.line(f"{name:<16} not on the vehicle")
+        output.record(param_id=name, file=None, vehicle=None)
+    if not differing and not missing:
+        output.note(f"{options.file} and {session.vehicle.name} agree")
+    return ExitCode.DIFFERS if differing or missing else ExitCode.DONE
+
+
+async def load(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Set what differs from a file; stops at the first refusal."""
+    file = _read(options.file)
+    await session.need_only_vehicle(options.vehicle)
+    await _fetch_whole(session, output)
+    differing, missing = _compare(file, session)
+    if missing:
+        output.note(f"not on the vehicle: {', '.join(missing)}")
+    if options.dry_run:
+        for name, wanted, param in differing:
+            output.line(f"{name:<16} {value_text(param.value)} -> {value_text(wanted)}")
+            output.record(param_id=name, before=param.value, param_value=wanted)
+        return ExitCode.DIFFERS if differing or missing else ExitCode.DONE
+    return await _write(session, differing, missing, output)
+
+
+def only_prints(options: argparse.Namespace) -> bool:
+    """Return whether `load` changes nothing."""
+    return bool(options.dry_run)
+
+
+async def _write(
+    session: VerbSession, differing: Sequence[tuple[str, float, Param]], missing: Sequence[str], output: Output
+) -> int:
+    """Set one parameter after the other."""
+    params, system = session.services.params, session.vehicle.system
+    for done, (name, wanted, before) in enumerate(differing):
+        report = await session.request(lambda number, now, n=name, v=wanted: params.set(number, n, v, now))  # type: ignore[misc]
+        if report.state is not RequestState.ACCEPTED:
+            left = ", ".join(each for each, _, _ in differing[done + 1 :])
+            output.note(f"{done} of {len(differing)} are set" + (f"; not tried: {left}" if left else ""))
+            code = finish(session, report, output, changed=done, refused=name)
+            return ExitCode.PARTLY if done else code
+        output.line(f"{name:<16} {value_text(before.value)} -> {value_text(wanted)}")
+    output.note(f"{count(len(differing))} set")
+    output.result(not missing, system, changed=len(differing), missing=list(missing))
+    return ExitCode.PARTLY if missing else ExitCode.DONE
+
+
+async def _fetch_whole(session: VerbSession, output: Output) -> None:
+    """Fetch all parameters. Raises VerbError if some are missing: a part would look like the whole."""
+    if await fetch(session, output) is not ExitCode.DONE:
+        raise VerbError(ExitCode.NO_ANSWER, "nothing was changed or written, because parameters are missing")
+
+
+def _changed(params: Sequence[Param]) -> list[Param]:
+    if all(param.default is None for param in params):
+        raise VerbError(ExitCode.REFUSED, "this vehicle does not report defaults: save without --changed")
+    return [param for param in params if param.default is None or not same_float32(param.value, param.default)]
+
+
+def _compare(file: ParamFile, session: VerbSession) -> tuple[list[tuple[str, float, Param]], list[str]]:
+    """Return what differs (name, value of the file, parameter of the vehicle), and what the vehicle lacks."""
+    found = compare(file, session.services.params.client.params, session.vehicle.component)
+    return list(found.different), list(found.only_file)
+
+
+def _read(path: str) -> ParamFile:
+    return parse_params(read_text(path), path)

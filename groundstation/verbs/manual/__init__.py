@@ -1,0 +1,1 @@
+"""Help texts of the verbs: examples, words of MAVProxy, shells."""

@@ -1,0 +1,1 @@
+"""Verbs that show, record or send messages and commands."""

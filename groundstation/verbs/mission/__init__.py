@@ -1,0 +1,1 @@
+"""Verbs for missions, fences, rally points and destinations."""

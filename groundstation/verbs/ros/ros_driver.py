@@ -1,0 +1,200 @@
+"""RosDriver: messages of ROS drive the vehicle of a verb, as its keys and scripts do.
+
+`push_twist` and `push_word` take what arrives, `remove` who has left; `run` drives until it is cancelled. The rules are
+those of every driver: one program in control, neutral first, an armed vehicle in a mode that takes demands. A message
+never arms and never changes the mode; that is `set_armed`. What ends driving is told once, and the publisher must show
+neutral, or fall silent, before it drives again. Neutral follows however the program ends (driving.py, demand_guard.py).
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Hashable
+
+from dialects.axes import NEUTRAL, Axes
+from groundstation.ros.demand import RefusedDemandError, Scale
+from groundstation.ros.sources import TWIST_SILENCE, WORD_SILENCE, DemandSources
+from groundstation.vehicles.requests.requests import RequestState
+from groundstation.verbs.common.exit_codes import VerbError
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.control.arm import arm
+from groundstation.verbs.control.driving import disarm_vehicle, drive_fault, leave, need_control, prepare, stood_still
+from groundstation.verbs.session.session import VerbSession
+
+LOOK_PERIOD = 0.02
+"""s between looks whether the vehicle still takes demands: a tick of the session."""
+NOTE_PERIOD, MOST_NOTES = 5.0, 5
+"""s after which the same line is told again, and how many different ones are told meanwhile."""
+
+
+class RosDriver:
+    """The driver of one vehicle. All methods are called from the event loop; sources are any hashable keys."""
+
+    def __init__(self, session: VerbSession, scale: Scale, output: Output) -> None:
+        self._session = session
+        self._scale = scale
+        self._output = output
+        self._told: dict[str, float] = {}
+        self._arming = asyncio.Lock()
+        self._armed_here = False
+        self.sources = DemandSources()
+        self.engaged = False
+        """Demands are sent."""
+
+    # ---- what arrives ----
+
+    def push_twist(self, source: Hashable, linear_x: float, angular_z: float) -> None:
+        """Take the velocities of a Twist: m/s, rad/s."""
+        try:
+            axes = self._scale.of_twist(linear_x, angular_z)
+        except RefusedDemandError as error:
+            self._refuse(source, str(error))
+        else:
+            self._push(source, axes, TWIST_SILENCE)
+
+    def push_word(self, source: Hashable, data: str) -> None:
+        """Take the data of a String."""
+        try:
+            axes = self._scale.of_word(data)
+        except RefusedDemandError as error:
+            self._refuse(source, str(error))
+        else:
+            self._push(source, axes, WORD_SILENCE)
+
+    def remove(self, source: Hashable) -> None:
+        """End the demand of a publisher that has left."""
+        if self.sources.remove(source):
+            self.note("the publisher that drove has left: neutral")
+            self._send_now()
+
+    def _push(self, source: Hashable, axes: Axes, silence: float) -> None:
+        now = self._session.now
+        before = self.sources.axes(now)
+        if not self.sources.push(source, axes, silence, now):
+            self.note("motion is ignored: another publisher drives, or this one must send zero first")
+        elif not axes.neutral:
+            self._session.contact.operator.record_input(now)
+        if self.sources.axes(now) != before:
+            self._send_now()
+
+    def _refuse(self, source: Hashable, why: str) -> None:
+        self.note(f"refused: {why}")
+        self._push(source, NEUTRAL, TWIST_SILENCE)
+
+    def _send_now(self) -> None:
+        """Send a changed demand without waiting for the next tick."""
+        if self.engaged:
+            self._session.contact.tick(self._session.now)
+            self._session.flush()
+
+    # ---- driving ----
+
+    async def run(self) -> None:
+        """Drive while a publisher demands it and the vehicle takes it, until cancelled."""
+        try:
+            while True:
+                await self._look()
+                await asyncio.sleep(LOOK_PERIOD)
+        finally:
+            self._disengage()
+
+    async def _look(self) -> None:
+        session, now = self._session, self._session.now
+        stood = stood_still(session, now)
+        if stood is not None and session.core.guard is not None:
+            self._stop(f"this program stood still for {stood:.1f} s: neutral")
+            session.core.guard.go_on()
+        if self._arming.locked() or self.sources.axes(now).neutral:
+            return
+        fault = self._fault()
+        if fault is not None:
+            self._stop(f"{session.vehicle.name} {fault}")
+        elif not self.engaged:
+            async with self._arming:
+                await self._engage(leave_hold=False)
+
+    async def _engage(self, *, leave_hold: bool) -> str | None:
+        """Begin to send demands; return why not."""
+        try:
+            need_control(self._session)
+            await prepare(self._session, leave_hold=leave_hold)
+        except VerbError as error:
+            self._stop(str(error))
+            return str(error)
+        operator = self._session.contact.operator
+        operator.record_input(self._session.now)
+        operator.demand = self._demand
+        self.engaged = True
+        return None
+
+    def _demand(self, now: float) -> Axes:
+        return NEUTRAL if stood_still(self._session, now) is not None else self.sources.axes(now)
+
+    def _fault(self) -> str | None:
+        """Return why a demand does not move the vehicle now, or None."""
+        if not self._session.vehicle.monitor.is_alive(self._session.now):
+            return "is not heard"
+        fault = drive_fault(self._session)
+        if fault is not None:
+            return fault
+        if self.engaged and self._session.contact.other_driver is not None:
+            return f"is driven by GCS {self._session.contact.other_driver}"
+        return None
+
+    def _stop(self, why: str) -> None:
+        self.note(f"{why}; the publisher must send zero before it drives")
+        self.sources.stop()
+        self._disengage()
+
+    def _disengage(self) -> None:
+        """End the demands; final neutral ones follow."""
+        operator = self._session.contact.operator
+        operator.demand = lambda _: NEUTRAL
+        operator.demanding = False
+        self.engaged = False
+
+    # ---- arming ----
+
+    async def set_armed(self, armed: bool, wait: float = 10.0) -> tuple[bool, str]:
+        """Arm and take control in MANUAL, or disarm; return whether it is so, and a line. `wait`: s to be ready."""
+        async with self._arming:
+            return await (self._arm(wait) if armed else self._disarm())
+
+    async def _arm(self, wait: float) -> tuple[bool, str]:
+        state = self._session.vehicle
+        self.sources.stop()
+        self._disengage()
+        try:
+            need_control(self._session)
+            if not state.armed:
+                self._session.began = self._session.now  # `wait` counts from here
+                report = await arm(self._session, wait, self._output)
+                if report.state is not RequestState.ACCEPTED:
+                    return False, report.text
+                self._armed_here = True
+        except VerbError as error:
+            return False, str(error)
+        why = await self._engage(leave_hold=True)
+        return why is None, why or f"{state.name} is armed"
+
+    async def _disarm(self) -> tuple[bool, str]:
+        self.sources.stop()
+        self._disengage()
+        report = await disarm_vehicle(self._session)
+        self._armed_here &= self._session.vehicle.armed
+        done = report.state is RequestState.ACCEPTED
+        return done, f"{self._session.vehicle.name} is disarmed" if done else report.text
+
+    async def leave(self) -> None:
+        """Send the final neutrals; disarm what this program has armed."""
+        self.sources.stop()
+        self.engaged = False
+        await leave(self._session, disarm=self._armed_here)
+
+    def note(self, text: str) -> None:
+        """Tell something, not more often than once in NOTE_PERIOD."""
+        now = self._session.now
+        self._told = {each: at for each, at in self._told.items() if now - at < NOTE_PERIOD}
+        if text not in self._told and len(self._told) < MOST_NOTES:
+            self._told[text] = now
+            self._output.note(text)

@@ -1,0 +1,164 @@
+"""The core of a verb: the vehicles that are heard, and the messages to them. Time is an argument."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from dialects import messages as m
+from dialects.vehicle_types import AUTOPILOT_COMPONENT
+from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.links.heartbeat_sender import HeartbeatSender
+from groundstation.vehicles.demand.drive_gate import drive_refusal
+from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
+from groundstation.verbs.common.arguments import is_chosen
+from groundstation.verbs.session.contact import VehicleContact
+from link.core import LinkReport, Outgoing, Received
+
+if TYPE_CHECKING:
+    from groundstation.verbs.session.demand_guard import DemandGuard
+
+WATCHER = 25
+"""MAV_COMP_ID_USER1: of verbs that only look. With the ids of a silent driver, as of the verb before, any command would
+count as its successor, and our vehicle would leave an autonomous mode (docs/safety.md, "Who the driver is")."""
+
+ALONE_AFTER = 1.3
+"""s for which the links are heard before a vehicle counts as the only one, and a script that claims to be an autopilot
+as the autopilot: a heartbeat interval and a delay."""
+
+Tap = Callable[[Received, float], None]
+"""Takes each message that arrives, and the time."""
+
+
+class VerbCore:
+    """A core (link/core.py) with the vehicles that are heard. It talks to `wanted`, or to the first.
+
+    `ids` are our system and component id, `session` is the number of our session.
+    """
+
+    def __init__(self, ids: tuple[int, int], wanted: int | str | None, session: int) -> None:
+        self.contacts: dict[int, VehicleContact] = {}
+        """All vehicles heard, by system id; at most MAX_VEHICLES."""
+        self.chosen: VehicleContact | None = None
+        self.reports: tuple[LinkReport, ...] = ()
+        """The newest of each link."""
+        self.heard: dict[tuple[int, type[m.Message]], float] = {}
+        """System id and kind -> when the newest such message arrived, also the first ones, before any tap."""
+        self.frames_sent = 0
+        """On links of this program; each address counts."""
+        self.taps: list[Tap] = []
+        """Called with each message that arrives."""
+        self.has_heard_all = False
+        """The links were heard for longer than this verb runs, by the station that it goes through."""
+        self.guard: DemandGuard | None = None
+        """The watchdog of a verb that sends demands."""
+        self.outbox: list[m.Message] = []
+        """Messages of a verb, to all or to their target."""
+        self.ids = ids
+        """Our system and component id."""
+        self._wanted = wanted
+        self._session = session
+        self._heartbeat = HeartbeatSender(0.0)
+        self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle one message; the HEARTBEAT of a vehicle begins the conversation."""
+        if type(received.message) is m.SetupSigning:
+            received = received._replace(message=m.hide_key(received.message))
+        if is_vehicle(received.message):
+            self._heartbeat.greet(received.peer, now)
+            self._add(received, now)
+        contact = self.contacts.get(received.system)
+        if contact is not None:
+            contact.receive(received, now)
+        self.heard[received.system, type(received.message)] = now
+        for tap in self.taps:
+            tap(received, now)
+        if self.chosen is None and not self.has_heard_all:
+            self._choose(now)
+        self._look()
+
+    def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
+        """Count a frame that has left on a link of this program."""
+        self.frames_sent += 1
+
+    def handle_refused(self, message: m.Message, why: str, now: float) -> None:
+        """Take that a message was not sent, because the role of this program does not allow it."""
+        contact = self.contacts.get(m.target_system(message))
+        if contact is not None:
+            contact.handle_refused(message, why)
+            self._look()
+
+    def tick(self, now: float) -> None:
+        """Send heartbeats, repeat what is overdue."""
+        demanding = self.chosen is not None and self.chosen.operator.demanding
+        self.outbox += [each.message for each in self._heartbeat.tick(now, driving=demanding)]
+        if self.chosen is None:
+            self._choose(now)
+        for contact in self.contacts.values():
+            contact.tick(now)
+        self._look()
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Keep the reports of the links."""
+        self.reports = tuple(reports)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them."""
+        outbox, self.outbox = self.outbox, []
+        found = [Outgoing(message) for message in outbox]
+        return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
+
+    def may_send(self, message: m.Message, now: float) -> bool:
+        """Return False for what would move a vehicle of a kind that is not driven; the verb is told why."""
+        why = drive_refusal(message, (contact.state for contact in self.contacts.values()))
+        if why is not None:
+            self.handle_refused(message, why, now)
+        return why is None
+
+    def driven(self) -> tuple[DrivenVehicle, ...]:
+        """Return what the watchdog must know. It sends no neutral to a kind that is not driven: it may fall by it."""
+        chosen = self.chosen
+        return (chosen.driven,) if chosen is not None and chosen.state.model.is_driven else ()
+
+    def add_look(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
+        """Return a future that is done once `condition` holds, checked after each message and tick."""
+        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._looks.append((condition, found))
+        return found
+
+    def _add(self, received: Received, now: float) -> None:
+        contact = self.contacts.get(received.system)
+        if contact is None and (len(self.contacts) < MAX_VEHICLES or self._make_room(received)):
+            target = (received.system, received.component)
+            contact = self.contacts[received.system] = VehicleContact(self.ids, self._session, target, now)
+        elif contact is not None and replaces(received.component, contact.state.component):
+            contact.change_component(received.component, now)
+
+    def _make_room(self, received: Received) -> bool:
+        """Give the vehicle that is meant, or one that signs with a key of ours, the place of one that does not."""
+        meant = self._wanted is not None and is_chosen(self._wanted, received.system, received.peer.name)
+        if not meant and not received.signed:
+            return False
+        others = [each for each in self.contacts.values() if not each.verified and each is not self.chosen]
+        idle = [each for each in others if not each.busy]
+        if idle:
+            del self.contacts[min(idle, key=lambda each: each.state.heartbeat_at).state.system]
+        return bool(idle)
+
+    def _choose(self, now: float) -> None:
+        """Choose the vehicle. One that is not heard as an autopilot yet may be a script on board of it."""
+        for system, contact in self.contacts.items():
+            state, waited = contact.state, now - contact.found_at
+            if (state.component == AUTOPILOT_COMPONENT or waited >= ALONE_AFTER or self.has_heard_all) and is_chosen(
+                self._wanted, system, state.fleet_name
+            ):
+                self.chosen = contact
+                return
+
+    def _look(self) -> None:
+        for condition, found in self._looks:
+            if not found.done() and condition():
+                found.set_result(None)
+        self._looks = [each for each in self._looks if not each[1].done()]

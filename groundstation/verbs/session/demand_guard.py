@@ -1,0 +1,60 @@
+"""The watchdog of a verb that sends demands: it sends neutral when the verb's process is killed or stands still."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Callable, Hashable, Sequence
+
+from dialects.messages import Message
+from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.stall import StallMonitor
+from groundstation.watchdog.feed import WatchdogFeed
+from link.signing.signing import Signing
+from link.transport.transport import Link
+
+REPORT_PERIOD = 0.1
+"""s between two reports, as of the station; after 0.3 s without one the watchdog sends neutral."""
+
+
+class DemandGuard:
+    """The watchdog process (groundstation/watchdog/). Start it before any link is open."""
+
+    def __init__(self, ids: tuple[int, int], signing: Signing | None = None) -> None:
+        """Start the process, which signs as this one does. Raises OSError."""
+        self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._feed = WatchdogFeed.start(theirs, None, ids, signing)
+        theirs.close()
+        self._monitor = StallMonitor()
+        self._stall: float | None = None
+
+    def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
+        """Record a frame that was sent."""
+        self._feed.record_sent(link, address, message, sequence, now)
+
+    def stood_still(self, now: float) -> float | None:
+        """Return for how many s this process stood still, so that the watchdog may have sent neutral; None: not yet.
+
+        After that no demand may follow, so it is not forgotten.
+        """
+        self._stall = self._stall or self._monitor.pop_stall(now)
+        return self._stall
+
+    def go_on(self) -> None:
+        """Forget it: what was demanded before is withdrawn, and a new demand may follow."""
+        self._stall = None
+
+    async def run(self, driven: Callable[[], Sequence[DrivenVehicle]]) -> None:
+        """Report what is driven until cancelled."""
+        loop = asyncio.get_running_loop()
+        while True:
+            now = loop.time()
+            self.stood_still(now)
+            self._monitor.record_report(now)
+            self._feed.report(driven(), now)
+            await asyncio.sleep(REPORT_PERIOD)
+
+    def close(self) -> None:
+        """End the process: the last demands were neutral."""
+        self._feed.close()
+        self._ours.close()

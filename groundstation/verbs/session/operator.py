@@ -1,0 +1,135 @@
+"""A verb as the operator of a vehicle: the proofs of its session, and the demands that it sends. Time is an argument.
+
+Our vehicle obeys a session that was proven in the last second (docs/safety.md, "Who the driver is"). So a verb that
+takes or needs control asks whether the vehicle has our dialect, and then proves a session of its own while it runs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from dialects import messages as m
+from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
+from dialects.enums import Command, OperatorFlag, Result
+from groundstation.input.style import HIGHEST_LIMIT, Style
+from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.vehicles.demand.demand_stream import DemandStream
+from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS, DialectProbe
+from groundstation.vehicles.state.vehicle_state import VehicleState
+from link.core import Outgoing
+from link.services.command.client import CommandClient, CommandOutcome
+
+PROOFS_FIRST, FIRST_PERIOD = 5, 0.008
+"""Proofs before the first command, and s between them: four of five may get lost."""
+FRESH_TIME = 0.3
+"""s since a time of the vehicle has arrived with which these proofs are sent: one that is older than OPR_ECHO_MAX when
+it is back proves nothing, and where frames get lost the newest may be that old. Our vehicle sends four a second."""
+
+
+class VerbOperator:
+    """This program as the operator of one vehicle. `ids` are ours. Nothing is sent before `begin`."""
+
+    def __init__(self, state: VehicleState, ids: tuple[int, int], session: int) -> None:
+        self._state = state
+        self._ids = ids
+        self._session = OperatorSession(Style.HOLD, HIGHEST_LIMIT, session)
+        self._probe = DialectProbe()
+        self._foreign = False
+        self._wanted = False
+        self._proofs = 0
+        self._proven_at = -math.inf
+        self._stream = DemandStream()
+        self._outbox: list[m.Message] = []
+        self.demanding = False
+        """Demands are sent, those of `demand`. When it ends, final neutral ones follow."""
+        self.demand: Callable[[float], Axes] = lambda _: NEUTRAL
+        """Takes the time; returns what to demand while `demanding`."""
+        self.may_prove: Callable[[float], bool] = lambda _: True
+        """Takes the time; returns whether this program may prove the session, which another verb may use."""
+        self.frame: int | None = None
+        """What decides on the axes of the vehicle, if it is known (dialects/axes.py, FRAMES)."""
+
+    def begin(self, now: float) -> None:
+        """Begin to take part: find out the dialect, then prove the session."""
+        if not self._wanted:
+            self._wanted = True
+            self._session.record_input(now)
+
+    def record_input(self, now: float) -> None:
+        """Count an input: a key of a script, or the beginning of a demand."""
+        self._session.record_input(now)
+
+    @property
+    def settled(self) -> bool:
+        """Whether commands may follow: the session is proven, or the vehicle knows no sessions."""
+        return self._foreign or self._state.autopilot in FOREIGN_AUTOPILOTS or self._proofs >= PROOFS_FIRST
+
+    @property
+    def proves(self) -> bool:
+        """Whether the vehicle takes its demands from proofs of the session."""
+        return self._proofs > 0
+
+    @property
+    def finished(self) -> bool:
+        """Whether no final neutral is left to send."""
+        return self._stream.finished and not self._outbox
+
+    def tick(self, client: CommandClient, now: float, *, may_query: bool) -> None:
+        """Ask for the dialect, prove the session, send demands."""
+        if not self._wanted:
+            return
+        self._session.renew_lease(now)
+        self._query_dialect(client, now, may_query)
+        axes = self._stream.next_due(self.demand(now) if self.demanding else NEUTRAL, self.demanding, now)
+        if axes is not None:
+            self._session.record_demand(axes)
+            frame = axis_map(self._state.autopilot, self.frame)
+            self.send_demand(build_manual_control(axes, self._state.system, frame), now)
+        self._prove(now)
+
+    def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
+        """Take the answer to the question for the dialect."""
+        if outcome.command == Command.REQUEST_MESSAGE and outcome.params[0] == m.RoverDriveInfo.id:
+            self._probe.handle_outcome(outcome, now)
+            self._foreign |= outcome.result not in (Result.ACCEPTED, Result.TEMPORARILY_REJECTED)
+
+    def send_demand(self, demand: m.ManualControl, now: float) -> None:
+        """Send a demand, as the station does: our vehicle takes it from the proof, others from MANUAL_CONTROL."""
+        if self.proves or self._state.has_rover_dialect:
+            self._add_proof(demand, now)
+        self._outbox.append(demand)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them."""
+        outbox, self._outbox = self._outbox, []
+        return [Outgoing(message) for message in outbox]
+
+    def _query_dialect(self, client: CommandClient, now: float, may_query: bool) -> None:
+        state = self._state
+        if self.settled or not may_query or client.is_waiting(Command.REQUEST_MESSAGE, state.system):
+            return
+        if self._probe.is_due(state.autopilot, state.sends_drive_status(now), now):
+            client.send(
+                Command.REQUEST_MESSAGE,
+                m.RoverDriveInfo.id,
+                target_system=state.system,
+                target_component=state.component,
+                now=now,
+            )
+
+    def _prove(self, now: float) -> None:
+        """Prove the session once a time of the vehicle is known: without it a proof proves nothing."""
+        first = self._proofs < PROOFS_FIRST
+        period, age = (FIRST_PERIOD, FRESH_TIME) if first else (IDLE_PROOF_PERIOD, math.inf)
+        known = self._state.has_rover_dialect and self._state.boot_time is not None
+        if known and now - self._state.boot_time_at <= age and now - self._proven_at >= period and self.may_prove(now):
+            self._add_proof(None, now)
+
+    def _add_proof(self, demand: m.ManualControl | None, now: float) -> None:
+        target = (self._state.system, self._state.component)
+        proof = self._session.build_presence(target, self._state.boot_time, now, demand)
+        proof.flags |= OperatorFlag.SCRIPT
+        self._proven_at = now
+        self._proofs += 1
+        self._outbox.append(proof)

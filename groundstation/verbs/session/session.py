@@ -1,0 +1,274 @@
+"""A ground station without a screen for one verb: finds a vehicle and makes requests to it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import math
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from dialects import messages as m
+from dialects.enums import Command
+from groundstation.station.driving.operator import NEUTRAL_LEAD
+from groundstation.vehicles.requests.requests import RequestReport, RequestState
+from groundstation.vehicles.services import VehicleServices
+from groundstation.vehicles.state.places import PLACES
+from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.session.contact import VehicleContact
+from groundstation.verbs.session.core import ALONE_AFTER, VerbCore
+from groundstation.verbs.session.station_link import StationLink, StationRunner
+from link.protocol.log_tap import LogTap
+
+if TYPE_CHECKING:
+    from groundstation.verbs.session.demand_guard import DemandGuard
+    from link.runner import Runner
+    from link.signing_keeper import SigningKeeper
+
+PERIOD = 0.02
+"""s between two ticks: twice the shortest round trip of a radio."""
+END_WITHIN = 1.0
+"""s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
+SETTLED_WITHIN = 3.0
+"""s to find out the dialect and prove the session; the question alone is repeated for 2.1 s."""
+PROOF_PERIOD = 0.01
+"""s between looks whether a proof is due, before the first command."""
+TOLD_WITHIN = 0.5
+"""s for our vehicle to tell which program is in control, once it knows that we understand it."""
+DRIVER_WITHIN = 2.5
+"""s until our vehicle tells who is in control: it does once a second, and one may get lost."""
+SUCCESSION_WITHIN = 2.0
+"""s for the session of the verb before this one to count as silent, which takes 0.7 s (docs/safety.md)."""
+
+RequestStart = Callable[[int, float], None]
+"""Starts a request, with its number and the time."""
+
+
+class VerbSession:
+    """What a verb does with its vehicle, or with another one if `contact` is given."""
+
+    def __init__(
+        self,
+        core: VerbCore,
+        flush: Callable[[], None],
+        progress: Callable[[RequestReport], None],
+        contact: VehicleContact | None = None,
+    ) -> None:
+        self.core = core
+        self.flush = flush
+        self._progress = progress
+        self._contact = contact
+        self._count = 0
+        self._ended: dict[int, RequestReport] = {}
+        self.where = ""
+        """The endpoints, for texts."""
+        self.began = self.now
+        """When the verb began."""
+        self.afterwards = "; this program no longer sends heartbeats"
+        """What becomes of this program when the verb has ended, for a vehicle that moves by itself."""
+
+    @property
+    def now(self) -> float:
+        """The time of the loop's clock, s."""
+        return asyncio.get_running_loop().time()
+
+    @property
+    def known(self) -> bool:
+        """This session is about one vehicle that was heard."""
+        return self._contact is not None
+
+    @property
+    def sure_at(self) -> float:
+        """From when on every sender of an id was heard that sends once a second; a station has heard them before."""
+        return self.began if self.core.has_heard_all else self.began + ALONE_AFTER
+
+    @property
+    def names(self) -> tuple[int, str]:
+        """System id of the vehicle and its name in its fleet, once it was heard."""
+        return self.vehicle.system, self.vehicle.fleet_name
+
+    @property
+    def contact(self) -> VehicleContact:
+        """The vehicle, once it was heard."""
+        contact = self._contact or self.core.chosen
+        assert contact is not None
+        return contact
+
+    @property
+    def services(self) -> VehicleServices:
+        """The services of the vehicle, once it was heard."""
+        return self.contact.services
+
+    @property
+    def vehicle(self) -> VehicleState:
+        """The vehicle, once it was heard."""
+        return self.contact.state
+
+    async def find_vehicle(self, wait: float, wanted: int | str | None, where: str) -> None:
+        """Wait for the HEARTBEAT of the vehicle. Raises VerbError after `wait` s."""
+        if not await self.wait_for(lambda: self.core.chosen is not None, wait):
+            which = "no vehicle" if wanted is None else f"no vehicle {wanted}"
+            heard = f", but {_names(self.core.contacts)}" if self.core.contacts else ""
+            raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {where} within {wait:g} s{heard}")
+
+    async def need_only_vehicle(self, wanted: int | str | None) -> None:
+        """Before the first change: there must be only one, or only one with that name. Raises VerbError."""
+        if wanted is None:
+            await self.hear_all()
+            if len(self.core.contacts) > 1:
+                heard = _names(self.core.contacts)
+                raise VerbError(ExitCode.USAGE, f"vehicles {heard} are here: choose one with --vehicle")
+        elif isinstance(wanted, str):
+            same = [system for system, each in sorted(self.core.contacts.items()) if each.state.fleet_name == wanted]
+            if len(same) > 1:
+                text = f"{wanted} are several vehicles: choose one with --vehicle {same[0]}"
+                raise VerbError(ExitCode.USAGE, text)
+
+    async def hear_all(self, seconds: float = ALONE_AFTER) -> None:
+        """Wait until the links were heard for so long, counted from the start; a station has heard them before."""
+        if self.core.has_heard_all:
+            return
+        await asyncio.sleep(max(0.0, self.began + seconds - self.now))
+
+    async def take_part(self) -> None:
+        """Prove a session to the vehicle, so that it takes what needs control from this program.
+
+        A vehicle that says neither that it has our dialect nor that it has not is treated as one without.
+        """
+        contact, until = self.contact, self.now + SETTLED_WITHIN
+        contact.operator.begin(self.now)
+        while not (contact.operator.settled or contact.unproven) and self.now < until:
+            contact.tick(self.now)  # proofs follow each other faster than PERIOD
+            self.flush()
+            await self.wait_for(lambda: contact.operator.settled, PROOF_PERIOD)
+        if contact.state.has_rover_dialect:
+            await self.wait_for(lambda: contact.state.control.session is not None, DRIVER_WITHIN)
+            await self.wait_for(lambda: not contact.follows, SUCCESSION_WITHIN)
+
+    async def show_neutral(self) -> None:
+        """Follow the verb that has armed our vehicle: nothing moves it before the new session has shown neutral."""
+        contact = self.contact
+        if contact.state.has_rover_dialect and contact.state.armed and contact.state.driver == contact.ids[0]:
+            contact.operator.demanding = True
+            await self.wait_for(lambda: contact.in_control, TOLD_WITHIN)
+            await asyncio.sleep(NEUTRAL_LEAD)
+            contact.operator.demanding = False
+
+    async def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Wait until `condition` holds; return whether it does. Raises VerbError if a message may not be sent."""
+        if condition():
+            return True
+        await self.look_for(lambda: condition() or bool(self._refusal), seconds)
+        self.need_sent()
+        return condition()
+
+    async def look_for(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Wait until `condition`, which is about all vehicles, holds; return whether it does."""
+        if condition():
+            return True
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self.core.add_look(condition), seconds)
+        return condition()
+
+    @property
+    def _refusal(self) -> str:
+        contact = self._contact or self.core.chosen
+        return contact.refusal if contact else ""
+
+    def need_sent(self) -> None:
+        """Raise VerbError if a message to the vehicle may not be sent."""
+        if self._refusal:
+            raise VerbError(ExitCode.REFUSED, f"{self.vehicle.name}: {self._refusal}")
+
+    def of_others(self) -> list[VerbSession]:
+        """Return a session for each vehicle that was heard, this one included."""
+        return [VerbSession(self.core, self.flush, self._progress, each) for each in self.core.contacts.values()]
+
+    async def request(self, start: RequestStart) -> RequestReport:
+        """Make a request and return how it ended. Raises VerbError if its messages may not be sent."""
+        self._count += 1
+        number = self._count
+        start(number, self.now)
+        self.flush()
+        await self.core.add_look(lambda: self._collect(number) or bool(self._refusal))
+        self.need_sent()
+        return self._ended.pop(number)
+
+    def heard_at(self, kind: type[m.Message]) -> float:
+        """Return when such a message of the vehicle arrived last; -infinity if none has."""
+        return self.core.heard.get((self.vehicle.system, kind), -math.inf)
+
+    async def request_message(
+        self, kind: type[m.Message], within: float, told: Callable[[], bool] | None = None
+    ) -> RequestReport:
+        """Request a message; wait for it (or for `told`) up to `within` s, as it may follow its acknowledgement."""
+        commands, began = self.services.commands, self.now
+        report = await self.request(
+            lambda number, now: commands.send(number, Command.REQUEST_MESSAGE, (float(kind.id),), kind.msgname, now)
+        )
+        if report.state is RequestState.ACCEPTED:
+            await self.wait_for(told or (lambda: self.heard_at(kind) >= began), within)
+        return report
+
+    def _collect(self, number: int) -> bool:
+        for report in self.services.book.pop_changes():
+            self._progress(report)
+            if report.state is not RequestState.RUNNING:
+                self._ended[report.number] = report
+        return number in self._ended
+
+
+def _names(contacts: Mapping[int, VehicleContact]) -> str:
+    """Return what --vehicle may name: names of a fleet, else system ids."""
+    return ", ".join(contacts[system].state.fleet_name or str(system) for system in sorted(contacts))
+
+
+async def run_session(
+    endpoints: Sequence[str],
+    ids: tuple[int, int],
+    wanted: int | str | None,
+    script: Callable[[VerbSession], Awaitable[int]],
+    progress: Callable[[RequestReport], None],
+    guard: DemandGuard | None = None,
+    *,
+    session: int,
+    station: StationLink | None = None,
+    log_tap: LogTap | None = None,
+    signing: SigningKeeper | None = None,
+) -> int:
+    """Open the links, run the script, and return its exit code. Raises EndpointError, LinkError, VerbError.
+
+    With `station` there are no links: the verb goes through it. A script that is interrupted gets END_WITHIN to end in
+    order, over links that still work.
+    """
+    core = VerbCore(ids, wanted, session)
+    core.guard = guard
+    runner: Runner | StationRunner
+    if station is not None:
+        core.has_heard_all = True
+        runner = StationRunner(core, station, PERIOD, lambda links: core.observe(links.reports, 0.0), log_tap)
+    else:
+        from link.endpoint import Side
+        from link.links import open_links
+        from link.runner import Runner  # a verb through a station does without
+
+        links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION, places=PLACES)
+        sent = guard.record_sent if guard else None
+        runner = Runner(core, links, period=PERIOD, route=False, log_tap=log_tap, sent=sent, signing=signing)
+    running = asyncio.ensure_future(runner.run())
+    await asyncio.sleep(0)  # run() begins
+    verb = asyncio.ensure_future(script(VerbSession(core, runner.flush, progress)))
+    reporting = asyncio.ensure_future(guard.run(core.driven)) if guard else None
+    try:
+        await asyncio.wait({running, verb}, return_when=asyncio.FIRST_COMPLETED)
+        if running.done():
+            running.result()
+        return await verb
+    finally:
+        if verb.cancel():
+            await asyncio.wait({verb}, timeout=END_WITHIN)
+        if reporting is not None:
+            reporting.cancel()
+        runner.stop()
+        await running

@@ -1,0 +1,159 @@
+"""A whole ground station without a screen, for verbs that need what it knows: it never drives."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import time
+from collections.abc import Awaitable, Callable, Sequence
+
+from groundstation.connect.signing import SigningError, open_signing
+from groundstation.intents.base import Intent
+from groundstation.intents.session import RenewLease
+from groundstation.intents.vehicle import SelectVehicle
+from groundstation.intents.watch import Watch
+from groundstation.snapshot import Snapshot
+from groundstation.station.component import COMPONENT
+from groundstation.station.station import Station
+from groundstation.station_socket.relay import LinksReport
+from groundstation.verbs.common.arguments import is_chosen
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.session.station_link import StationLink, StationRunner
+from groundstation.views.doctor import DoctorRequest, DoctorView
+from link.endpoint import Side
+from link.links import open_links
+from link.runner import Runner
+
+PERIOD = 0.02
+"""s between two ticks, as of the other verbs."""
+END_WITHIN = 1.0
+"""s for an interrupted verb to send its last messages."""
+LEASE_PERIOD = 0.1
+"""s between renewals of the lease, as of the screen; each also looks whether something has changed."""
+
+
+class StationSession:
+    """What a verb does with its station. The key gate stays closed: no demand but neutral is ever sent."""
+
+    def __init__(self, station: Station, request: DoctorRequest, flush: Callable[[], None]) -> None:
+        self._station, self._request, self._flush = station, request, flush
+        self._numbers = 0
+        self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+
+    def take_number(self) -> int:
+        """Return the number of the next request."""
+        self._numbers += 1
+        return self._numbers
+
+    def do(self, *intents: Intent) -> None:
+        """Carry out intents now."""
+        for intent in intents:
+            self._station.handle_intent(intent, self._now)
+        self._flush()
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The state now."""
+        return self._station.snapshot(self._now, time.time())
+
+    @property
+    def doctor(self) -> DoctorView:
+        """The chain now."""
+        self._station.snapshot(self._now, time.time())
+        view = self._station.views.build(self._request, self._now, time.time())
+        assert isinstance(view, DoctorView)
+        return view
+
+    async def until(self, condition: Callable[[], bool], within: float) -> bool:
+        """Wait until a condition holds, `within` s at most; return whether it does."""
+        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._looks.append((condition, found))
+        self.look()
+        try:
+            await asyncio.wait_for(found, within)
+        except TimeoutError:
+            return False
+        return True
+
+    def look(self) -> None:
+        """Check what the verb waits for."""
+        for condition, found in self._looks:
+            if not found.done() and condition():
+                found.set_result(None)
+        self._looks = [each for each in self._looks if not each[1].done()]
+
+    async def find_vehicle(self, wait: float, wanted: int | str | None) -> bool:
+        """Wait for a vehicle and select it; return whether it is there."""
+        found = await self.until(lambda: self._find(wanted) is not None, wait)
+        system = self._find(wanted)
+        if found and wanted is not None and system is not None:
+            self.do(SelectVehicle(system))
+        return found
+
+    def _find(self, wanted: int | str | None) -> int | None:
+        states = (contact.state for contact in self._station.fleet)
+        return next((each.system for each in states if is_chosen(wanted, each.system, each.fleet_name)), None)
+
+    @property
+    def _now(self) -> float:
+        return asyncio.get_running_loop().time()
+
+
+async def run_station(
+    endpoints: Sequence[str],
+    system: int,
+    driver: int,
+    script: Callable[[StationSession], Awaitable[int]],
+    link: StationLink | None = None,
+) -> int:
+    """Open the links, run the script, and return its exit code.
+
+    `driver` is the system id of the ground station that will drive, 0 for this one. With `link` there are no links:
+    this station hears and sends through the one that runs. Raises EndpointError, LinkError, VerbError.
+    """
+    now = asyncio.get_running_loop().time
+    session_number = secrets.randbits(32) if link is None else link.ready.session
+    station = Station(endpoints, system=system, session=session_number, now=now())
+    runner = _open(station, endpoints, system) if link is None else _go_through(station, link)
+    running = asyncio.ensure_future(runner.run())
+    await asyncio.sleep(0)  # run() begins
+    request = DoctorRequest(station=driver)
+    station.handle_intent(Watch((request,)), now())
+    session = StationSession(station, request, runner.flush)
+    lease = asyncio.ensure_future(_renew(station, session))
+    verb = asyncio.ensure_future(script(session))
+    try:
+        await asyncio.wait({running, verb, lease}, return_when=asyncio.FIRST_COMPLETED)
+        for each in (running, lease):
+            if each.done():
+                each.result()
+        return await verb
+    finally:
+        if verb.cancel():
+            await asyncio.wait({verb}, timeout=END_WITHIN)
+        lease.cancel()
+        runner.stop()
+        await running
+
+
+def _open(station: Station, endpoints: Sequence[str], system: int) -> Runner:
+    try:
+        signing = open_signing(asyncio.get_running_loop().time())
+    except SigningError as error:
+        raise VerbError(ExitCode.USAGE, str(error)) from None
+    links = open_links(endpoints, system=system, component=COMPONENT, side=Side.GROUND_STATION)
+    return Runner(station, links, period=PERIOD, route=False, signing=signing)
+
+
+def _go_through(station: Station, link: StationLink) -> StationRunner:
+    def take_reports(links: LinksReport) -> None:
+        station.observe(links.reports, asyncio.get_running_loop().time())
+
+    return StationRunner(station, link, PERIOD, take_reports)
+
+
+async def _renew(station: Station, session: StationSession) -> None:
+    while True:
+        station.handle_intent(RenewLease(), asyncio.get_running_loop().time())
+        session.look()
+        await asyncio.sleep(LEASE_PERIOD)

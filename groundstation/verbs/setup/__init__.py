@@ -1,0 +1,1 @@
+"""Verbs that set a vehicle up: diagnosis, calibration, signing."""

@@ -1,0 +1,42 @@
+"""`groundstation calibrate`: gyros, level and pressure at rest; compass and sticks are in calibrate_by_hand.py."""
+
+from __future__ import annotations
+
+import argparse
+
+from groundstation.vehicles.calibration.calibration import KINDS, REQUEST, SHORT, kind_for
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.session.reports import finish
+from groundstation.verbs.session.session import VerbSession
+from groundstation.verbs.setup import calibrate_by_hand
+
+BY_HAND = {"compass": calibrate_by_hand.compass, "sticks": calibrate_by_hand.sticks}
+CHOICES = (*sorted(SHORT), *BY_HAND)
+
+
+def only_reads(options: argparse.Namespace) -> bool:
+    """Return whether nothing of the vehicle is changed."""
+    return bool(options.kind == "sticks")
+
+
+def check(options: argparse.Namespace) -> None:
+    """Check that --for is given for the sticks only. Raises VerbError."""
+    if options.seconds is not None and options.kind != "sticks":
+        raise VerbError(ExitCode.USAGE, "--for is for `calibrate sticks`")
+
+
+async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Calibrate; done when the vehicle has accepted."""
+    await session.need_only_vehicle(options.vehicle)
+    if options.kind in BY_HAND:
+        return await BY_HAND[options.kind](session, options, output)
+    vehicle, commands = session.vehicle, session.services.commands
+    name = kind_for(options.kind, vehicle.autopilot)
+    if name is None:
+        raise VerbError(ExitCode.REFUSED, f"{vehicle.name} cannot calibrate {options.kind}")
+    kind = KINDS[name]
+    report = await session.request(
+        lambda number, now: commands.send(number, kind.command, kind.params, f"{REQUEST}{name}", now)
+    )
+    return finish(session, report, output, f"has calibrated: {kind.title}", kind=options.kind)
