@@ -16,8 +16,9 @@ from dialects.enums import Autopilot, Command, VehicleType
 from dialects.kinds import find_kind
 from dialects.messages import MESSAGES
 from groundstation.station_socket.names import MODES, PARAMS, PLAIN_NAME, VEHICLES
+from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.manual.shells import SHELLS
-from groundstation.verbs.table import ONLY, VERBS, VerbAction
+from groundstation.verbs.table import VERBS
 
 LOCAL_COMMON = ("--dialect", "--json", "--quiet", "--help")
 """Options of all verbs, also of those without a vehicle."""

@@ -20,6 +20,7 @@ from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
 from groundstation.formats.errors import FileFormatError
 from groundstation.station_socket.hello import HELLO_WITHIN, VERB, Hello
 from groundstation.station_socket.relay import VERSION
+from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.later import LaterModule
@@ -30,7 +31,7 @@ from groundstation.verbs.session.kept_session import KeptSession
 from groundstation.verbs.session.session import VerbSession, run_session
 from groundstation.verbs.session.station_link import AUTO, StationLink, find_station, station_choice
 from groundstation.verbs.session.vehicle_choice import choose_group
-from groundstation.verbs.table import ONLY, VERBS, VerbAction
+from groundstation.verbs.table import VERBS
 from link.endpoint import EndpointError
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
@@ -194,7 +195,7 @@ def _find_way(
     """Return the station that the verb goes through, or None, and the endpoints. Raises VerbError, EndpointError."""
 
     def choose() -> list[str]:
-        return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note)
+        return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note, reserved=VERBS)
 
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
     hello = Hello(VERB, VERSION, f"groundstation {output.verb}", takes_part=not action.watches, follows=action.follows)
@@ -280,6 +281,7 @@ def build_parser(verb: str, kind: type[CommandLineParser] = CommandLineParser) -
 
 
 def _add_arguments(parser: argparse.ArgumentParser, action: VerbAction) -> None:
+    parser.set_defaults(reserved=VERBS)  # no endpoint in the config file may have the name of a verb
     parser.description = f"{action.help[0].upper()}{action.help[1:]}."
     for argument, settings in action.arguments:
         parser.add_argument(argument, **settings)

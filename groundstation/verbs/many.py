@@ -24,7 +24,7 @@ from groundstation.verbs.session.core import ALONE_AFTER
 from groundstation.verbs.session.session import VerbSession
 
 if TYPE_CHECKING:
-    from groundstation.verbs.table import VerbAction
+    from groundstation.verbs.action import VerbAction
 
 STATION_TELLS_WITHIN = 0.3
 """s without a further vehicle after which a station that knows all vehicles has told them."""

@@ -6,14 +6,11 @@ groundstation/cli/verb_help.py.
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Any
-
-import msgspec
+from typing import TYPE_CHECKING
 
 from dialects.enums import MissionType
 from groundstation.formats.param_form import ParamForm
+from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.common.arguments import (
     LONGEST_HOLD,
     Argument,
@@ -28,8 +25,6 @@ from groundstation.verbs.common.arguments import (
     system_id,
 )
 from groundstation.verbs.common.later import LaterModule, made
-from groundstation.verbs.common.output import Output
-from link.protocol.log_tap import LogTap
 from link.signing.key_options import ENTERED, SHOWN
 
 if TYPE_CHECKING:
@@ -69,45 +64,6 @@ else:
     stops = LaterModule("control.stops")
 
 
-class VerbAction(msgspec.Struct, frozen=True):
-    """One action of a verb."""
-
-    help: str
-    run: Callable[[Any, argparse.Namespace, Output], Awaitable[int]]
-    """Gets a VerbSession, a StationSession, or None; returns the exit code."""
-    arguments: tuple[Argument, ...] = ()
-    aliases: tuple[str, ...] = ()
-    """Other words for it."""
-    offline: bool = False
-    """Needs neither vehicle nor link: `run` gets None. It has its own arguments, --dialect, --json and --quiet."""
-    station: bool = False
-    """`run` gets a StationSession: a whole ground station without a screen. It finds its vehicle itself."""
-    finds: bool = True
-    """Waits for the vehicle before it runs."""
-    many: bool = False
-    """May be done for many vehicles at once (--all, --group). Nothing that steers is."""
-    watches: bool = False
-    """Only looks, and so has ids that are never those of a driver."""
-    follows: bool = False
-    """Keeps the session of the verb before alive, if there was one just now (kept_session.py)."""
-    takes_part: bool = False
-    """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
-    shows_neutral: bool = False
-    """Shows neutral then, because it can make the vehicle move."""
-    check: Callable[[argparse.Namespace], None] | None = None
-    """Raises VerbError for arguments that cannot be right, before any link is opened."""
-    only_reads: Callable[[argparse.Namespace], bool] = lambda _: False
-    """Whether it only looks with these arguments, so that it takes no part."""
-    stops: bool = False
-    """It is a stop: sent from the first moment, also to vehicles that are not heard, and past a station that hangs."""
-    own_timeout: bool = False
-    """Ends by itself after --timeout, with a code of its own."""
-    guarded: Callable[[argparse.Namespace], bool] = lambda _: False
-    """Whether it sends demands, so that a watchdog must outlive it."""
-    tap: Callable[[argparse.Namespace, tuple[int, int]], LogTap | None] = lambda *_: None
-    """Returns what takes all frames; gets our system and component id. Raises VerbError before any link is opened."""
-
-
 _PATTERNS = ("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"})
 _FILE = ("file", {"metavar": "FILE"})
 _REMOTE = ("remote", {"metavar": "REMOTE", "help": "path on the vehicle, e.g. /logs/00000001.tlog"})
@@ -118,9 +74,6 @@ _FORMAT = ("--format", {"choices": [form.value for form in ParamForm], "default"
 
 _KEY = ("name", {"metavar": "NAME", "help": "name of the key, e.g. of the vehicle"})
 _WHICH_KEY = ("name", {"metavar": "NAME", "help": "name or fingerprint of the key"})
-
-ONLY = ""
-"""Name of the action of a verb that has only one, and takes no name for it."""
 
 
 def _listen(default: float) -> Argument:

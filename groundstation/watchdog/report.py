@@ -44,7 +44,7 @@ class StationReport(msgspec.Struct, frozen=True, kw_only=True):
     screen_is_gone: bool = False
     """The screen's process has ended without that."""
     rests: bool = False
-    """The station rests: the next report may follow REST_STALL_TIMEOUT later (groundstation/station/driving/stall.py)."""
+    """The station rests: the next report may follow REST_STALL_TIMEOUT later (station/driving/stall.py)."""
     keys_version: int = 0
     """How often the keys have changed: with another number the watchdog reads them again."""
     ending: bool = False

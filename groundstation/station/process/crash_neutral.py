@@ -1,7 +1,7 @@
 """Sends neutral to every driven vehicle after an unhandled exception in the station.
 
-A station that exits normally sends its own final neutrals (groundstation/vehicles/demand/demand_stream.py). After an exception
-nothing of the station can be trusted, and ArduPilot would drive on for 3 s with the last demand it got.
+A station that exits normally sends its own final neutrals (groundstation/vehicles/demand/demand_stream.py). After an
+exception nothing of the station can be trusted, and ArduPilot would drive on for 3 s with the last demand it got.
 """
 
 from __future__ import annotations

@@ -16,20 +16,6 @@ from groundstation.station.services.file_view import build_files
 from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.vehicles.requests import (
-    file_comparing,
-    folder_cache,
-    log_requests,
-    message_requests,
-    metadata_requests,
-    mission_requests,
-    param_comparing,
-    param_requests,
-    param_storage,
-    param_writer,
-    plan_requests,
-    transfer_requests,
-)
 from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices

@@ -18,10 +18,10 @@ from groundstation.actions import OperatorAction
 from groundstation.input.keymap import Keymap
 from groundstation.intents.union import AnyIntent
 from groundstation.screens import find_screen
+from groundstation.ui.base.chrome import CHROME, InstrumentRow
 from groundstation.ui.base.question import ANSWER_WITHIN, Question
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.request_numbers import RequestNumbers
-from groundstation.ui.drive.instrument_table import CHROME, InstrumentRow
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.terminal.painting import LineCompositor, painted_at_once
 from groundstation.ui.widgets.instrument import Instrument

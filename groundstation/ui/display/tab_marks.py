@@ -1,18 +1,17 @@
 """TAB_MARKS: marks behind the names of screens in the tab bar, such as a pencil while changes are not sent.
 
-A mark is a function of the display state: of the snapshot, or of what a screen keeps while it is closed (`kept`).
+A mark is a function of the snapshot (TAB_MARKS), or of a model that a screen keeps while it is closed (MarkedModel).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import ClassVar, Protocol, runtime_checkable
 
 import msgspec
 
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.look.colours import BLUE, RED
-from groundstation.ui.map.model import MapModel
-from groundstation.ui.params.model import ParamModel
 
 
 class TabMark(msgspec.Struct, frozen=True):
@@ -24,11 +23,15 @@ class TabMark(msgspec.Struct, frozen=True):
     """Where the tab bar is narrow; empty: `text`."""
 
 
-def _pending_params(now: DisplayState) -> TabMark | None:
-    """Return a pencil with the number of parameter changes that are not written."""
-    model = now.kept.get(ParamModel)
-    pending = len(model.pending) if isinstance(model, ParamModel) else 0
-    return TabMark(f"✎{pending}", BLUE, short="✎") if pending else None
+@runtime_checkable
+class MarkedModel(Protocol):
+    """What a screen keeps while it is closed (ScreenContext.keep), with a mark of its own."""
+
+    SCREEN: ClassVar[str]
+    """Id of the screen's row in SCREENS."""
+
+    def tab_mark(self) -> TabMark | None:
+        """Return the mark, None for no mark."""
 
 
 def _transfers(now: DisplayState) -> TabMark | None:
@@ -43,15 +46,7 @@ def _faults(now: DisplayState) -> TabMark | None:
     return TabMark(f" {count}✗", RED, short=f"{count}✗") if count else None
 
 
-def _edited_plans(now: DisplayState) -> TabMark | None:
-    """Return a pencil while a plan is not as on the vehicle."""
-    model = now.kept.get(MapModel)
-    return TabMark("✎", BLUE) if isinstance(model, MapModel) and model.editor.edited else None
-
-
 TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {
-    "map": _edited_plans,
-    "params": _pending_params,
     "setup": _faults,
     "files": _transfers,
 }
@@ -61,4 +56,5 @@ TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {
 def find_marks(now: DisplayState) -> dict[str, TabMark]:
     """Return the marks of a display state, by the id of the screen."""
     found = {screen: mark(now) for screen, mark in TAB_MARKS.items()}
+    found |= {model.SCREEN: model.tab_mark() for model in now.kept.values() if isinstance(model, MarkedModel)}
     return {screen: mark for screen, mark in found.items() if mark is not None}

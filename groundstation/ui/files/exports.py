@@ -1,4 +1,4 @@
-"""Exports of logs that run beside the screens: each is a process of its own, `groundstation export` (verbs/files/export.py).
+"""Exports of logs that run beside the screens: each is a process, `groundstation export` (verbs/files/export.py).
 
 The screen's process does not load the dialect, and reading a log must not hold up its event loop, which renews the
 lease.

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import ClassVar
 
 from groundstation.formats.layer import LayerDocument
 from groundstation.geo import LocalFrame, Place, Point
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.display.request_numbers import RequestNumbers
+from groundstation.ui.display.tab_marks import TabMark
+from groundstation.ui.look.colours import BLUE
 from groundstation.ui.map.draw.ground import Ground
 from groundstation.ui.map.draw.layers import MapLayers, describe_layer
 from groundstation.ui.map.draw.scene import Route, find_reference, find_route
@@ -43,6 +46,8 @@ NO_CURSOR = "no position: the map has no cursor"
 class MapModel:
     """The newest views, the plans that are edited, and the ground."""
 
+    SCREEN: ClassVar[str] = "map"
+
     def __init__(self, numbers: RequestNumbers) -> None:
         self.copies = PlanCopies()
         self.editor = PlanEditor()
@@ -59,6 +64,10 @@ class MapModel:
         self._told = 0
         """Number of the newest request whose end was shown."""
         self._route: tuple[object, Route] | None = None
+
+    def tab_mark(self) -> TabMark | None:
+        """Return a pencil while a plan is not as on the vehicle."""
+        return TabMark("✎", BLUE) if self.editor.edited else None
 
     # ---- views ----
 

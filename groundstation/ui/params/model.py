@@ -6,9 +6,13 @@ undone by another one.
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.display.request_numbers import RequestNumbers
+from groundstation.ui.display.tab_marks import TabMark
+from groundstation.ui.look.colours import BLUE
 from groundstation.ui.params.edit.editor import ValueEditor
 from groundstation.ui.params.edit.pending import PendingChange, PendingChanges
 from groundstation.ui.params.favourites import Favourites
@@ -35,6 +39,8 @@ MAX_NAMES = 2000
 class ParamModel:
     """The newest page, the selected row, and the pending changes."""
 
+    SCREEN: ClassVar[str] = "params"
+
     def __init__(self, numbers: RequestNumbers, favourites: Favourites | None = None) -> None:
         self._numbers = numbers
         self._favourites = favourites
@@ -58,6 +64,10 @@ class ParamModel:
         self._writing: tuple[int, tuple[PendingChange, ...]] | None = None
         self.fetch_after: int | None = None
         """Request after whose end the parameters are read again: a reset changes them."""
+
+    def tab_mark(self) -> TabMark | None:
+        """Return a pencil with the number of changes that are not written."""
+        return TabMark(f"✎{len(self.pending)}", BLUE, short="✎") if self.pending else None
 
     # ---- what the station sends ----
 

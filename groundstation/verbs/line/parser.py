@@ -8,12 +8,13 @@ from typing import NoReturn
 
 import msgspec
 
+from groundstation.verbs.action import VerbAction
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES, LineRule
 from groundstation.verbs.line.session import here
 from groundstation.verbs.main import build_parser
 from groundstation.verbs.manual.mavproxy_words import describe_action, describe_word
-from groundstation.verbs.table import VERBS, VerbAction
+from groundstation.verbs.table import VERBS
 from link.runtime.command_line import CommandLineParser
 
 FOR_SHELLS = ("endpoints", "config", "dialect")

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Sequence
 
 from groundstation.station_socket.names import MODES, plain_names
 from groundstation.vehicles.services import VehicleServices
+from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.completion import NAMES, USUAL
 from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES
-from groundstation.verbs.table import ONLY, VERBS, VerbAction
+from groundstation.verbs.table import VERBS
 
 MOST = 40
 """Words that are proposed at once."""

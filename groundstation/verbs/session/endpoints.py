@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from groundstation.config.defaults import DEFAULT_ENDPOINT
-from groundstation.verbs.table import VERBS
 
 if TYPE_CHECKING:
     from groundstation.config.config_file import ConfigError
@@ -35,11 +34,13 @@ def choose_endpoints(
     environment: Mapping[str, str],
     recent: RecentFile | None = None,
     note: Callable[[str], None] = lambda _: None,
+    reserved: Collection[str] = (),
 ) -> list[str]:
     """Return the endpoints of -e, of MAVHELM_ENDPOINT, of the config file, or the one used last.
 
     The config file is read only where it matters: a mistake in it does not keep a verb from a vehicle that -e names.
-    `note` gets what is wrong with the file of recent endpoints. Raises ConfigError, EndpointError.
+    `note` gets what is wrong with the file of recent endpoints; `reserved` are words that no endpoint may have as its
+    name. Raises ConfigError, EndpointError.
     """
     if texts and all(":" in text for text in texts):
         return list(texts)
@@ -48,7 +49,7 @@ def choose_endpoints(
     texts = texts or environment_endpoints(environment)
     if texts and all(":" in text for text in texts):
         return list(texts)
-    effective = merge(load_config(config, environment, VERBS), environment, {"open": texts} if texts else {})
+    effective = merge(load_config(config, environment, reserved), environment, {"open": texts} if texts else {})
     if not texts and "open" not in effective.sources:
         return [_used_last(recent or _recent_file(), note)]
     return resolve_endpoints(effective.settings.open, effective.settings)

@@ -12,7 +12,7 @@ from groundstation.verbs.session.kept_session import KeptSession, choose_session
 from groundstation.verbs.session.station_link import StationLink
 
 if TYPE_CHECKING:
-    from groundstation.verbs.table import VerbAction
+    from groundstation.verbs.action import VerbAction
 
 
 def choose_identity(

@@ -11,7 +11,7 @@ from groundstation.config.groups import EVERYBODY, NAME, SYNTAX, GroupError, Veh
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 
 if TYPE_CHECKING:
-    from groundstation.verbs.table import VerbAction
+    from groundstation.verbs.action import VerbAction
 
 
 def choose_group(verb: str, action: VerbAction, options: argparse.Namespace) -> VehicleGroup | None:
@@ -24,23 +24,22 @@ def choose_group(verb: str, action: VerbAction, options: argparse.Namespace) -> 
         raise VerbError(ExitCode.USAGE, f"{verb} is for one vehicle at a time{_why(verb)}; choose it with --vehicle")
     if options.vehicle is not None or (everybody and group is not None):
         raise VerbError(ExitCode.USAGE, f"{given}: choose one of --vehicle, --all and --group")
-    return EVERYBODY if group is None else _find_group(group, options.config, os.environ)
+    return EVERYBODY if group is None else _find_group(group, options, os.environ)
 
 
 def _why(verb: str) -> str:
     return ", because nobody steers several" if verb in ("drive", "goto", "send", "motor") else ""
 
 
-def _find_group(text: str, config: str | None, environment: Mapping[str, str]) -> VehicleGroup:
+def _find_group(text: str, options: argparse.Namespace, environment: Mapping[str, str]) -> VehicleGroup:
     """Return the group with this name, or what the text itself says. Raises VerbError, ConfigError."""
     try:
         if not NAME.fullmatch(text):
             return parse_group(text)
         from groundstation.config.effective import load_config
-        from groundstation.verbs.table import VERBS
         from link.runtime.toml_errors import suggest
 
-        file = load_config(config, environment, VERBS)
+        file = load_config(options.config, environment, options.reserved)
         groups = {} if file is None else file.values.get("groups", {})
         if text in groups:
             return parse_group(groups[text])

@@ -39,9 +39,9 @@ def check(options: argparse.Namespace) -> None:
     if options.through not in (AUTO, NEVER):
         raise VerbError(ExitCode.USAGE, "a key does not go through a station: leave --station out")
     options.through = NEVER
-    from groundstation.verbs.session.endpoints import choose_endpoints  # which imports the table of verbs
+    from groundstation.verbs.session.endpoints import choose_endpoints
 
-    options.endpoints = choose_endpoints(options.endpoints, options.config, os.environ)
+    options.endpoints = choose_endpoints(options.endpoints, options.config, os.environ, reserved=options.reserved)
     for text in options.endpoints:
         if parse_endpoint(text).scheme != SERIAL:
             hint = "a key goes over a serial or USB cable only, for example -e serial:/dev/ttyACM0:115200"

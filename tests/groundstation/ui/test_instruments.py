@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from groundstation.snapshot import Snapshot
+from groundstation.ui.base.chrome import InstrumentRow
 from groundstation.ui.display.display_state import DisplayState
-from groundstation.ui.drive.instrument_table import INSTRUMENTS, InstrumentRow
+from groundstation.ui.drive.instrument_table import INSTRUMENTS
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD

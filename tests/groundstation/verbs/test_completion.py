@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from groundstation.cli.main import main
+from groundstation.verbs.action import ONLY
 from groundstation.verbs.completion import COMMON, LOCAL_COMMON, MANY
 from groundstation.verbs.main import build_parser
-from groundstation.verbs.table import ONLY, VERBS
+from groundstation.verbs.table import VERBS
 from tests.groundstation.verbs.shell import HELPS, InteractiveShell, complete, skip_without
 
 

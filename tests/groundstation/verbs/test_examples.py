@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
+from groundstation.verbs.action import ONLY
 from groundstation.verbs.command_doc import update
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.manual.examples import AUTOPILOT_EXAMPLES, EXAMPLES
-from groundstation.verbs.table import ONLY, VERBS
+from groundstation.verbs.table import VERBS
 from tests.fakes.params import Param
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document

@@ -8,8 +8,9 @@ import pytest
 
 from groundstation.cli.main import main
 from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
+from groundstation.verbs.action import ONLY
 from groundstation.verbs.manual.mavproxy_words import ACTIONS, WORDS
-from groundstation.verbs.table import ONLY, VERBS
+from groundstation.verbs.table import VERBS
 
 SAID = [
     ("wp list", "use `groundstation mission show`"),
