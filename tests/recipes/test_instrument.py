@@ -28,7 +28,7 @@ class ToyReadout(Instrument[int]):
         return [strip((f"{self.value} texts in the toy", style()))]
 '''
 
-ROW = '    _row("toy", "bottom", ToyReadout, lambda now: len(now.snapshot.texts)),'
+ROW = '    instrument_row("toy", "bottom", ToyReadout, lambda now: len(now.snapshot.texts)),'
 
 LOOK_AT_IT = """
 import asyncio
@@ -46,13 +46,13 @@ asyncio.run(main())
 
 
 def test_an_instrument(tree: Tree) -> None:
-    tree.write("groundstation/ui/widgets/toy.py", TOY)
+    tree.write("groundstation/ui/drive/instruments/toy.py", TOY)
     instruments = "groundstation/ui/drive/instrument_table.py"
     tree.insert_after(
         instruments,
         "from groundstation.ui.drive.instruments.sticks import",
-        "from groundstation.ui.widgets.toy import ToyReadout",
+        "from groundstation.ui.drive.instruments.toy import ToyReadout",
     )
-    tree.insert_before(instruments, '_row("log", "bottom"', ROW)
+    tree.insert_before(instruments, 'instrument_row("log", "bottom"', ROW)
     tree.check_recipe("an instrument of the Drive screen")
     tree.run_script(LOOK_AT_IT)

@@ -28,7 +28,7 @@ class ToyScreen(ConsoleScreen):
         yield Static("nothing but a toy")
 '''
 
-ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f11",), "y", "groundstation.ui.screens.toy:ToyScreen"),'
+ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f11",), "y", "groundstation.ui.setup.toy:ToyScreen"),'
 
 OPEN_IT = """
 import asyncio
@@ -53,7 +53,7 @@ asyncio.run(main())
 
 
 def test_a_screen(tree: Tree) -> None:
-    tree.write("groundstation/ui/screens/toy.py", TOY)
+    tree.write("groundstation/ui/setup/toy.py", TOY)
     tree.insert_after("groundstation/screens.py", '"groundstation.ui.drive.screen:DriveScreen"),', ROW)
     tree.check_recipe("a screen")
     tree.run_script(OPEN_IT)
