@@ -58,7 +58,8 @@ def test_without_coverage_the_program_says_what_to_install() -> None:
         timeout=60,
     )
     assert (ran.returncode, ran.stdout) == (2, "")
-    assert ran.stderr == ("tests.mutation: the package coverage is missing: pip install -e '.[test,mutation]'\n")
+    command = f"{sys.executable} -m pip install 'mavhelm[test,mutation]'"
+    assert ran.stderr == f"tests.mutation: the package coverage is missing: {command}\n"
 
 
 def test_a_list_of_mutants_needs_no_coverage() -> None:

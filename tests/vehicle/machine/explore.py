@@ -59,7 +59,7 @@ def identity(rig: Rig) -> State:
         driver and (driver.conversation.peer.address, driver.session is not None, driver.is_copy),
         driver and sum(ownership.silence_duration(now) > limit for limit in (0.7, 2.0)),
         ownership.takeover_allowed, ownership._proofs.session_of(_conversation("A"), now) is not None,
-        _is_program(rig, "T"), bool(rig.rover._safety.failsafes.active),
+        _is_program(rig, "T"), bool(rig.rover._safety.failsafes.active), rig.oracle.asking(now),
     )  # fmt: skip
 
 
@@ -98,7 +98,8 @@ class Explorer:
 
     def __init__(self, rig: Rig, events: Mapping[str, Event], more: Description) -> None:
         self._rig, self._events, self._more = rig, events, more
-        self._snapshots = Snapshots(rig.rover)
+        handlers = [getattr(spec.run, "__self__", None) for spec in rig.rover.commands]
+        self._snapshots = Snapshots([rig.rover, *handlers])  # handlers of commands know who asks for control
         self.explored = Explored()
 
     def run(self) -> Explored:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 DEMAND_AGE = 0.45
 PROOF_AGE = 1.0
 GCS_LOST = 2.0
+ANSWER_WITHIN = 10.0
 SUCCESSION = 0.7
 SETPOINT_AGE = 1.0
 POSITION_AGE = 3.0
@@ -84,6 +85,8 @@ class Oracle:
     terminated: bool = False
     position_at: float = math.inf
     """When the position was lost."""
+    asked: dict[str, float] = field(default_factory=dict)
+    """When each station was refused control, of those that the driver may give it to."""
     owner_seen: float = -math.inf
     permitted: float = -math.inf
 
@@ -102,6 +105,7 @@ class Oracle:
         self._check_mode(seen, accepted)
         self._check_stranger(seen)
         self._note(seen, accepted, now)
+        self._note_asked(seen, accepted, now)
         self._check_motion(rover, seen, around, now, late=False)
 
     def after_cycle(self, rover: Rover, around: Surroundings, now: float, gap: float) -> None:
@@ -129,10 +133,27 @@ class Oracle:
             freed = self.act == "release" and accepted and (self.name == self.was.owner or succeeds)
             assert freed or (seen.state is not SafetyState.ARMED and silence > GCS_LOST), "control was freed"
             return
+        if self._is_given(seen, accepted, now):
+            return
         assert seen.owner == self.name, "control went to somebody who did not ask"
         taken = self.act in ("arm", "force", "request") and accepted
         free = not self.was.owner or self.was.takeover or silence > GCS_LOST
         assert (taken and free) or succeeds, "control was taken"
+
+    def asking(self, now: float) -> tuple[str, ...]:
+        """Return the stations that wait for an answer to their request for control."""
+        return tuple(name for name, at in self.asked.items() if now - at <= ANSWER_WITHIN)
+
+    def _is_given(self, seen: Seen, accepted: bool, now: float) -> bool:
+        """Return whether the driver gave control to a station that asked for it."""
+        return self.act == "release" and accepted and self.name == self.was.owner and seen.owner in self.asking(now)
+
+    def _note_asked(self, seen: Seen, accepted: bool, now: float) -> None:
+        if self.act == "request":
+            others = {name: at for name, at in self.asked.items() if name != self.name}
+            self.asked = others if accepted else others | {self.name: now}
+        elif self.act == "release" and accepted:
+            self.asked = {}
 
     def _ends_session(self, seen: Seen) -> bool:
         """Return whether the session in control was succeeded by a program without proofs at its own address."""
@@ -209,7 +230,7 @@ class Oracle:
         """Note who takes control: by the session that was proven in the last second, or without one."""
         proven = seen.owner == "A" and now - self.proven <= PROOF_AGE and not self._ends_session(seen)
         if seen.owner != self.was.owner or (self.by_session and not proven):
-            granted = self.act == "request" and accepted
+            granted = self.act in ("request", "release") and accepted
             self._forget(confirmed=self.confirmed and granted)
             self.by_session = False
         self.by_session |= proven
@@ -220,7 +241,9 @@ class Oracle:
         return accepted and (arms or self.act == "request")
 
     def _note_life(self, seen: Seen, now: float) -> None:
-        if self.name and self.name == seen.owner:
+        if self.act == "release" and seen.owner not in ("", self.was.owner):
+            self.owner_seen = now
+        elif self.name and self.name == seen.owner:
             silent = self.by_session and not self.good and seen.owner == self.was.owner
             self.owner_seen = self.owner_seen if silent else now
 
