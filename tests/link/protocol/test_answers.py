@@ -14,6 +14,7 @@ from link.signing.keys import SigningKey
 from link.signing.role import Role
 from link.signing.signature import link_and_stamp
 from link.signing.signing import Signing
+from link.signing.verifier import Refusal
 from tests.link.signing.signed import (
     ARM,
     DAY,
@@ -213,3 +214,10 @@ def test_the_best_key_of_a_datagram_decides_about_its_place() -> None:
     data = signed(key=WATCHER, ids=(254, 190)) + signed(stamp=NOW + 1) + signed(ARM, WATCHER, ids=(253, 190))
     assert channel.receive(data, HERE, 0.1) != []
     assert HERE in [peer.address for peer in channel.report().audience]
+
+
+def test_a_key_that_was_withdrawn_is_answered_nothing() -> None:
+    guard = SigningGuard(keep(DRIVER), STATION, 0)
+    late = [(0, 255, 190, 0, signed(key=key, stamp=NOW - DAY)) for key in (STRANGER, DRIVER)]
+    assert guard.find_untimely(None, [(late[0], Refusal.REPLAYED)], HERE, 0.0) is None
+    assert guard.find_untimely(None, [(each, Refusal.REPLAYED) for each in late], HERE, 0.0) == DRIVER

@@ -202,3 +202,8 @@ def test_a_stop_of_a_stranger_costs_no_place() -> None:
     before = hosts(channel)
     assert channel.receive(frame(DISARM), HERE, 1.0) != []
     assert hosts(channel) == before
+
+
+def test_a_stop_goes_to_peers_from_which_no_vehicle_was_heard() -> None:
+    channel = crowd()
+    assert [address for _, address, _ in channel.send(Outgoing(DISARM), now=1.0)] == hosts(channel)

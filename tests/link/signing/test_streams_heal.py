@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from pathlib import Path
 
 import pytest
@@ -88,3 +89,18 @@ def test_spans_are_stored_and_files_without_them_are_read(tmp_path: Path) -> Non
 
 def test_the_kernel_says_whether_its_clock_is_right() -> None:
     assert is_synchronized() in (True, False)
+
+
+def test_a_clock_that_was_right_before_heals_nothing_more() -> None:
+    signing = spoilt(synchronized=True)
+    signing.verifier.streams.record(MINE, FAR)
+    signing.update(NOON + 1.0, 1.0, synchronized=True)
+    assert signing.verifier.streams.newest[MINE] == FAR
+
+
+def test_a_kernel_that_cannot_be_asked_knows_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError("no C library")
+
+    monkeypatch.setattr(ctypes, "CDLL", refuse)
+    assert not is_synchronized()
