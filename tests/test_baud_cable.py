@@ -37,7 +37,7 @@ def sent_in(seconds: float, loss: float) -> tuple[int, int, int]:
     return total, of_copies, copies.most
 
 
-def test_copies_on_the_line_are_those_that_the_ground_station_sent() -> None:
+def test_copies_on_the_line_are_those_the_ground_station_sent() -> None:
     for loss in (0.0, 0.2):
         total, of_copies, counted = sent_in(0.95, loss)
         assert 0 < counted == of_copies < total

@@ -47,7 +47,7 @@ def run_of(**benchmarks: object) -> tuple[Run, list[str]]:
     return Run(benchmarks, Options(quick=True, tlog=None, say=said.append)), said  # type: ignore[arg-type]
 
 
-def test_one_that_fails_does_not_end_the_others_and_is_tried_once_more() -> None:
+def test_failing_one_does_not_end_the_others_and_is_retried_once() -> None:
     run, said = run_of(late=Once(1), broken=Once(9), rootless=needs_root, good=good)
     run.measure(["late", "broken", "rootless", "good"])
     assert set(run.results["results"]) == {"late", "good"}
@@ -57,7 +57,7 @@ def test_one_that_fails_does_not_end_the_others_and_is_tried_once_more() -> None
     assert "rootless is left out: namespaces need root" in said
 
 
-def test_results_are_in_the_file_before_the_next_benchmark_begins(tmp_path: Path) -> None:
+def test_results_are_in_file_before_the_next_benchmark_begins(tmp_path: Path) -> None:
     out, seen = tmp_path / "run.json", list[list[str]]()
 
     def look(options: Options) -> Report:

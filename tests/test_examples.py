@@ -59,7 +59,7 @@ def vehicle(tmp_path: Path) -> Iterator[Callable[..., Vehicle]]:
 
 @pytest.mark.e2e
 @pytest.mark.slow
-def test_drive_square_reaches_every_corner_and_a_log_of_it_can_be_read(
+def test_drive_square_reaches_each_corner_and_logs_it(
     tmp_path: Path, start: Start, vehicle: Callable[..., Vehicle]
 ) -> None:
     port = free_port()

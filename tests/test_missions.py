@@ -86,7 +86,7 @@ class MapDrive(Drive):
         return f"{line.what}: {line.state}" + (f", {line.detail}" if line.detail else "")
 
 
-def test_a_mission_is_drawn_uploaded_driven_and_changed_while_it_is_paused() -> None:
+def test_a_mission_is_drawn_uploaded_driven_and_changed() -> None:
     drive = MapDrive()
     drive.draw((3.0, 0.0), (3.0, 2.0))
     assert drive.model.upload_fault is None
@@ -119,7 +119,7 @@ def test_a_mission_is_drawn_uploaded_driven_and_changed_while_it_is_paused() -> 
     assert math.dist(frame.to_point(drive.view.place), (1.0, 2.0)) < 1.0
 
 
-def test_a_new_mission_is_refused_while_auto_drives_by_the_old_one() -> None:
+def test_a_new_mission_is_refused_while_auto_drives_the_old_one() -> None:
     drive = MapDrive()
     drive.draw((8.0, 0.0))
     drive.go(*drive.model.upload())
@@ -247,7 +247,7 @@ def test_the_track_is_thin_and_where_the_vehicle_was() -> None:
     assert math.dist(track.points[0], track.points[-1]) > 1.0
 
 
-def test_a_verb_that_only_looks_does_not_end_auto_of_a_vehicle_without_a_ground_station() -> None:
+def test_verb_that_only_looks_does_not_end_auto_without_station() -> None:
     drive = MapDrive()
     drive.draw((40.0, 0.0))
     drive.go(*drive.model.upload())

@@ -9,7 +9,7 @@ import pytest
 from tests import order
 
 
-def test_all_are_there_once_and_those_that_compute_keep_their_order(request: pytest.FixtureRequest) -> None:
+def test_all_are_there_once_and_computing_ones_keep_their_order(request: pytest.FixtureRequest) -> None:
     items = sorted(request.session.items, key=lambda item: item.nodeid)
     mixed = order.mix(items)
     assert sorted(item.nodeid for item in mixed) == [item.nodeid for item in items]

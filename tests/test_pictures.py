@@ -13,7 +13,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 POINTS = [(1.0, 3.5), (10.0, 4.2), (100.0, 11.0)]
 
 
-def test_each_point_is_drawn_where_its_figures_say_and_told_in_words() -> None:
+def test_each_point_is_drawn_at_its_figures_and_told_in_words() -> None:
     root = ElementTree.fromstring(draw(PICTURES[1], POINTS, "a run & its machine"))
     places = [(float(each.attrib["cx"]), float(each.attrib["cy"])) for each in root.iter(f"{SVG}circle")]
     assert [x for x, _ in places] == pytest.approx([70.0, 340.0, 610.0])  # a decade is a decade

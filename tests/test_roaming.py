@@ -24,7 +24,7 @@ def obeyed_after_a_change_of_address(loss: float, seed: int) -> float:
 
 
 @pytest.mark.parametrize(("loss", "bound"), [(0.0, 0.4), (0.1, 0.8), (0.2, 1.0)])
-def test_the_driver_is_obeyed_from_another_address_within_a_second(loss: float, bound: float) -> None:
+def test_the_driver_is_obeyed_from_a_new_address_within_a_second(loss: float, bound: float) -> None:
     assert max(obeyed_after_a_change_of_address(loss, seed) for seed in range(8)) <= bound
 
 

@@ -91,7 +91,7 @@ with lock_state_folder(Path({str(folder)!r})):
     assert files == {"parameters.json": 0o600, "vehicle.log": 0o600, "motors.log": 0o600}
 
 
-def test_escape_sequences_of_a_vehicle_reach_neither_terminal_nor_log(
+def test_escape_sequences_of_a_vehicle_reach_no_terminal_or_log(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     output = Output("status", as_json=False, quiet=False)

@@ -89,7 +89,7 @@ def recover(drive: Drive) -> None:
     drive.run(0.5)
 
 
-def test_every_stop_stops_a_rover_that_ignores_what_is_not_signed() -> None:
+def test_every_stop_stops_a_rover_that_ignores_unsigned_frames() -> None:
     """One rover through all of them: after each it drives again, signed."""
     drive = signed_drive()
     for stop, bounds in STOPS.values():
@@ -102,7 +102,7 @@ def test_every_stop_stops_a_rover_that_ignores_what_is_not_signed() -> None:
     assert signing_of(drive).state is SigningState.ON
 
 
-def test_a_station_that_loses_its_key_while_it_drives_stops_the_rover() -> None:
+def test_station_that_loses_its_key_while_driving_stops_rover() -> None:
     drive = signed_drive()
     drive.get_going()
     drive.world.near.channel.guard = None
@@ -127,7 +127,7 @@ def test_the_station_tells_the_state_of_signing(
     assert words in signing.text
 
 
-def test_a_vehicle_that_refuses_an_unsigned_request_is_known_to_require_signing() -> None:
+def test_vehicle_that_refuses_an_unsigned_request_needs_signing() -> None:
     """It has no key to sign with yet, so only its refusal shows it."""
     drive = Drive()
     drive.world.far.channel.guard = SigningGuard(keep(now=drive.world.now), WATCHED, 0)

@@ -163,7 +163,7 @@ def test_a_px4_rover_comes_back_on_the_same_arc(
     assert forward.turn / forward.forward == backward.turn / backward.forward, "the curvature"
 
 
-def test_an_unknown_autopilot_is_treated_as_the_specification_says() -> None:
+def test_an_unknown_autopilot_is_treated_as_specified() -> None:
     assert axis_map(99) is axis_map(Autopilot.GENERIC)
 
 

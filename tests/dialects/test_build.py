@@ -127,7 +127,7 @@ class MAVLink(object):
 mavlink_map = {}'''
 
 
-def test_tables_and_methods_that_nobody_here_uses_are_left_out_and_all_else_stays() -> None:
+def test_unused_tables_and_methods_are_left_out_and_rest_stays() -> None:
     assert strip_unused(MODULE_OF_MAVGEN) == LIGHTENED
 
 

@@ -28,7 +28,7 @@ def folder(tmp_path: Path) -> Path:
     return place
 
 
-def test_the_module_of_this_checkout_is_made_from_its_definitions() -> None:
+def test_the_module_of_this_checkout_matches_its_definitions() -> None:
     assert fault() is None
 
 

@@ -73,7 +73,7 @@ def test_added_fields_are_extensions_with_the_official_crc_extra(
 
 
 @pytest.mark.parametrize("number", [each[0] for each in EXTENDED.values()])
-def test_programs_without_the_added_fields_understand_us_and_are_understood(number: int) -> None:
+def test_programs_without_added_fields_are_understood_both_ways(number: int) -> None:
     theirs = common.mavlink_map[number]
     payload = bytes(range(1, theirs.unpacker.size + 1))
     message = codec.decode(number, payload)

@@ -19,7 +19,7 @@ NAMED = sorted(
 SETS = ("ACKED", "URGENT", "NEWEST_ONLY", "DEMANDS", "COMMANDS", "LOCAL", "UNLOGGED", "SECRET", "LOG_ONLY")
 
 
-def test_every_row_is_a_message_of_the_dialect_that_has_a_name_of_ours() -> None:
+def test_every_row_is_a_named_message_of_the_dialect() -> None:
     assert set(TRAITS) <= set(NAMED)
     assert len({message.id for message in TRAITS}) == len(TRAITS)
 

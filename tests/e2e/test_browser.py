@@ -186,9 +186,7 @@ async def test_who_is_let_in_and_what_a_lost_socket_means(rig: Rig) -> None:
 
 
 @needs_chromium
-async def test_a_tab_of_a_real_browser_drives_loads_nothing_from_outside_and_stops_when_it_dies(
-    rig: Rig, tmp_path: Path
-) -> None:
+async def test_a_browser_tab_drives_offline_and_stops_when_it_dies(rig: Rig, tmp_path: Path) -> None:
     async with Browser(tmp_path) as browser:
         await browser.open(rig.url)
         assert await browser.evaluate("location.href") == f"{rig.base}/", "the token is not in the address"

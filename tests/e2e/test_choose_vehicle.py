@@ -53,9 +53,7 @@ def row(screen: str, name: str) -> str:
     return next((line for line in screen.splitlines() if line.startswith("│") and f" {name} " in line), "")
 
 
-def test_the_other_vehicle_is_chosen_and_driven_and_the_first_one_stands(
-    terminal: Tmux, rovers: dict[int, Vehicle]
-) -> None:
+def test_the_chosen_vehicle_is_driven_and_the_first_one_stands(terminal: Tmux, rovers: dict[int, Vehicle]) -> None:
     terminal.until(lambda screen: "hold r to arm" in screen and "Vehicle" in screen, PATIENCE)
     first = 1 if "Rover 1 " in terminal.screen().splitlines()[0] else 2
     other = 3 - first

@@ -37,7 +37,7 @@ def fleet(made: Fleet) -> Fleet:
     return made
 
 
-def test_a_frozen_router_stops_the_wheels_and_what_it_kept_moves_nothing(fleet: Fleet) -> None:
+def test_frozen_router_stops_wheels_and_old_frames_move_nothing(fleet: Fleet) -> None:
     wires, vehicle = fleet.wires, fleet.wires.vehicle
     waits = Waits(vehicle.process.pid)
     frozen = wires.now
@@ -78,7 +78,7 @@ def test_a_router_that_is_killed_and_restarted(fleet: Fleet) -> None:
     assert wires.transport("alice").problem is None
 
 
-def test_nobody_steers_or_speaks_for_another_with_a_wrong_certificate(fleet: Fleet) -> None:
+def test_wrong_certificate_neither_steers_nor_speaks_for_another(fleet: Fleet) -> None:
     wires, vehicle = fleet.wires, fleet.wires.vehicle
     wires.until(vehicle.stands, lambda now: fleet.driver.step(NEUTRAL))
     stood = wires.now

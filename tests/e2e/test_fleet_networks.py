@@ -35,7 +35,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Fleet, Name
         yield Fleet(tmp_path_factory.mktemp("networks"), stack, networks), networks
 
 
-def test_after_a_cut_of_4_s_nothing_old_moves_and_control_is_back(made: tuple[Fleet, Namespaces]) -> None:
+def test_after_a_4_s_cut_nothing_old_moves_and_control_is_back(made: tuple[Fleet, Namespaces]) -> None:
     fleet, networks = made
     waits = Waits(fleet.wires.vehicle.process.pid)
     with ExitStack() as cut:

@@ -59,7 +59,7 @@ def drives(screen: Screen) -> Snapshot:
 
 
 @pytest.mark.parametrize("intent", [GiveControl(), ReleaseControl(), Quit()], ids=["give", "release", "quit"])
-def test_given_control_stops_the_rover_and_the_other_station_drives(pair: Pair, intent: AnyIntent) -> None:
+def test_given_control_stops_the_rover_and_the_other_drives(pair: Pair, intent: AnyIntent) -> None:
     """Wheels turn, control is handed over, wheels are neutral, and the mode stays; nothing says failsafe."""
     pair.answer(intent)
     drives(pair.other)

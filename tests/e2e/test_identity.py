@@ -195,7 +195,7 @@ def test_a_twins_neutral_unlocks_no_stick_that_is_held(wires: SocketWires, kind:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_killed_drivers_self_driving_is_not_kept_alive_by_a_twin(wires: SocketWires, kind: type[Program]) -> None:
+def test_a_twin_does_not_keep_a_killed_driver_self_driving_alive(wires: SocketWires, kind: type[Program]) -> None:
     driver = driving(wires, kind)
     stop(wires, driver)
     driver.set_mode(Mode.GUIDED)

@@ -28,7 +28,7 @@ FULL = 45.0
 
 
 @pytest.mark.slow
-def test_a_key_needs_no_more_than_its_wire_time_and_30_ms_while_parameters_are_sent() -> None:
+def test_a_key_needs_its_wire_time_and_30_ms_among_parameters() -> None:
     medians: list[float] = []
     chance = random.Random(1)
     with wired(SLOW, "--param", PATIENT_LOOP) as pair:

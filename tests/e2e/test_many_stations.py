@@ -92,7 +92,7 @@ def wait(stations: list[Listener], enough: int, within: float = 60.0) -> None:
         select.select([each.socket for each in stations], [], [], 0.05)
 
 
-def test_sixteen_are_told_everything_and_one_that_wants_more_slows_nobody(stations: list[Listener]) -> None:
+def test_sixteen_stations_get_all_and_a_greedy_one_slows_nobody(stations: list[Listener]) -> None:
     wait(stations, 4)
     greedy = stations[0]
     for message in (m.Attitude, m.VfrHud, m.ServoOutputRaw):

@@ -41,7 +41,7 @@ def stopped_after(world: Rig, since: float) -> float:
     return max(output.at for output in world.vehicle.outputs()) - since
 
 
-def test_a_wheel_turns_while_its_key_is_held_and_stops_with_everything_else(rig: Callable[..., Rig]) -> None:
+def test_wheel_turns_while_its_key_is_held_and_stops_with_rest(rig: Callable[..., Rig]) -> None:
     world = rig()
     program, vehicle = world.station, world.vehicle
     program.wait_for(lambda: b"DISARMED" in program.screen, PATIENCE, "a vehicle")

@@ -44,7 +44,7 @@ def stands_within(station: GroundStation, vehicle: Vehicle, limit: float, since:
     assert vehicle.outputs()[-1].at - since < limit + waits.total()
 
 
-def test_the_rover_is_driven_through_the_bridge_from_udp_to_serial_and_back(stack: ExitStack, tmp_path: Path) -> None:
+def test_the_rover_is_driven_through_a_bridge_from_udp_to_serial(stack: ExitStack, tmp_path: Path) -> None:
     cable, relay = SerialCable(tmp_path), Relay()
     stack.callback(cable.close)
     stack.callback(relay.close)
@@ -67,9 +67,7 @@ def test_the_rover_is_driven_through_the_bridge_from_udp_to_serial_and_back(stac
     drive_on(station, vehicle)
 
 
-def test_a_ground_station_on_the_port_drives_and_an_unplugged_cable_stops_the_wheels(
-    stack: ExitStack, tmp_path: Path
-) -> None:
+def test_station_on_port_drives_and_unplugging_stops_the_wheels(stack: ExitStack, tmp_path: Path) -> None:
     cable = SerialCable(tmp_path)
     stack.callback(cable.close)
     station = GroundStation(tmp_path, cable.two)

@@ -117,7 +117,7 @@ def hold(rig: Rig, seconds: float) -> None:
 
 
 @pytest.mark.slow
-def test_every_stop_that_leaves_the_programs_at_work_and_then_the_terminal_closed(rig: Rig) -> None:
+def test_every_stop_of_living_programs_and_then_closed_terminal(rig: Rig) -> None:
     """One after the other with the same programs, because their start takes most of the time."""
     check_released_key(rig)
     drive_again(rig)

@@ -26,7 +26,7 @@ BUSY = 0.1
 """s for which the machine made the vehicle or the watchdog wait: then the failsafe may come first."""
 
 
-def test_a_key_for_a_station_that_runs_drives_and_the_watchdog_signs_with_it(
+def test_key_given_to_running_station_drives_and_signs_its_stops(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The vehicle ignores what is not signed. The key comes while station and watchdog run.

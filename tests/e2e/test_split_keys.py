@@ -38,7 +38,7 @@ def send_in_two(world: Rig, sequence: str, cut: int) -> None:
     world.station.look(GAP)
 
 
-def test_split_keys_change_neither_mode_nor_screen_and_drive_nothing(rig: Callable[..., Rig]) -> None:
+def test_split_keys_change_no_mode_or_screen_and_drive_nothing(rig: Callable[..., Rig]) -> None:
     world = rig()
     world.drive()
     world.relay.wait(world.vehicle.stands, PATIENCE, "the wheels stop")
@@ -58,7 +58,7 @@ def test_split_keys_change_neither_mode_nor_screen_and_drive_nothing(rig: Callab
     world.drive()
 
 
-def test_a_split_key_stops_who_drives_and_so_does_the_emergency_stop_behind_one(rig: Callable[..., Rig]) -> None:
+def test_a_split_key_or_a_stop_behind_one_stops_the_wheels(rig: Callable[..., Rig]) -> None:
     world = rig()
     for sequence in (KEYS["F3"], KEYS["up"]):
         world.drive()

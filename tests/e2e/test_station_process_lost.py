@@ -154,7 +154,7 @@ def assert_reset(program: GroundStation, before: Sequence[object]) -> None:
     wait_until(lambda: termios.tcgetattr(program._terminal) == before)
 
 
-def test_a_killed_screen_that_was_attached_leaves_the_terminal_as_it_was(tmp_path: Path) -> None:
+def test_a_killed_attached_screen_leaves_the_terminal_as_it_was(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "groundstation", "serve", "--headless", f"udpin:127.0.0.1:{free_port()}"]
     with subprocess.Popen(command, stderr=subprocess.DEVNULL) as station:
         try:

@@ -73,7 +73,7 @@ def test_a_stop_key_in_a_burst_wins(rig: Build) -> None:
 
 
 @pytest.mark.parametrize("opener", ["\x1b[17~", "\x07"], ids=["log", "go-to menu"])
-def test_a_key_held_over_another_screen_does_not_drive_there_nor_when_drive_is_back(rig: Build, opener: str) -> None:
+def test_a_key_held_over_another_screen_does_not_drive(rig: Build, opener: str) -> None:
     """F6 and the go-to menu, while the key repeats all the time, as from a second keyboard."""
     world = rig()
     world.drive()

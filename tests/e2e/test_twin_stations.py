@@ -49,7 +49,7 @@ def in_control(seen: Snapshot) -> bool:
     return seen.vehicle is not None and seen.vehicle.in_control
 
 
-def test_the_twin_is_told_that_another_program_drives_and_its_keys_move_nothing(twins: Twins) -> None:
+def test_a_twin_is_told_of_the_driver_and_its_keys_move_nothing(twins: Twins) -> None:
     seen = twins.twin.see(lambda seen: seen.vehicle is not None and seen.vehicle.twin)
     assert not in_control(seen)
     twins.twin.client.send(ReportKeyReleases(), FORWARD)
@@ -61,7 +61,7 @@ def test_the_twin_is_told_that_another_program_drives_and_its_keys_move_nothing(
     assert in_control(twins.driver.snapshot)
 
 
-def test_after_the_driver_is_killed_the_twin_drives_once_its_key_is_pressed_anew(twins: Twins) -> None:
+def test_a_twin_drives_after_the_driver_is_killed_by_a_fresh_key(twins: Twins) -> None:
     twins.twin.see(lambda seen: seen.vehicle is not None and seen.vehicle.twin)
     twins.twin.client.send(ReportKeyReleases(), FORWARD)
     os.kill(twins.driver.client.pid, signal.SIGKILL)

@@ -126,7 +126,7 @@ def service(machine: Machine) -> Iterator[Service]:
         machine.run("systemctl", "reset-failed", UNIT)
 
 
-def test_it_is_active_once_it_is_ready_drives_keeps_what_it_should_and_stops(service: Service) -> None:
+def test_the_service_is_active_when_ready_drives_and_stops(service: Service) -> None:
     service.start()
     assert service.property("ActiveState") == "active"
     assert service.property("StatusText") == f"system 1, {service.ground.endpoint}"
@@ -140,7 +140,7 @@ def test_it_is_active_once_it_is_ready_drives_keeps_what_it_should_and_stops(ser
     assert all(log.stat().st_size > 0 for log in logs)
 
 
-def test_after_a_kill_safe_stop_stops_the_wheels_and_it_starts_again(service: Service) -> None:
+def test_safe_stop_stops_the_wheels_after_a_kill_and_it_restarts(service: Service) -> None:
     service.start()
     killed = service.drive_and_send("KILL")
     stopped_by_safe_stop(service, killed)
@@ -162,7 +162,7 @@ def stopped_by_safe_stop(service: Service, ended: int) -> None:
     assert not service.turning()
 
 
-def test_a_mistake_in_the_file_is_an_error_in_the_journal_and_not_tried_again(service: Service) -> None:
+def test_a_mistake_in_the_file_is_in_the_journal_and_not_retried(service: Service) -> None:
     service.write("[motors\n")
     service.fail_to_start()
     assert (service.property("SubState"), service.property("NRestarts")) == ("failed", "0")

@@ -28,7 +28,7 @@ PAIRS = [
     ("first", "second"),
     [pytest.param(*pair, marks=[NEEDED[name] for name in set(pair) if name in NEEDED]) for pair in PAIRS],
 )
-def test_the_second_sees_all_and_drives_only_when_it_is_given_control(
+def test_the_second_sees_all_and_drives_only_when_given_control(
     first: str, second: str, rover: Rover, tmp_path: Path
 ) -> None:
     folders = [tmp_path / "first", tmp_path / "second"]

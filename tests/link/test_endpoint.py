@@ -157,7 +157,7 @@ def test_two_endpoints_that_listen_on_the_same_port_are_refused(texts: tuple[str
     assert all(f"'{text}'" in str(caught.value) for text in texts)
 
 
-def test_one_port_on_two_addresses_or_for_two_protocols_is_not_given_twice() -> None:
+def test_one_port_of_two_addresses_or_protocols_is_not_doubled() -> None:
     texts = (
         "udpin:127.0.0.1:14550",
         "udpin:192.168.1.2:14550",

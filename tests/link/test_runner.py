@@ -132,7 +132,7 @@ async def test_the_core_ticks_and_hears_of_its_links_while_flooded(ground: socke
     assert core.reports[0][0].name == f"udpin:127.0.0.1:{port}"
 
 
-async def test_a_port_that_is_away_is_told_to_the_log_and_that_it_has_come_too(
+async def test_a_port_that_goes_away_and_returns_is_logged_both_times(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """A vehicle without a screen has no other way to say that its port is missing."""
@@ -189,7 +189,7 @@ async def test_last_words_go_out_after_the_core_has_raised(ground: socket.socket
     assert ground.recv(300)[7] == Heartbeat.id
 
 
-async def test_a_message_that_cannot_be_encoded_is_logged_and_the_rest_goes_out(
+async def test_message_that_cannot_be_encoded_is_logged_and_rest_sent(
     ground: socket.socket, caplog: pytest.LogCaptureFixture
 ) -> None:
     def speak(core: Recorder) -> bool:
@@ -260,7 +260,7 @@ class Withdrawing(Recorder):
         return not isinstance(message, ManualControl)
 
 
-async def test_a_withdrawn_message_is_not_sent_and_each_frame_that_is_sent_is_reported(ground: socket.socket) -> None:
+async def test_a_withdrawn_message_is_not_sent_and_frames_are_reported(ground: socket.socket) -> None:
     runners: list[Runner] = []
     core = Withdrawing(lambda core: len(core.ticks) > 3, runners)
     core.outbox = [Outgoing(ManualControl(1, 600, 0, 0, 0, 0)), Outgoing(Heartbeat(6, 8, 0, 0, 4, 3))]
@@ -278,7 +278,7 @@ async def test_a_withdrawn_message_is_not_sent_and_each_frame_that_is_sent_is_re
     assert [type(message) for message, _ in core.numbers] == [Heartbeat]
 
 
-async def test_frames_that_a_program_with_two_links_hands_back_are_no_other_system() -> None:
+async def test_frames_returned_by_a_program_with_two_links_are_our_own() -> None:
     """A ground station forwards what arrives on one link to the other, until it has seen the vehicle there as well."""
     ports = free_port(), free_port()
     runners: list[Runner] = []
@@ -317,7 +317,7 @@ class Resting(Recorder):
         return None if self.received else REST_PERIOD
 
 
-async def test_a_core_that_rests_is_ticked_less_often_until_a_message_comes(ground: socket.socket) -> None:
+async def test_resting_core_is_ticked_less_often_until_a_message_comes(ground: socket.socket) -> None:
     port, runner = free_port(), list[Runner]()
 
     def done(core: Recorder) -> bool:
@@ -445,7 +445,7 @@ class Looking(Recorder):
         return frozenset((len(self.ticks) // 10,))
 
 
-async def test_a_link_that_can_choose_is_told_which_vehicles_are_looked_at() -> None:
+async def test_a_link_that_can_choose_is_told_the_selected_vehicles() -> None:
     runner, told, late = list[Runner](), list[object](), list[object]()
     core = Looking(lambda core: len(core.ticks) >= 25, runner)
     links = open_links([f"udpin:127.0.0.1:{free_port()}" for _ in range(3)], system=1, component=1)

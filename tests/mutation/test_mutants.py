@@ -75,7 +75,7 @@ def test_a_mutant_is_compiled_and_leaves_the_others_as_they_were(
     assert values == [2, 0]
 
 
-def test_survivors_need_an_explanation_and_explanations_a_survivor(
+def test_survivors_need_explanation_and_explanations_a_survivor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first, second = mutants_of("A = 1\n", tmp_path, monkeypatch)

@@ -33,7 +33,7 @@ def test_a_result_holds_until_its_module_or_a_test_changes(tmp_path: Path, monke
     assert Results(file, [str(test)]).find(killed) is None
 
 
-def test_the_last_result_counts_and_without_a_file_nothing_is_kept(
+def test_the_last_result_counts_and_without_a_file_none_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     mutant, _ = mutants_of("A = 1\n", tmp_path, monkeypatch)

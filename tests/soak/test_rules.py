@@ -68,7 +68,7 @@ def frame(message: m.Message, system: int) -> bytes:
     return codec.frame(type(message).id, codec.encode_payload(message), 0, system, 190)
 
 
-def test_the_witness_counts_demands_of_motion_and_reads_what_is_obeyed() -> None:
+def test_witness_counts_demands_of_motion_and_reads_obedience() -> None:
     seen = Witness()
     for axes in (Axes(), Axes(throttle=0.5)):
         seen.station_says(frame(build_manual_control(axes, 1), 254), 10.0)
@@ -100,7 +100,7 @@ def test_a_process_that_grows_is_named() -> None:
     assert life.faults() == [], "it only touches what it shares"
 
 
-def test_what_fills_up_in_ten_minutes_does_not_grow_and_what_goes_on_does() -> None:
+def test_filling_up_in_ten_minutes_differs_from_endless_growth() -> None:
     for forever, judged in ((0.0, 0.0), (2.0, 2.0)):
         life = Life("station one", 1, 0.0)
         for second in range(0, 1800, 10):

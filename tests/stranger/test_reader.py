@@ -31,7 +31,7 @@ def read(folder: Path, text: str, no_skips: bool = False) -> Reader:
     return reader
 
 
-def test_lines_are_typed_in_one_terminal_with_an_empty_environment(
+def test_lines_are_typed_in_one_terminal_with_empty_environment(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("MINE", "1")

@@ -33,7 +33,7 @@ def names(dialect: Dialect) -> list[str]:
 
 
 @pytest.mark.parametrize("file", sorted(each.stem for each in SHIPPED.glob("*.xml")))
-def test_every_definition_of_pymavlink_gives_what_its_generator_gives(file: str) -> None:
+def test_every_pymavlink_definition_matches_its_generator(file: str) -> None:
     dialect = load(f"{file}.xml")
     theirs = importlib.import_module(f"pymavlink.dialects.v20.{file}")
     for each in dialect.messages:
@@ -47,7 +47,7 @@ def test_every_definition_of_pymavlink_gives_what_its_generator_gives(file: str)
         assert len(entries) == len(enum.names) + 1  # ENUM_END
 
 
-def test_an_include_is_beside_the_file_that_includes_it_or_beside_the_first_or_pymavlinks(tmp_path: Path) -> None:
+def test_include_is_found_beside_its_file_or_first_or_pymavlinks(tmp_path: Path) -> None:
     (tmp_path / "sub").mkdir()
     write(tmp_path / "sub", deep=with_message(FIELD, head='id="51001" name="DEEP"', include="beside.xml"))
     write(tmp_path, beside=with_message(FIELD, head='id="51002" name="BESIDE"', include="minimal.xml"))
@@ -56,7 +56,7 @@ def test_an_include_is_beside_the_file_that_includes_it_or_beside_the_first_or_p
     ]  # fmt: skip
 
 
-def test_a_copy_beside_the_file_replaces_pymavlinks_also_where_that_is_included_by_another(tmp_path: Path) -> None:
+def test_copy_beside_file_replaces_pymavlinks_in_all_includes(tmp_path: Path) -> None:
     copy = with_message(FIELD, head='id="51003" name="COPY"')
     text = "<mavlink><include>standard.xml</include><include>minimal.xml</include></mavlink>"
     found = names(load(write(tmp_path, my=text, minimal=copy)))
@@ -97,7 +97,7 @@ def test_a_file_that_is_missing_may_be_one_of_pymavlinks() -> None:
     assert "HEARTBEAT" in names(load("ardupilotmega.xml"))
 
 
-def test_two_messages_with_one_id_or_one_name_are_refused_with_both_places(tmp_path: Path) -> None:
+def test_two_messages_of_one_id_or_name_name_their_places(tmp_path: Path) -> None:
     other = with_message(FIELD, head='id="51000" name="B"')
     file = write(tmp_path, my=with_message(FIELD, include="other.xml"), other=other)
     assert refusal(file) == f"{tmp_path}/other.xml:2: B has the id 51000 of A ({file}:2): change one"
@@ -107,7 +107,7 @@ def test_two_messages_with_one_id_or_one_name_are_refused_with_both_places(tmp_p
     assert refusal(file) == f"{tmp_path}/other.xml:2: the name of A ({file}:2) again: rename one"
 
 
-def test_two_entries_with_one_value_or_one_name_are_refused_with_both_places(tmp_path: Path) -> None:
+def test_two_entries_of_one_value_or_name_name_their_places(tmp_path: Path) -> None:
     file = write(
         tmp_path, my=with_entries('<enum name="E"><entry name="A" value="1"/>\n<entry name="B" value="1"/></enum>')
     )
@@ -119,7 +119,7 @@ def test_two_entries_with_one_value_or_one_name_are_refused_with_both_places(tmp
 
 
 @pytest.mark.parametrize("further", ['<entry name="B"/><entry name="C" value="5"/>', '<entry name="B" value="40"/>'])
-def test_values_that_are_given_automatically_are_those_of_the_generator(further: str, tmp_path: Path) -> None:
+def test_automatic_values_are_those_of_the_generator(further: str, tmp_path: Path) -> None:
     enum = '<enum name="E"><description/><entry name="A0"/><entry name="A1"/><entry name="A9" value="9"/></enum>'
     more = with_entries(f'<enum name="E">{further}</enum>')
     text = with_entries(enum).replace("<mavlink>", "<mavlink><include>more.xml</include>")
@@ -128,7 +128,7 @@ def test_values_that_are_given_automatically_are_those_of_the_generator(further:
     assert dict(load(file).enums["E"].names).items() <= {n: entry.name for n, entry in theirs.items()}.items()
 
 
-def test_the_messages_of_a_user_are_those_that_the_generator_makes(tmp_path: Path) -> None:
+def test_messages_of_a_user_are_those_that_the_generator_makes(tmp_path: Path) -> None:
     (tmp_path / "minimal.xml").write_bytes((SHIPPED / "minimal.xml").read_bytes())  # mavgen looks only there
     file = write(tmp_path, gripper=GRIPPER)
     theirs = generate(Path(file), tmp_path / "generated.py").mavlink_map

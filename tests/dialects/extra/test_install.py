@@ -59,7 +59,7 @@ def test_messages_are_added_with_their_fields(tmp_path: Path) -> None:
     assert kind.fielddisplays_by_name == {"flags": "bitmask"}
 
 
-def test_no_code_that_reads_a_field_of_any_message_finds_those_of_a_user(tmp_path: Path) -> None:
+def test_code_that_reads_any_field_finds_none_of_a_user(tmp_path: Path) -> None:
     use(tmp_path, GRIPPER)
     for number in (51000, 51001):
         message = codec.decode(number, b"\1")
@@ -81,7 +81,7 @@ def test_a_message_with_the_built_in_definition_stays_built_in(tmp_path: Path) -
     assert type(codec.decode(0, b"\1")) is m.Heartbeat
 
 
-def test_another_definition_replaces_a_built_in_message_that_no_program_reads(tmp_path: Path) -> None:
+def test_definition_replaces_built_in_message_that_nothing_reads(tmp_path: Path) -> None:
     number = DEBUG_VECT
     _, note = use(tmp_path, with_message(FIELD, head=f'id="{number}" name="MY_VECTOR"'))
     assert note.text == f"dialect {tmp_path}/my.xml replaces built-in definitions: MY_VECTOR"
@@ -89,7 +89,7 @@ def test_another_definition_replaces_a_built_in_message_that_no_program_reads(tm
     assert codec.BASE_SIZE[number] == 1
 
 
-def test_a_built_in_message_that_programs_read_stays_and_a_warning_names_both(tmp_path: Path) -> None:
+def test_built_in_message_in_use_stays_and_a_warning_names_both(tmp_path: Path) -> None:
     ours = m.RoverControl.id
     text = with_message(FIELD, head=f'id="{ours}" name="MINE"').replace(
         "</messages>", f'<message id="50000" name="FREE">{FIELD}</message></messages>'

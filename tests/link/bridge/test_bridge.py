@@ -227,7 +227,7 @@ def test_a_live_table_on_a_terminal(bridge: Callable[..., Program], cable: Cable
     os.close(terminal)
 
 
-def test_it_records_what_passes_and_the_file_is_whole_after_a_signal(
+def test_it_records_what_passes_and_a_signal_leaves_a_whole_file(
     bridge: Callable[..., Program], cable: Cable, ground: socket.socket, tmp_path: Path
 ) -> None:
     program = bridge(cable.endpoint, to(ground), "--tlog", str(tmp_path / "logs"))
@@ -287,7 +287,7 @@ def test_frames_are_joined_whole_and_in_order() -> None:
 # ---- the document ----
 
 
-def test_the_document_names_every_endpoint_and_option_and_the_right_numbers() -> None:
+def test_the_document_names_every_endpoint_option_and_number() -> None:
     text = (Path(__file__).parents[3] / "docs/bridge.md").read_text()
     for scheme in SCHEMES.values():
         assert f"`{scheme.syntax}`" in text

@@ -19,7 +19,7 @@ def status(problem: str | None = None, number: int = 0) -> BridgeStatus:
     return BridgeStatus((replace(LINK, problem=problem),), (), number, 0)
 
 
-def test_a_problem_is_logged_once_when_it_begins_and_once_when_it_is_over(caplog: pytest.LogCaptureFixture) -> None:
+def test_problem_is_logged_once_at_its_begin_and_once_at_its_end(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.INFO)
     logger = StatusLogger()
     for problem in (None, None, f"{LINK.endpoint}: unplugged", f"{LINK.endpoint}: unplugged", None, None):
@@ -31,7 +31,7 @@ def test_a_problem_is_logged_once_when_it_begins_and_once_when_it_is_over(caplog
     assert LINK.endpoint in over.getMessage()
 
 
-def test_an_output_that_blocks_holds_nobody_up_and_continues_with_the_newest() -> None:
+def test_blocked_output_delays_nobody_and_continues_with_newest() -> None:
     drawn: list[int] = []
     begun, free, ended = threading.Event(), threading.Event(), threading.Event()
 
@@ -52,7 +52,7 @@ def test_an_output_that_blocks_holds_nobody_up_and_continues_with_the_newest() -
     assert drawn == [0, 99]
 
 
-def test_an_output_that_was_closed_is_logged_and_the_bridge_goes_on(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_closed_output_is_logged_and_the_bridge_goes_on(caplog: pytest.LogCaptureFixture) -> None:
     tried = threading.Event()
 
     def draw(status: BridgeStatus) -> None:

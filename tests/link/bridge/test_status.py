@@ -36,7 +36,7 @@ async def transports() -> AsyncIterator[list[Transport]]:
         each.close()
 
 
-async def test_rates_are_those_since_the_last_reading_and_counts_those_since_the_start(
+async def test_rates_are_since_last_reading_and_counts_since_the_start(
     transports: list[Transport],
 ) -> None:
     meter = Meter(transports)
@@ -58,7 +58,7 @@ async def test_rates_are_those_since_the_last_reading_and_counts_those_since_the
     assert meter.meter.read(13.0).links[0].frames_in_per_s == 0.0
 
 
-async def test_loss_is_a_share_of_the_last_second_and_lost_frames_are_counted(transports: list[Transport]) -> None:
+async def test_loss_is_share_of_the_last_second_and_lost_frames_count(transports: list[Transport]) -> None:
     meter = Meter(transports)
     for number in (0, 1, 2, 4, 5, 7):
         meter.hear(0, heartbeat(number, 1, 1), VEHICLE, 10.0)

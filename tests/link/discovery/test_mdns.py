@@ -15,7 +15,7 @@ from link.runtime.install_hint import install_command
 ROVER = MavlinkService("Rover 1", "", 0)
 
 
-def test_a_missing_library_is_named_with_the_extra_that_brings_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_library_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "zeroconf", None)
     browser = Browser()
     browser.open()

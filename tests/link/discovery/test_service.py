@@ -56,7 +56,7 @@ def test_texts_of_others_are_cut_and_cleaned() -> None:
     assert service.role is ServiceRole.UNKNOWN
 
 
-def test_endpoints_that_listen_are_announced_where_they_are_reached() -> None:
+def test_listening_endpoints_are_announced_where_reachable() -> None:
     endpoints = [parse_endpoint(text) for text in ("udpin:0.0.0.0:1", "udpin:127.0.0.1:1", "tcpin:10.0.0.7:1")]
     assert all(map(can_announce, endpoints))
     assert [announces_here_only(each) for each in endpoints] == [False, True, False]

@@ -122,7 +122,7 @@ def test_without_the_package_one_line_says_how_to_install_it(monkeypatch: pytest
     assert not find_trust(parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm"))
 
 
-def test_an_end_has_one_pool_of_threads_unless_the_user_chooses_others(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_end_has_one_thread_pool_unless_the_user_sets_more(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(THREADS_VARIABLE, "(rx: (worker_threads: 3))")
     endpoint = parse_endpoint("zenoh:tcp/127.0.0.1:7447/farm")
     load_config(endpoint)

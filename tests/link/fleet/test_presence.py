@@ -31,7 +31,7 @@ def test_nobody_fills_the_memory_with_tokens() -> None:
     assert not presence.add("alice/0")
 
 
-def test_a_system_id_belongs_to_its_first_vehicle_while_that_is_there() -> None:
+def test_a_system_id_belongs_to_its_first_present_vehicle() -> None:
     presence = Presence()
     presence.add("rover1")
     assert presence.owner(7, "rover1") == "rover1"

@@ -31,7 +31,7 @@ def unexpected(problem: str) -> None:
 
 
 @pytest.mark.parametrize("protocol", ["tcp", "tls"])
-def test_a_router_that_listens_answers_at_once_and_sees_no_connection(protocol: str) -> None:
+def test_listening_router_answers_at_once_and_sees_no_connection(protocol: str) -> None:
     with closing(listener()) as at:
         assert RouterProbe([locator(protocol, at)]).find(None, NEVER, unexpected) == locator(protocol, at)
         if sys.platform == "linux":

@@ -125,7 +125,7 @@ async def test_two_vehicles_with_one_system_id_are_not_taken_for_one(port: int) 
         each.transport.close()
 
 
-async def test_only_vehicles_that_are_looked_at_send_all_of_their_telemetry(port: int) -> None:
+async def test_only_selected_vehicles_send_all_of_their_telemetry(port: int) -> None:
     station, rover = ends(port, "rover1")
     await until(lambda: station.received and rover.received)
     me = rover.received[0][1]
@@ -163,7 +163,7 @@ async def test_only_vehicles_that_are_looked_at_send_all_of_their_telemetry(port
         each.transport.close()
 
 
-async def test_without_a_router_the_link_says_why_and_connects_when_there_is_one() -> None:
+async def test_without_a_router_the_link_says_why_and_connects_later() -> None:
     port = free_port()
     station, rover = ends(port, "rover1")
     refused = f"no router at tcp/127.0.0.1:{port} (connection refused); trying again"
@@ -245,7 +245,7 @@ async def test_the_key_of_a_command_follows_each_of_them(port: int, monkeypatch:
         each.transport.close()
 
 
-def test_a_thread_of_zenoh_keeps_its_state_of_python_from_callback_to_callback(port: int) -> None:
+def test_a_zenoh_thread_keeps_its_python_state_between_callbacks(port: int) -> None:
     """Otherwise it is made and freed for each of them, which holds back the loop that the callback has woken."""
     config = zenoh.Config()
     apply_settings(config, SETTINGS | {"mode": "client", "connect/endpoints": [f"tcp/127.0.0.1:{port}"]})

@@ -87,7 +87,7 @@ def test_a_replay_at_its_own_place_is_a_copy_for_5_s(behind: int, answered: bool
     assert (answers(channel) == [(HERE, 0)]) is answered
 
 
-def test_a_replay_from_elsewhere_or_beside_another_key_is_answered() -> None:
+def test_a_replay_from_elsewhere_or_of_another_key_is_answered() -> None:
     channel = vehicle(keep(DRIVER, WATCHER))
     channel.receive(signed(), HERE, 0.0)
     channel.receive(signed(), THERE, 0.0)
@@ -138,7 +138,7 @@ def test_the_answer_tells_the_time_that_is_accepted() -> None:
 
 
 @pytest.mark.parametrize(("ahead", "at_once"), [(DAY, True), (DAY + 1, False)])
-def test_a_station_follows_a_day_at_once_and_more_once_it_is_reported(ahead: int, at_once: bool) -> None:
+def test_station_follows_one_day_at_once_and_more_once_reported(ahead: int, at_once: bool) -> None:
     channel = station(keep(DRIVER), STATION)
     channel.receive(signed(stamp=NOW + ahead, ids=(1, 1)), HERE, 0.0)
     assert link_and_stamp(send(channel)[0])[1] - NOW == (ahead if at_once else 0)
@@ -169,7 +169,7 @@ def test_who_knows_the_right_time_follows_a_day(ahead: int, followed: bool) -> N
     assert told >= ahead if followed else 30 * SECOND <= told < 31 * SECOND
 
 
-def test_a_clock_that_is_behind_is_not_followed_and_the_largest_lead_is_kept() -> None:
+def test_clock_behind_is_not_followed_and_largest_lead_is_kept() -> None:
     channel = vehicle(keep(DRIVER))
     for link_id, stamp in enumerate((NOW - 30 * SECOND, NOW + 20 * SECOND, NOW + 10 * SECOND)):
         channel.receive(signed(stamp=stamp, link_id=link_id), HERE, 0.0)

@@ -54,7 +54,7 @@ def test_a_message_tells_who_sent_it() -> None:
     assert found.introduced
 
 
-def test_a_new_address_must_introduce_itself_before_it_may_control() -> None:
+def test_a_new_address_introduces_itself_before_it_may_control() -> None:
     channel = vehicle()
     channel.receive(heartbeat(0), HERE, 0.0)
     assert not channel.receive(demand(1), THERE, 0.1)[0].introduced
@@ -106,7 +106,7 @@ def test_a_repeated_frame_has_no_second_effect() -> None:
     assert channel.report().duplicates == 2
 
 
-def test_an_overtaken_demand_is_dropped_and_an_overtaken_command_is_not() -> None:
+def test_an_overtaken_demand_is_dropped_but_a_command_is_not() -> None:
     channel = vehicle()
     channel.receive(demand(10), HERE, 0.0)
     assert channel.receive(demand(9), HERE, 0.0) == []
@@ -161,7 +161,7 @@ def test_demands_never_go_back_within_a_numbering(order: list[int]) -> None:
             newest[found.numbering] = found.sequence
 
 
-def test_systems_that_sign_are_reported_while_their_newest_frame_is_signed() -> None:
+def test_system_is_reported_as_signing_while_its_newest_frame_is() -> None:
     channel = vehicle()
     channel.receive(heartbeat(0, system=7), HERE, 0.0)
     assert channel.report().signing == frozenset()
@@ -240,7 +240,7 @@ def audience(channel: Channel) -> tuple[Peer, ...]:
     return channel.report().audience
 
 
-def test_the_audience_is_who_has_shown_a_heartbeat_and_whom_the_user_named() -> None:
+def test_the_audience_is_who_sent_a_heartbeat_or_was_named() -> None:
     channel = vehicle(target=THERE)
     assert [peer.address for peer in audience(channel)] == [THERE]
     channel.receive(demand(0), HERE, 0.0)
@@ -262,7 +262,7 @@ def test_who_was_silent_for_long_and_is_back_is_another_peer() -> None:
     assert sent(channel, CommandAck(400, 0), peer=second) == [(HERE, 0)]
 
 
-def test_a_named_address_that_was_silent_for_long_is_another_peer_once() -> None:
+def test_a_named_address_that_was_silent_long_is_a_new_peer_once() -> None:
     channel = vehicle(target=HERE)
     first = audience(channel)
     channel.expire_peers(100.0)
@@ -286,7 +286,7 @@ def test_a_connection_that_ends_ends_the_conversation() -> None:
     assert audience(channel) != first
 
 
-def test_a_connection_is_sent_to_before_it_has_spoken_and_while_it_lasts() -> None:
+def test_a_connection_is_sent_to_before_it_speaks_until_it_ends() -> None:
     channel = vehicle(stream=True)
     assert channel.receive(b"", HERE, 0.0) == []
     [peer] = audience(channel)
@@ -304,7 +304,7 @@ def test_a_datagram_without_anything_in_it_makes_no_peer() -> None:
     assert audience(channel) == ()
 
 
-def test_a_connection_that_says_nothing_keeps_no_place_that_another_needs() -> None:
+def test_a_silent_connection_keeps_no_place_that_another_needs() -> None:
     channel = vehicle(stream=True)
     for port in range(MAX_PEERS):
         channel.receive(b"", ("10.0.0.1", port), 0.001 * port)
@@ -341,7 +341,7 @@ def test_22_peers_are_limited_and_a_real_one_keeps_its_place() -> None:
     assert channel.receive(heartbeat(1), HERE, 5.0) != []
 
 
-def test_a_crowd_of_introduced_peers_refuses_the_next_until_one_is_silent() -> None:
+def test_introduced_peers_refuse_the_next_until_one_is_silent() -> None:
     channel = vehicle()
     for port in range(MAX_PEERS + 1):
         channel.receive(heartbeat(0, system=100 + port), ("10.0.0.1", port), 0.0)
@@ -367,7 +367,7 @@ def test_a_flood_is_limited_and_a_stop_still_passes() -> None:
     assert len(channel.receive(frame(DISARM, 5001 % 256), HERE, 0.1)) == 1
 
 
-def test_a_station_takes_files_faster_than_a_vehicle_and_other_messages_no_faster() -> None:
+def test_station_takes_files_faster_than_a_vehicle_but_no_others() -> None:
     piece = FileTransferProtocol(0, 1, 1, bytes(range(251)))
     for options, kind, least, most in (
         ({"downloads": True}, piece, 5000, 5000),
@@ -380,7 +380,7 @@ def test_a_station_takes_files_faster_than_a_vehicle_and_other_messages_no_faste
         assert least <= sum(map(len, taken)) <= most
 
 
-def test_a_script_that_asks_as_fast_as_it_is_answered_is_always_answered() -> None:
+def test_script_that_asks_as_fast_as_answered_is_always_answered() -> None:
     channel = vehicle()
     channel.receive(heartbeat(0), HERE, 0.0)
     for number in range(1, 1000):
@@ -413,7 +413,7 @@ def test_a_foreign_dialect_is_named_after_three_frames() -> None:
     assert channel.report().dialect_mismatch == ("HEARTBEAT",)
 
 
-def test_damage_of_a_message_that_also_arrives_whole_is_no_foreign_dialect() -> None:
+def test_damage_of_a_known_message_is_no_foreign_dialect() -> None:
     channel = vehicle()
     damaged = bytearray(heartbeat(0))
     damaged[-1] ^= 0x55

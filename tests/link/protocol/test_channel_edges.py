@@ -138,7 +138,7 @@ def test_own_ids_that_were_seen_once_stay_reported() -> None:
     assert channel.report().own_id
 
 
-def test_frames_that_one_channel_sends_and_the_other_gets_back_are_our_own() -> None:
+def test_frames_that_return_on_another_channel_are_our_own() -> None:
     sent = SentFrames()
     one, other = vehicle(sent=sent, target=THERE), vehicle(sent=sent)
     for data in send(one):
@@ -160,7 +160,7 @@ def test_a_log_gets_what_arrives_and_nothing_of_noise() -> None:
     assert calls == [[heartbeat(0), demand(1)], [demand(2)]]
 
 
-def test_wanted_messages_are_handed_on_and_others_are_not_limited() -> None:
+def test_wanted_messages_are_handed_on_and_others_not_limited() -> None:
     channel = vehicle(wanted=frozenset({Ping.id}))
     for number in range(1100):
         assert channel.receive(frame(FileTransferProtocol(0, 1, 1, bytes(251)), number % 256), HERE, 0.0) == []
@@ -179,7 +179,7 @@ def test_commands_beyond_the_limit_are_dropped_and_stops_are_not() -> None:
 
 
 @pytest.mark.parametrize("repeats", [1, 3])
-def test_a_stop_is_handed_on_as_often_as_it_comes_and_other_frames_once(repeats: int) -> None:
+def test_a_stop_is_handed_on_each_time_and_other_frames_once(repeats: int) -> None:
     for message, handed_on in ((DISARM, 1 + repeats), (ARM, 1)):
         channel = vehicle()
         found = [each for _ in range(1 + repeats) for each in channel.receive(frame(message, 9), HERE, 0.0)]
@@ -205,7 +205,7 @@ def test_link_ids_begin_again_after_32_links() -> None:
         assert link_and_stamp(send(channel)[0])[0] == first + 3
 
 
-def test_stops_and_all_else_of_a_sender_without_a_place_that_signs() -> None:
+def test_only_stops_of_a_signing_sender_without_a_place_count() -> None:
     channel = guarded(keep(DRIVER), SigningPolicy(None, open_stops=True))
     for port in range(MAX_PEERS):
         channel.receive(signed(stamp=NOW + port), ("192.0.2.9", port), 0.0)
@@ -213,7 +213,7 @@ def test_stops_and_all_else_of_a_sender_without_a_place_that_signs() -> None:
     assert [each.sequence for each in channel.receive(data, THERE, 0.0)] == [3, 50]
 
 
-def test_a_message_for_nobody_in_particular_goes_to_all_and_one_for_another_system_to_none() -> None:
+def test_a_broadcast_goes_to_all_and_foreign_messages_to_none() -> None:
     channel = vehicle()
     channel.receive(heartbeat(0), HERE, 0.0)
     assert [len(list(channel.send(Outgoing(each)))) for each in (HEARTBEAT, ARM)] == [1, 0]
@@ -244,7 +244,7 @@ def test_a_system_whose_key_was_withdrawn_is_not_verified() -> None:
     assert channel.report().verified == frozenset()
 
 
-def test_a_system_whose_key_was_replaced_under_its_name_is_not_verified_and_gets_nothing_of_the_new_key() -> None:
+def test_system_with_replaced_key_is_not_verified_and_gets_none() -> None:
     signing = keep(DRIVER, WATCHER)
     signing.set_ring(signing.ring.choose(WATCHER.name))
     channel = guarded(signing)

@@ -69,7 +69,7 @@ def test_counts_of_several_framers_are_summed() -> None:
     assert (total.frames, total.crc_errors, total.resync_bytes, total.unknown, total.refused) == (2, 4, 6, 8, 10)
 
 
-def test_each_demand_and_command_beyond_the_limit_is_counted_once() -> None:
+def test_each_demand_and_command_over_the_limit_is_counted_once() -> None:
     channel = vehicle()
     passed = sum(len(channel.receive(demand(number), HERE, 0.0)) for number in range(60))
     assert (passed, channel.report().rate_limited) == (50, 10)
@@ -118,7 +118,7 @@ def test_a_frame_of_system_0_is_not_ours() -> None:
     assert not channel.report().own_id
 
 
-def test_another_program_with_our_ids_is_reported_though_our_own_frames_come_back() -> None:
+def test_another_program_with_our_ids_is_told_from_our_echo() -> None:
     sent = SentFrames()
     channel = vehicle(sent=sent)
     ours = frame(Heartbeat(10, 3, 0, 0, 3, 3), 7, 1, 1)
@@ -136,7 +136,7 @@ def test_a_channel_has_as_many_places_as_it_is_given() -> None:
     assert channel.receive(heartbeat(0, system=254), THERE, 0.0) == []
 
 
-def test_the_place_of_the_peer_that_is_silent_for_longest_is_given_away() -> None:
+def test_the_place_of_the_longest_silent_peer_is_given_away() -> None:
     channel = vehicle(places=2)
     channel.receive(heartbeat(0, system=10), "old", 0.0)
     channel.receive(heartbeat(0, system=11), "older", -1.0)
@@ -149,7 +149,7 @@ def test_the_address_that_the_user_named_keeps_its_place() -> None:
     assert channel.receive(heartbeat(0), HERE, PEER_SILENCE * 2) == []
 
 
-def test_a_connection_that_is_opened_again_goes_on_with_its_numbers() -> None:
+def test_a_reopened_connection_goes_on_with_its_numbers() -> None:
     channel = vehicle(stream=True, target="serial")
     assert [raw[4] for raw in send(channel)] == [0]
     channel.handle_disconnect("serial")
@@ -194,7 +194,7 @@ def test_noise_takes_no_place_of_a_channel_that_signs() -> None:
     assert not list(channel._peers)
 
 
-def test_a_system_whose_clock_is_behind_gets_our_frames_and_is_not_silent() -> None:
+def test_a_system_whose_clock_is_behind_gets_our_frames() -> None:
     channel = guarded(keep(DRIVER), GREETS)
     assert channel.receive(signed(stamp=NOW - DAY), HERE, 0.0) == []
     assert len(send(channel)) == 1
@@ -238,7 +238,7 @@ def test_a_header_has_ids_of_three_bytes(data: bytes, header: Header) -> None:
     assert read_header(data) == header
 
 
-def test_the_shortest_frames_have_a_header_and_shorter_ones_at_an_end_have_none() -> None:
+def test_the_shortest_frames_have_a_header_and_shorter_ones_none() -> None:
     shortest = b"\xfe\x00\x07\xff\xbe\x00\x00\x00"
     assert read_header(shortest) == Header(0, 255, 190, 7, len(shortest))
     assert read_header(codec.frame(0, b"\x01", 0, 1, 1)[:12]) is not None
@@ -249,7 +249,7 @@ def test_the_shortest_frames_have_a_header_and_shorter_ones_at_an_end_have_none(
 # ---- vehicles that are not looked at ----
 
 
-def test_only_of_a_system_that_sends_everything_missing_numbers_are_lost() -> None:
+def test_missing_numbers_are_lost_only_of_system_that_sends_all() -> None:
     channel = Channel("fleet", 0, system=255, component=190, stream=True)
 
     def lost(first: int, now: float) -> list[int]:

@@ -35,7 +35,7 @@ def test_only_a_heartbeat_that_is_late_brings_our_frames() -> None:
     assert send(channel) == []
 
 
-def test_the_watchdog_signs_as_the_peer_does_on_a_link_id_of_its_own() -> None:
+def test_the_watchdog_signs_as_the_peer_on_a_link_id_of_its_own() -> None:
     channel = vehicle(keep(DRIVER, WATCHER), index=2)
     channel.receive(signed(key=WATCHER, stamp=NOW + 1000), HERE, 0.0)
     channel.receive(signed(stamp=NOW, ids=(254, 190)), THERE, 0.0)
@@ -83,7 +83,7 @@ def test_the_delay_has_a_limit_and_ends_with_the_reports() -> None:
     assert flow.headroom(1.001 + FORGET_AFTER) == 1.0
 
 
-def test_a_link_without_a_radio_has_all_its_capacity_and_its_transport_tells_why_it_is_down() -> None:
+def test_link_without_radio_has_full_capacity_and_says_why_down() -> None:
     channel = Channel("udpin:127.0.0.1:14550", 0, system=1, component=1)
     channel.receive(frame(RadioStatus(200, 200, 1, 30, 30, 0, 0), 0, 51, 68), HERE, 0.0)
     assert channel.report().headroom == 1.0
@@ -93,7 +93,7 @@ def test_a_link_without_a_radio_has_all_its_capacity_and_its_transport_tells_why
 # ---- places ----
 
 
-def test_one_frame_with_the_ids_in_control_is_enough_for_a_reserved_place() -> None:
+def test_one_frame_of_the_ids_in_control_fills_a_reserved_place() -> None:
     channel = Channel("udpin:127.0.0.1:14550", 0, system=1, component=1)
     for port in range(MAX_PEERS):
         channel.receive(heartbeat(0, system=100), f"10.0.0.9:{port}", 0.0)

@@ -177,7 +177,7 @@ def test_empty_short_and_huge_datagrams(data: bytes) -> None:
 
 @pytest.mark.parametrize("router", [False, True])
 @pytest.mark.parametrize("number", [Heartbeat.id, 61000])
-def test_a_datagram_shorter_than_a_signature_is_no_frame_or_one_of_an_unknown_id(number: int, router: bool) -> None:
+def test_datagram_shorter_than_signature_is_no_frame_or_unknown(number: int, router: bool) -> None:
     """A frame of 12 to 14 bytes with a bad checksum ended the program: its signature was looked for."""
     for length in (0, 1, 2):
         data = bytes([0xFD, length, 0, 0, 7, 1, 1, number & 255, number >> 8, 0, *(5,) * length, 1, 2])
@@ -212,7 +212,7 @@ def test_in_noise_an_unknown_id_hides_and_delays_nothing() -> None:
     assert framer.counts.unknown == 1
 
 
-def test_an_unknown_frame_that_does_not_end_where_another_begins_is_none() -> None:
+def test_an_unknown_frame_that_does_not_end_at_another_is_none() -> None:
     framer = Framer(stream=False, unknown=True)
     assert sequences(framer, unknown(1) + b"rest") == []
     assert sequences(framer, unknown(1)[:-1]) == []
@@ -253,7 +253,7 @@ def test_a_sound_frame_of_an_unknown_id_is_no_damage(old: bool, piece: int) -> N
     assert counts.unknown_ids == {(1, 1, number): (len(INSIDE), len(foreign(0, INSIDE[-1] + b"xx", old=old)))}
 
 
-def test_unknown_ids_in_datagrams_are_counted_by_their_source_up_to_a_bound() -> None:
+def test_unknown_ids_are_counted_by_their_source_up_to_a_bound() -> None:
     framer = Framer(stream=False)
     for number in range(2 * MAX_UNKNOWN):
         for size in (3, 5):

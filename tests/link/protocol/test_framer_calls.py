@@ -87,14 +87,14 @@ def test_frames_that_arrive_together_take_no_call_each(stream: bool, number: int
     assert framer.counts.frames == 4
 
 
-def test_a_stream_is_searched_when_the_length_of_a_frame_is_known_and_when_the_frame_is_there() -> None:
+def test_stream_is_searched_at_known_length_and_at_a_whole_frame() -> None:
     framer, data = Framer(stream=True), demand(1) + demand(2)
     calls = [called(partial(framer.feed, data[at : at + 1], 0.0)) for at in range(len(data))]
     searched = [at for at, names in enumerate(calls, 1) if "_scan" in names]
     assert searched == [1, 12, 23, 24, 35, 46]
 
 
-def test_a_frame_whose_length_is_known_waits_for_its_last_byte_behind_others() -> None:
+def test_a_frame_of_known_length_waits_for_its_last_byte() -> None:
     framer = Framer(stream=True)
     assert len(framer.feed(demand(1) + demand(2)[:12], 50.0)) == 1
     assert called(lambda: framer.feed(demand(2)[12:22], 50.0)) == ["feed", "_feed_stream"]
@@ -117,7 +117,7 @@ def test_a_right_checksum_alone_makes_no_frame(data: bytes, stream: bool) -> Non
     assert [raw for *_, raw in frames] == [demand(3)]
 
 
-def test_a_datagram_without_the_signature_that_its_flag_announces_is_no_frame() -> None:
+def test_a_datagram_without_its_announced_signature_is_no_frame() -> None:
     framer = Framer(stream=False)
     assert framer.feed(build(9, flags=1), 0.0) == []
     assert framer.counts.frames == 0

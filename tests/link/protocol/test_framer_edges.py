@@ -54,7 +54,7 @@ def test_a_frame_that_is_cut_anywhere_is_none_and_harms_none(whole: bytes, strea
 @pytest.mark.parametrize(
     "whole", [SHORT_OLD, version_1(MissionCount(1, 1, 9), 5), version_1(Heartbeat(6, 8, 0, 0, 4, 3), 5)]
 )
-def test_a_short_frame_of_mavlink_1_is_found_when_its_last_byte_is_there(whole: bytes) -> None:
+def test_a_short_mavlink_1_frame_is_found_at_its_last_byte(whole: bytes) -> None:
     framer = Framer(stream=True)
     assert sequences(framer, whole) == [5]
     assert sequences(framer, demand(1) + whole) == [1, 5]
@@ -72,7 +72,7 @@ def test_noise_is_counted_where_it_is_found(stream: bool) -> None:
 
 @BOTH
 @pytest.mark.parametrize("length", [0, 1])
-def test_a_frame_of_the_least_length_with_a_wrong_checksum_is_counted(length: int, stream: bool) -> None:
+def test_the_shortest_frame_with_a_wrong_checksum_is_counted(length: int, stream: bool) -> None:
     framer = Framer(stream=stream)
     data = bytes([0xFD, length, 0, 0, 7, 1, 1, 0, 0, 0, *(1,) * length, 0, 0])
     for times in (1, 2):
@@ -93,7 +93,7 @@ def test_an_empty_frame_of_mavlink_1_is_refused_or_unknown(
 
 
 @BOTH
-def test_a_signed_frame_of_an_unknown_id_is_unknown_and_not_refused(stream: bool) -> None:
+def test_signed_frame_of_unknown_id_is_unknown_and_not_refused(stream: bool) -> None:
     framer = Framer(stream=stream)
     assert sequences(framer, unknown(flags=1) + demand(1)) == [1]
     assert (framer.counts.unknown, framer.counts.refused) == (1, 0)
@@ -101,9 +101,7 @@ def test_a_signed_frame_of_an_unknown_id_is_unknown_and_not_refused(stream: bool
 
 
 @BOTH
-def test_signed_frames_with_an_id_of_three_bytes_are_found_among_others(
-    stream: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_signed_frames_with_three_byte_id_are_found_among_others(stream: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     from fastcrc.crc16 import mcrf4xx
 
     monkeypatch.setitem(CRC_EXTRA, 0x012345, b"\x77")
@@ -117,14 +115,14 @@ def test_signed_frames_with_an_id_of_three_bytes_are_found_among_others(
 
 
 @pytest.mark.parametrize("start", [0.0, 1.1, 50.0, 1234.567, 86_400.3])
-def test_at_the_deadline_everything_behind_a_forged_header_is_found_at_once(start: float) -> None:
+def test_at_the_deadline_all_behind_a_forged_header_is_found(start: float) -> None:
     framer = Framer(stream=True)
     assert framer.feed(FORGED + FORGED + bytes(20) + FORGED + demand(7), start) == []
     assert [each[3] for each in framer.expire(start + PARTIAL_DEADLINE + 1e-6)] == [7]
     assert framer.expire(start + 1.0) == []
 
 
-def test_bytes_that_arrive_at_the_deadline_come_behind_those_that_waited() -> None:
+def test_bytes_at_the_deadline_come_behind_those_that_waited() -> None:
     framer = Framer(stream=True)
     assert framer.feed(FORGED + demand(7), 0.0) == []
     assert sequences(framer, demand(8) + demand(9), now=PARTIAL_DEADLINE) == [7, 8, 9]
@@ -132,14 +130,14 @@ def test_bytes_that_arrive_at_the_deadline_come_behind_those_that_waited() -> No
     assert sequences(framer, demand(8)[12:], now=1.2) == [7, 8]
 
 
-def test_bytes_that_arrive_before_the_deadline_wait_with_the_others() -> None:
+def test_bytes_before_the_deadline_wait_with_the_others() -> None:
     framer = Framer(stream=True)
     assert framer.feed(FORGED + demand(7), 50.0) == []
     assert sequences(framer, demand(8), now=50.0 + PARTIAL_DEADLINE * 0.9) == []
     assert sequences(framer, b"", now=50.0 + PARTIAL_DEADLINE * 1.1) == [7, 8]
 
 
-def test_the_deadline_counts_from_the_first_byte_of_the_frame_that_is_not_complete() -> None:
+def test_deadline_counts_from_the_first_byte_of_the_open_frame() -> None:
     framer = Framer(stream=True)
     assert sequences(framer, demand(1)[:12], now=50.0) == []
     assert sequences(framer, demand(1)[12:] + demand(2)[:12], now=50.09) == [1]
@@ -151,7 +149,7 @@ def test_the_deadline_counts_from_the_first_byte_of_the_frame_that_is_not_comple
     assert framer.counts.resync_bytes == 0
 
 
-def test_a_frame_behind_one_that_was_given_up_has_its_own_deadline() -> None:
+def test_a_frame_behind_one_given_up_has_its_own_deadline() -> None:
     framer = Framer(stream=True)
     assert framer.feed(FORGED + demand(1) + demand(2)[:12], 50.0) == []
     assert [each[3] for each in framer.expire(50.11)] == [1]
@@ -174,7 +172,7 @@ def test_a_partial_frame_waits_for_100_ms() -> None:
 # ---- what damage is counted ----
 
 
-def test_damage_inside_what_was_no_frame_is_added_to_what_was_counted_before() -> None:
+def test_damage_inside_a_false_frame_is_added_to_the_count() -> None:
     wrong_length = bytes([0xFE, 3, 1, 1, 1, 0, 1, 2, 3, 4, 5])
     framer = Framer(stream=True)
     assert sequences(framer, damaged(SHORT) + wrong_length + demand(1)) == [1]
@@ -202,7 +200,7 @@ def test_damage_directly_behind_an_unknown_frame_is_damage(stream: bool) -> None
 
 
 @BOTH
-def test_damage_behind_what_only_claimed_to_be_an_unknown_frame_is_damage(stream: bool) -> None:
+def test_damage_behind_a_false_unknown_frame_is_damage(stream: bool) -> None:
     framer = Framer(stream=stream)
     assert sequences(framer, unknown() + b"rest" + damaged(SHORT) + demand(1)) == [1]
     assert (framer.counts.unknown, framer.counts.crc_errors) == (0, 1)
@@ -218,7 +216,7 @@ def test_of_a_damaged_frame_inside_another_both_are_counted(stream: bool) -> Non
     assert framer.counts.mismatches == {253: 1}
 
 
-def test_a_known_foreign_definition_is_counted_on_when_the_table_is_full() -> None:
+def test_a_known_foreign_definition_counts_on_in_a_full_table() -> None:
     framer = Framer(stream=False)
     numbers = [number for number in sorted(CRC_EXTRA) if number < 256][:70]
     for _ in range(2):
@@ -237,7 +235,7 @@ def test_mismatches_and_unknown_ids_are_summed() -> None:
     assert total.unknown_ids == {(1, 1, 900): (6, 20)}
 
 
-def test_a_claim_inside_which_a_header_was_given_up_is_no_unknown_frame() -> None:
+def test_claim_with_a_given_up_header_inside_is_no_unknown_frame() -> None:
     """Also if a frame begins one byte behind its end, where the end would be if the byte given up were not counted."""
     framer = Framer(stream=True)
     assert sequences(framer, unknown(FORGED + b"xx") + b"z" + demand(1)) == []
@@ -271,7 +269,7 @@ def test_for_a_router_no_unknown_frame_begins_behind_noise(noise: bytes) -> None
         assert sequences(framer, unknown() + demand(2)) == [9, 2]
 
 
-def test_for_a_router_no_unknown_frame_begins_inside_one_that_was_given_up() -> None:
+def test_a_router_finds_no_unknown_frame_inside_one_given_up() -> None:
     inner = bytes([0xFD, 0, 0, 0, 9, 255, 69, 0, 0, 0xEE, 0x12, 0x34])  # behind 0xFD a header of a MANUAL_CONTROL
     framer = Framer(stream=True, unknown=True)
     assert sequences(framer, b"\xfd" + inner + demand(1)) == []

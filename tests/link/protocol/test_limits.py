@@ -42,7 +42,7 @@ def test_what_counts_as_proof_and_as_silence() -> None:
     assert PEER_SILENCE == 10.0
 
 
-def test_link_ids_of_a_byte_are_shared_by_32_links_and_their_watchdogs() -> None:
+def test_link_ids_of_a_byte_are_shared_by_32_links_and_watchdogs() -> None:
     assert (LANES, WATCHDOG_LANE) == (4, 128)
     assert AHEAD_MAX == 86_400 * 100_000, "a day of 10 us"
 
@@ -172,7 +172,7 @@ def test_nothing_is_passed_on_if_nothing_is_recorded() -> None:
 # ---- times and counts of a channel ----
 
 
-def test_reports_and_frames_are_of_time_0_and_nothing_was_dropped_unless_told() -> None:
+def test_reports_and_frames_default_to_time_0_and_no_drops() -> None:
     channel = vehicle(stream=True, target="x", capacity=5760.0)
     channel.receive(frame(RadioStatus(200, 200, 1, 30, 30, 0, 0), 0, 51, 68), "x", -4.5)
     assert channel.report().headroom < 1.0
@@ -212,7 +212,7 @@ def test_the_clock_of_a_peer_is_followed_until_2100() -> None:
         assert (link_and_stamp(send(channel)[0])[1] >= stamp) is followed
 
 
-def test_how_far_a_clock_is_ahead_is_reported_in_seconds_for_those_that_are() -> None:
+def test_the_lead_of_a_clock_is_reported_in_seconds() -> None:
     channel = station(keep(DRIVER))
     channel.receive(signed(stamp=NOW + 250_000, ids=(1, 1)), HERE, 0.0)
     channel.receive(signed(stamp=NOW, ids=(2, 1)), THERE, 0.0)

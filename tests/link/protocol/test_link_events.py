@@ -16,7 +16,7 @@ def report(received: int, **changes: Any) -> LinkReport:
     return LinkReport("udpin:127.0.0.1:14550", frames=received, **changes)
 
 
-def test_a_link_that_goes_down_comes_back_and_goes_down_again_is_told_each_time() -> None:
+def test_a_link_is_told_each_time_it_goes_down_and_comes_back() -> None:
     troubles = LinkEvents()
     gone = report(0, down="udpin:127.0.0.1:14550: lost the port (hung up); waiting for it")
     told = [troubles.update(each) for each in (report(0), gone, gone, report(1), report(2), gone)]
@@ -24,7 +24,7 @@ def test_a_link_that_goes_down_comes_back_and_goes_down_again_is_told_each_time(
     assert told == [None, lost, None, LinkEvent("it is back", Severity.NOTICE), None, lost]
 
 
-def test_connecting_is_no_news_and_who_was_never_there_is_not_back() -> None:
+def test_connecting_is_no_news_and_a_newcomer_is_not_back() -> None:
     troubles = LinkEvents()
     whys = ("connecting", "not connected (refused)", None, "lost", "not connected (refused)", None)
     told = [troubles.update(report(0, down=why)) for why in whys]
@@ -71,7 +71,7 @@ def test_a_wrong_dialect_is_told_with_what_helps() -> None:
     ]
 
 
-def test_a_wrong_baud_rate_is_told_once_however_much_noise_there_is() -> None:
+def test_a_wrong_baud_rate_is_told_once_in_any_amount_of_noise() -> None:
     troubles, channel = (
         LinkEvents(),
         Channel("serial:/dev/ttyS0:57600", 0, system=1, component=1, stream=True, capacity=5760),

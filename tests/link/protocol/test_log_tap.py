@@ -74,7 +74,7 @@ def test_a_frame_that_two_links_bring_is_recorded_once() -> None:
     assert tapped.frames == [demand(number) for number in range(4)]
 
 
-def test_a_repeat_on_one_link_and_a_much_later_one_on_another_are_recorded() -> None:
+def test_repeat_on_one_link_and_late_one_on_another_are_recorded() -> None:
     tapped = Tapped()
     for link, now in ((0, 0.0), (0, 0.1), (1, 0.2), (1, 2 * COPY_WINDOW + 0.3)):
         tapped.log_tap.record_received([framed(demand(1))], link, now)
@@ -88,7 +88,7 @@ def test_the_memory_of_copies_is_bounded() -> None:
     assert len(copies._links) + len(copies._older) <= 2 * MAX_REMEMBERED
 
 
-def test_our_own_frame_that_comes_back_is_not_recorded_again_but_another_programs_is() -> None:
+def test_another_programs_frame_is_recorded_but_not_our_echo() -> None:
     sent, frames = SentFrames(), list[bytes]()
     tap = LogTap(lambda now, new: frames.extend(new), system=255, component=190, sent=sent)
     sent.add(demand(1))

@@ -49,13 +49,13 @@ def watched_crowd() -> Channel:
 # ---- ranks ----
 
 
-def test_an_unsigned_newcomer_of_another_host_gets_no_place_in_a_crowd() -> None:
+def test_unsigned_newcomer_of_a_new_host_has_no_place_in_a_crowd() -> None:
     channel = crowd()
     assert channel.receive(heartbeat(0), HERE, 1.0) == []
     assert channel.report().refused_peers == 1
 
 
-def test_a_verified_newcomer_takes_the_place_that_was_heard_longest_ago() -> None:
+def test_a_verified_newcomer_takes_the_place_heard_longest_ago() -> None:
     channel = crowd()
     channel.receive(heartbeat(1, system=100), ("10.0.0.0", 14550), 0.5)
     assert channel.receive(signed(key=WATCHER), HERE, 1.0) != []
@@ -108,7 +108,7 @@ def test_more_than_4_strangers_with_the_ids_in_control_leave() -> None:
     assert HERE in hosts(channel)
 
 
-def test_a_verified_sender_without_heartbeat_keeps_its_place_from_strangers() -> None:
+def test_a_verified_sender_without_heartbeat_keeps_its_place() -> None:
     channel = vehicle(keep(DRIVER), OPEN)
     channel.receive(signed(DISARM), HERE, 0.0)
     for number in range(200):
@@ -162,7 +162,7 @@ def test_an_operator_of_a_fleet_has_4_places() -> None:
         assert channel.receive(heartbeat(0), address, 0.1) != []
 
 
-def test_a_run_that_has_missed_a_heartbeat_leaves_its_place_to_the_next() -> None:
+def test_run_that_missed_heartbeat_leaves_its_place_to_the_next() -> None:
     channel = fleet(4)
     channel.receive(heartbeat(1, system=200), "eve/0", 1.0)
     assert channel.receive(heartbeat(0), "eve/9", 1.4) == []
@@ -183,7 +183,7 @@ def test_six_operators_do_not_keep_a_seventh_out() -> None:
 # ---- stops ----
 
 
-def test_a_verified_stop_without_a_place_is_answered_with_its_key_and_time() -> None:
+def test_verified_stop_without_a_place_is_answered_with_its_key() -> None:
     channel = vehicle(keep(DRIVER, WATCHER), OPEN)
     for number in range(PLACES):
         data = signed(stamp=NOW + number, ids=(100, 190), sequence=number)

@@ -23,7 +23,7 @@ def test_a_meter_forgets_after_its_window() -> None:
     assert meter.rate(10.0) == 0
 
 
-def test_a_bucket_of_another_rate_keeps_what_it_has_as_far_as_it_fits() -> None:
+def test_a_bucket_of_another_rate_keeps_the_tokens_that_fit() -> None:
     bucket = TokenBucket(rate=10, burst=5)
     assert bucket.consume(0.0)
     bucket.set_rate(1, 2)
@@ -31,7 +31,7 @@ def test_a_bucket_of_another_rate_keeps_what_it_has_as_far_as_it_fits() -> None:
     assert [bucket.consume(1.0), bucket.consume(1.0)] == [True, False]
 
 
-def test_a_change_of_the_rate_gives_no_tokens_and_takes_those_beyond_the_burst() -> None:
+def test_rate_change_adds_no_tokens_and_drops_those_over_burst() -> None:
     empty = TokenBucket(rate=10, burst=5)
     assert [empty.consume(0.0) for _ in range(6)] == [True] * 5 + [False]
     empty.set_rate(10, 10)
@@ -41,7 +41,7 @@ def test_a_change_of_the_rate_gives_no_tokens_and_takes_those_beyond_the_burst()
     assert [full.consume(0.0) for _ in range(3)] == [True, True, False]
 
 
-def test_each_sender_has_one_in_its_period_and_a_crowd_is_bounded() -> None:
+def test_each_sender_has_one_a_period_and_a_crowd_is_bounded() -> None:
     limit = SenderLimit(1.0, 3)
     assert [limit.allow("a", now) for now in (0.0, 0.5, 0.99, 1.0, 1.5)] == [True, False, False, True, False]
     assert [limit.allow(each, 1.6) for each in "bcd"] == [True, True, False]

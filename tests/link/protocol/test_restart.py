@@ -41,7 +41,7 @@ class Former:
 
 @pytest.mark.parametrize("behind", [0, 1, 5, 31, LATE_WINDOW])
 @pytest.mark.parametrize("silence", [CLASH_SILENCE + 0.01, 2.0, NUMBERING_SILENCE - 0.1])
-def test_another_frame_with_a_number_of_the_silent_run_begins_a_run(silence: float, behind: int) -> None:
+def test_another_frame_with_number_of_a_silent_run_begins_a_run(silence: float, behind: int) -> None:
     former = Former()
     assert former.after(silence, behind, 1) is NEW
     assert (former.tracker.numbering.index, former.tracker.numbering.former) == (2, 1)
@@ -68,7 +68,7 @@ def test_a_number_that_the_silent_run_has_not_used_is_late() -> None:
     assert former.tracker.numbering.index == 2
 
 
-def test_a_copy_of_the_former_run_in_the_numbers_of_the_next_is_a_clash() -> None:
+def test_a_copy_of_the_former_run_within_the_next_is_a_clash() -> None:
     former = Former()
     former.after(1.0, 20, 1)
     copies = former.frames[-19:-12]  # next in the new run, by their numbers
@@ -88,7 +88,7 @@ def test_a_copy_of_the_former_run_in_the_numbers_of_the_next_is_a_clash() -> Non
     assert former.tracker.clash, "also one that others have overtaken"
 
 
-def test_a_run_far_from_the_former_one_does_not_clash_with_equal_frames() -> None:
+def test_run_far_from_the_former_one_does_not_clash_with_copies() -> None:
     former = Former()
     assert former.after(1.0, LATE_WINDOW + 6, 1) is NEW
     assert former.tracker.numbering.former == 0

@@ -3,7 +3,7 @@ from __future__ import annotations
 from link.protocol.sent_frames import FRAMES_MAX, SentFrames
 
 
-def test_the_newest_frames_are_remembered_and_the_oldest_forgotten() -> None:
+def test_newest_frames_are_remembered_and_the_oldest_forgotten() -> None:
     sent = SentFrames()
     frames = [number.to_bytes(8, "little") for number in range(3 * FRAMES_MAX)]
     for frame in frames:

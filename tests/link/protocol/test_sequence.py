@@ -137,7 +137,7 @@ def test_a_fast_sender_with_losses_stays_in_one_numbering() -> None:
 
 
 @pytest.mark.parametrize(("gap", "same"), [(69, True), (70, False)])
-def test_an_overtaken_frame_ends_a_second_in_which_the_rate_is_measured(gap: int, same: bool) -> None:
+def test_overtaken_frame_ends_a_second_of_the_rate_measurement(gap: int, same: bool) -> None:
     sender = Sender().stream(1, 60, 100)
     assert sender.take(62, wait=0.3) is NEW
     assert sender.take(61, OTHER, wait=0.11) is NEW  # the 62 frames before it took 1.01 s
@@ -236,7 +236,7 @@ def test_from_then_on_they_are_lost_again() -> None:
     assert sender.tracker.lost == 2
 
 
-def test_among_expected_gaps_a_late_frame_is_found_again_and_a_jump_is_no_loss() -> None:
+def test_late_frames_and_jumps_among_expected_gaps_are_no_loss() -> None:
     sender = Sender().stream(1, 60, 20)
     sender.take(63)
     sender.take(200)

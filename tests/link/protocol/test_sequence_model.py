@@ -213,7 +213,7 @@ def test_a_rare_message_that_was_overtaken_is_not_late() -> None:
     assert tracker.accept(223, 69, 223, 2.25) is NEW
 
 
-def test_all_of_the_newest_frames_are_known_again_wherever_the_numbers_wrap() -> None:
+def test_newest_frames_are_known_again_where_the_numbers_wrap() -> None:
     tracker = SequenceTracker(0, 30, 1000, 0.0)
     for number in range(1, 600):
         assert tracker.accept(number % 256, 30, 1000 + number, number / 100) is NEW
@@ -259,7 +259,7 @@ def test_numberings_clash_up_to_a_silence_of_700_ms(silence: float, clash: bool)
     assert tracker.clash is clash, "8 numbers apart"
 
 
-def test_the_numbering_with_the_fewest_frames_is_given_up_however_these_arrived() -> None:
+def test_the_numbering_with_the_fewest_frames_is_given_up() -> None:
     tracker = SequenceTracker(10, 30, 1, 0.0)
     for number, kind in ((14, 30), (13, 69), (12, 76)):  # 4 frames, two of them overtaken
         assert tracker.accept(number, kind, number, 0.0) is NEW

@@ -104,7 +104,7 @@ def test_the_sender_of_an_open_stop_can_be_answered() -> None:
     assert [address for _, address, _ in channel.send(Outgoing(HEARTBEAT, received.peer))] == [HERE]
 
 
-def test_unsigned_radio_status_controls_the_flow_and_nothing_else() -> None:
+def test_unsigned_radio_status_controls_the_flow_only() -> None:
     channel = vehicle(keep(DRIVER), capacity=5760.0)
     assert channel.receive(frame(RADIO, system=51, component=68), HERE, 0.0) == []
     report = channel.report(now=0.0)
@@ -154,7 +154,7 @@ def test_frames_that_overtake_others_have_link_ids_of_their_own() -> None:
         assert link_and_stamp(send(channel)[0])[0] == first + 3
 
 
-def test_a_peer_whose_clock_is_ahead_gets_its_own_time_and_others_theirs() -> None:
+def test_peer_with_a_clock_ahead_gets_its_own_time_others_theirs() -> None:
     """The specification says to take over the later time: but a wrong one must not spread to other vehicles."""
     ahead = vehicle(keep(DRIVER, wall=NOON + 3650 * 86_400.0))
     ground = station(keep(DRIVER))
@@ -166,7 +166,7 @@ def test_a_peer_whose_clock_is_ahead_gets_its_own_time_and_others_theirs() -> No
 
 
 @pytest.mark.parametrize("years", [-40, -1, 1, 10])
-def test_both_ends_meet_however_wrong_the_clock_of_the_vehicle_is(years: int) -> None:
+def test_both_ends_meet_however_wrong_the_vehicles_clock_is(years: int) -> None:
     rover = keep(DRIVER, wall=NOON + years * 365 * 86_400.0)
     ground = station(keep(DRIVER), GREETS)
     far = vehicle(rover, stream=True)
@@ -182,7 +182,7 @@ def test_both_ends_meet_however_wrong_the_clock_of_the_vehicle_is(years: int) ->
     assert obeyed > 15
 
 
-def test_a_vehicle_sends_nothing_to_the_sender_of_an_old_heartbeat() -> None:
+def test_vehicle_sends_nothing_to_the_sender_of_an_old_heartbeat() -> None:
     channel = vehicle(keep(DRIVER))
     channel.receive(signed(stamp=NOW - DAY), HERE, 0.0)
     assert send(channel) == []
@@ -197,7 +197,7 @@ def test_logs_hold_no_signatures_and_no_refused_frames() -> None:
     assert kept == [frame(HEARTBEAT)]
 
 
-def test_a_signed_frame_behind_a_forged_header_is_verified_when_that_is_given_up() -> None:
+def test_signed_frame_behind_forged_header_is_verified_in_end() -> None:
     channel = vehicle(keep(DRIVER), stream=True)
     channel.receive(signed(), HERE, 0.0)
     forged = bytes([0xFD, 255, 0, 0, 0, 1, 1, 69, 0, 0])
@@ -246,7 +246,7 @@ def test_a_signed_datagram_with_a_wrong_checksum_is_none() -> None:
     assert channel.report().crc_errors == 1
 
 
-def test_two_keys_behind_one_address_are_both_obeyed_and_the_last_one_is_answered() -> None:
+def test_two_keys_on_one_address_are_obeyed_and_last_is_answered() -> None:
     """Two ground stations behind a bridge: each has its own role, and one of them cannot verify the vehicle."""
     channel = vehicle(keep(DRIVER, WATCHER))
     first, second = keep(DRIVER), keep(WATCHER)

@@ -16,7 +16,7 @@ def test_silent_addresses_get_nothing_more_and_their_counts_stay() -> None:
     assert rig.router.table.transport_reports()[UDP].frames_in == 1
 
 
-def test_a_vehicle_that_fell_silent_is_still_told_to_stop_for_minutes() -> None:
+def test_a_silent_vehicle_is_still_told_to_stop_for_minutes() -> None:
     rig = Rig()
     rig.router.tick(ROUTE_SILENCE)
     assert set(rig.send(UDP, command(1, 1), now=ROUTE_SILENCE)) == {(SERIAL, "tty")}

@@ -13,9 +13,7 @@ from link.runtime.child_process import end_process, start_module
 
 
 @pytest.mark.e2e
-def test_a_module_runs_from_a_folder_with_a_package_of_the_same_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_module_runs_beside_a_package_of_the_same_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "groundstation").mkdir()
     (tmp_path / "groundstation" / "__init__.py").write_text("raise SystemExit(9)")
     monkeypatch.chdir(tmp_path)

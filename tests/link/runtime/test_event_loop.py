@@ -45,7 +45,7 @@ def test_it_returns_what_main_returns_and_raises_what_it_raises() -> None:
         run_loop(fails())
 
 
-def test_it_knows_how_long_it_has_waited_and_how_long_it_has_worked() -> None:
+def test_it_knows_how_long_it_has_waited_and_worked() -> None:
     async def work_and_wait() -> tuple[float, float]:
         loop = running_loop()
         before = loop.idle_time

@@ -36,7 +36,7 @@ def run(command: list[str], folder: Path, redirect: str = "") -> subprocess.Comp
 
 
 @pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&-", "<&- >&- 2>&-", "<&-", ""])
-def test_nothing_that_is_opened_takes_the_place_of_a_closed_stream(closed: str, tmp_path: Path) -> None:
+def test_nothing_opened_takes_the_place_of_a_closed_stream(closed: str, tmp_path: Path) -> None:
     done = run(["-c", LOOK], tmp_path, closed)
     assert done.returncode > 2, done
     assert (tmp_path / "kept").read_bytes() == b""

@@ -30,7 +30,7 @@ def test_short_frames_are_no_more_than_a_ground_station_decodes() -> None:
     assert taken(BulkPacer(), FAST, 10.0, size=40) == pytest.approx(MAX_FRAME_RATE * 40 * 10.0, rel=0.03)
 
 
-def test_what_goes_at_once_fits_a_socket_buffer_and_a_cycle_of_a_slow_link_is_not_wasted() -> None:
+def test_send_at_once_fits_a_socket_buffer_and_uses_a_slow_link() -> None:
     fast, slow = BulkPacer(lambda peer: LOCAL_FILE_RATE), BulkPacer(lambda peer: 4800.0)
     assert taken(fast, FAST, 0.02, size=263) <= BURST_MAX
     assert taken(slow, SLOW, 20.0, size=263) == pytest.approx(4800.0 * 20.0, rel=0.01)

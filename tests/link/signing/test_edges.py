@@ -33,7 +33,7 @@ def full(mine: int = 63, theirs: int = 1) -> StreamTable:
     return table
 
 
-def test_the_65th_stream_takes_the_oldest_place_of_the_key_with_most() -> None:
+def test_65th_stream_takes_the_oldest_place_of_the_fullest_key() -> None:
     table = full()
     assert (len(table.newest), table.floors) == (64, {})
     table.record(stream(900), 5000)
@@ -75,7 +75,7 @@ def test_keys_that_are_gone_leave_nothing() -> None:
     assert list(table.floors) == [THEIRS]
 
 
-def test_the_newest_of_a_key_is_that_of_its_streams_and_its_floor() -> None:
+def test_the_newest_of_a_key_is_that_of_its_streams_and_floor() -> None:
     table = StreamTable({stream(0): 5, stream(1): 7, stream(2, THEIRS): 99}, {MINE: 6})
     assert (table.newest_of(MINE), table.newest_of(THEIRS), table.newest_of("none")) == (7, 99, -1)
     assert StreamTable({stream(0): 5}, {MINE: 6}).newest_of(MINE) == 6
@@ -125,7 +125,7 @@ def test_where_the_time_is_right_a_day_ahead_is_the_limit(ahead: int, any_future
     assert isinstance(found, Verified) if passes else found is Refusal.TOO_NEW
 
 
-def test_a_running_stream_may_fall_behind_and_a_key_that_returns_begins_anew() -> None:
+def test_stream_may_fall_behind_and_a_returning_key_begins_anew() -> None:
     signing = keep(DRIVER, wall=12.0)
     verifier = signing.verifier
     assert isinstance(verifier.check(signed(), 255, 190, 0.0), Verified)
@@ -143,7 +143,7 @@ def test_a_change_of_other_keys_keeps_the_time_of_a_key() -> None:
     assert verifier.check(signed(ARM, stamp=NOW - 61 * TICKS, link_id=1), 255, 190, 0.0) is Refusal.TOO_OLD
 
 
-def test_the_time_of_a_key_is_never_behind_the_clock_and_its_streams() -> None:
+def test_the_time_of_a_key_is_never_behind_clock_and_streams() -> None:
     signing = keep(DRIVER, WATCHER, wall=12.0, memory=SigningMemory(NOW))
     own = NOW + 60 * TICKS
     assert signing.verifier.time_of(DRIVER, 0.0) == own
@@ -170,7 +170,7 @@ def test_a_sender_stays_pinned_for_10_s_at_any_time_of_day() -> None:
 # ---- clock, memory, frames ----
 
 
-def test_a_clock_that_is_a_little_ahead_of_the_stored_time_counts() -> None:
+def test_a_clock_a_little_ahead_of_the_stored_time_counts() -> None:
     clock = SigningClock(40.0 + 1_420_070_400.0, 7.0, stored=1)
     assert clock.stamp(7.0) == 60 * TICKS + 1
     later = SigningClock(100.0 + 1_420_070_400.0, 7.0, stored=1)
@@ -191,14 +191,14 @@ def test_trust_comes_with_a_plausible_time_and_stays() -> None:
     assert clock.ahead(1.0) == pytest.approx(plausible - 1_420_070_400.0 + 1.0)
 
 
-def test_the_computers_clock_is_behind_by_as_much_as_it_was_at_the_start() -> None:
+def test_the_computers_clock_lags_by_as_much_as_at_the_start() -> None:
     clock = SigningClock(NOON - 3600.0, 50.0, stored=NOW)
     assert clock.ahead(50.0) == 3660.0
     assert clock.ahead(60.0) == 3660.0
 
 
 @pytest.mark.parametrize(("wall", "window"), [(NOON + 10.0, 5), (12.0, 60)])
-def test_after_a_crash_the_window_is_short_where_the_clock_is_set(wall: float, window: int) -> None:
+def test_after_crash_the_window_is_short_where_the_clock_is_set(wall: float, window: int) -> None:
     after = keep(DRIVER, wall=wall, memory=SigningMemory(NOW))
     now = after.clock.stamp(0.0)
     assert isinstance(after.verifier.check(signed(stamp=now - window * TICKS), 255, 190, 0.0), Verified)

@@ -77,7 +77,7 @@ def test_a_link_a_folder_a_pipe_and_a_large_file_are_refused(tmp_path: Path) -> 
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files away")
-def test_a_file_of_another_user_is_refused_and_root_writes_for_the_owner_of_the_folder(tmp_path: Path) -> None:
+def test_a_file_of_another_user_is_refused_and_root_keeps_owners(tmp_path: Path) -> None:
     path = write(tmp_path / "keys.toml", key())
     os.chown(path, 4242, -1)
     assert "belongs to user 4242" in problem(path)

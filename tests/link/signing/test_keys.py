@@ -28,7 +28,7 @@ def test_a_key_is_neither_pickled_nor_copied(leak: object) -> None:
         leak(KEY)  # type: ignore[operator]
 
 
-def test_the_fingerprint_is_stable_and_not_the_hash_of_the_secret_itself() -> None:
+def test_fingerprint_is_stable_and_not_the_hash_of_the_secret() -> None:
     assert KEY.fingerprint == "d5669a9a"
     assert not hashlib.sha256(SECRET).hexdigest().startswith(KEY.fingerprint)
     assert SigningKey("other", Role.WATCH, SECRET).fingerprint == KEY.fingerprint
@@ -57,7 +57,7 @@ def test_roles_include_each_other() -> None:
     assert [role.word for role in Role] == ["watch", "drive", "setup"]
 
 
-def test_a_passphrase_gives_the_key_of_mavproxy_and_older_qgroundcontrol() -> None:
+def test_a_passphrase_gives_the_key_of_mavproxy_and_old_qgc() -> None:
     # MAVProxy: hashlib.new("sha256"), update(passphrase). QGroundControl 5.0: QCryptographicHash::hash(utf8, Sha256).
     # printf secret_key | sha256sum
     expected = "6523e58bc0eec42c31b9635d5e0dfc23b6d119b73e633bf3a5284c79bb4a1ede"
@@ -91,7 +91,7 @@ def test_after_the_removal_of_the_key_that_signs_the_newest_does() -> None:
     assert ring.remove("laptop").remove("tablet") == KeyRing()
 
 
-def test_a_name_or_a_secret_is_in_a_ring_once_and_there_is_a_limit() -> None:
+def test_a_name_or_secret_is_in_a_ring_once_and_there_is_a_limit() -> None:
     ring = KeyRing().add(KEY)
     assert "already" in (ring.refuse(new_key("laptop", Role.WATCH)) or "")
     assert ring.refuse(SigningKey("copy", Role.WATCH, SECRET)) == "this secret is there already, as laptop"

@@ -60,7 +60,7 @@ def test_a_restart_replays_nothing(tmp_path: Path) -> None:
         keeper.close(1.0)
 
 
-def test_a_killed_program_has_stored_at_the_first_frame_of_a_stream_and_every_30_s(tmp_path: Path) -> None:
+def test_killed_program_has_stored_at_first_frame_and_each_30_s(tmp_path: Path) -> None:
     path = tmp_path / FILE
     keeper = SigningKeeper(keep(DRIVER).ring, path, 0.0, wall=lambda: NOON)
     stored = []

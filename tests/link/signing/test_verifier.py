@@ -88,7 +88,7 @@ def test_no_frame_is_accepted_twice_in_any_order(arrivals: list[tuple[int, int]]
 
 @settings(max_examples=20)
 @given(st.lists(st.tuples(st.integers(0, 255), st.integers(0, 3)), min_size=MAX_STREAMS, max_size=3 * MAX_STREAMS))
-def test_no_frame_is_accepted_twice_however_many_streams_there_are(arrivals: list[tuple[int, int]]) -> None:
+def test_no_frame_is_accepted_twice_among_many_streams(arrivals: list[tuple[int, int]]) -> None:
     """A stream that loses its place leaves a time behind, before which its key begins none."""
     signing = keep(DRIVER)
     frames = [signed(ARM, stamp=NOW + n, link_id=link, ids=(255, 190 + row)) for n, (link, row) in enumerate(arrivals)]
@@ -126,13 +126,13 @@ def test_78_a_peer_whose_clock_is_years_ahead_locks_nobody_out() -> None:
     assert check(signing, signed(ids=(250, 1)), 1.0) is DRIVER
 
 
-def test_another_key_with_the_same_ids_and_the_future_locks_nobody_out() -> None:
+def test_another_key_with_same_ids_and_future_locks_nobody_out() -> None:
     signing = keep(DRIVER, WATCHER)
     assert check(signing, signed(key=WATCHER, stamp=STAMP_MAX)) is WATCHER
     assert check(signing, signed(ARM)) is DRIVER
 
 
-def test_79_a_vehicle_that_boots_in_1970_goes_on_after_its_last_run() -> None:
+def test_79_a_boot_in_1970_goes_on_after_the_last_run() -> None:
     before = keep(DRIVER)
     yesterday = [signed(ARM, stamp=NOW + n) for n in range(3)]
     for frame in yesterday:
@@ -147,7 +147,7 @@ def test_79_a_vehicle_that_boots_in_1970_goes_on_after_its_last_run() -> None:
     assert check(after, signed(ARM, stamp=NOW + 120 * 100_000, link_id=7), 6.0) is Refusal.TOO_OLD
 
 
-def test_81_a_hundred_thousand_streams_keep_64_places_and_no_other_key_loses_its_own() -> None:
+def test_81_100000_streams_keep_64_places_and_spare_other_keys() -> None:
     signing = keep(DRIVER, WATCHER)
     mine = signed(ARM)
     assert check(signing, mine) is DRIVER
@@ -168,7 +168,7 @@ def test_a_key_that_is_withdrawn_is_unknown_at_once() -> None:
     assert check(signing, signed()) is DRIVER
 
 
-def test_a_key_with_the_name_of_one_that_was_removed_is_another_one() -> None:
+def test_a_key_named_like_a_removed_one_is_another_key() -> None:
     signing = keep(DRIVER, WATCHER)
     assert signing.hash_of(DRIVER) is not None
     assert STRANGER.name == DRIVER.name
@@ -213,7 +213,7 @@ def test_steps_of_the_computers_clock_open_no_replay(steps: list[float]) -> None
     assert check(after, frame, now) is Refusal.REPLAYED
 
 
-def test_the_first_run_of_a_computer_without_a_clock_learns_the_time_from_a_key_holder() -> None:
+def test_first_run_without_clock_learns_the_time_of_a_key_holder() -> None:
     signing = keep(DRIVER, wall=40.0, memory=SigningMemory())
     assert signing.clock.stamp(0.0) == 0
     assert check(signing, signed()) is DRIVER
@@ -221,7 +221,7 @@ def test_the_first_run_of_a_computer_without_a_clock_learns_the_time_from_a_key_
     assert signing.clock.stamp(0.0) == to_stamp(40.0), "a peer's clock is not kept for the next run"
 
 
-def test_other_keys_do_not_unpin_a_sender_whose_key_stays_as_it_is() -> None:
+def test_other_keys_do_not_unpin_a_sender_whose_key_stays() -> None:
     """Else a forger without a key would be believed whenever somebody adds one."""
     verifier = keep(DRIVER).verifier
     assert isinstance(verifier.check(signed(), 255, 190, 0.0), Verified)
@@ -256,7 +256,7 @@ def test_of_many_senders_the_oldest_is_forgotten() -> None:
         (True, 61, Refusal.TOO_OLD),
     ],
 )
-def test_frames_from_before_a_crash_are_refused_in_streams_that_were_stored_and_in_others(
+def test_frames_from_before_a_crash_are_refused_in_all_streams(
     link_id: int, ended: bool, ago: int, found: SigningKey | Refusal
 ) -> None:
     """An arming 10 s after the last store, recorded, and sent again `ago` s later, after a restart."""
@@ -267,7 +267,7 @@ def test_frames_from_before_a_crash_are_refused_in_streams_that_were_stored_and_
     assert check(after, signed(ARM, stamp=NOW + 10 * TICKS, link_id=link_id)) is found
 
 
-def test_a_minute_after_a_crash_new_streams_may_be_a_minute_behind_again() -> None:
+def test_minute_after_a_crash_new_streams_may_be_a_minute_behind() -> None:
     memory = keep(DRIVER).memory(0.0)
     after = keep(DRIVER, wall=NOON + 10, memory=memory)
     late = signed(stamp=NOW + 60 * TICKS)

@@ -49,7 +49,7 @@ def seen(recorder: Recorder) -> None:
     assert done.wait(PATIENCE)
 
 
-def test_what_came_just_before_the_beginning_is_in_the_log_and_nothing_after_its_end() -> None:
+def test_log_has_what_came_just_before_it_and_nothing_after_it() -> None:
     recorder, file = Recorder(), MemoryFile()
     recorder.add(1.0, [heartbeat(0)])
     recorder.tick(1.0)  # long before: gone
@@ -66,7 +66,7 @@ def test_what_came_just_before_the_beginning_is_in_the_log_and_nothing_after_its
     assert file.closed
 
 
-def test_a_file_that_ends_with_the_next_one_keeps_its_last_frames() -> None:
+def test_file_that_ends_with_the_next_one_keeps_its_last_frames() -> None:
     """Shorter than PERIOD, it got none at all: they went to the next file, which begins with them as well."""
     recorder, first, second = Recorder(), MemoryFile(), MemoryFile()
     recorder.tick(1.0)
@@ -95,7 +95,7 @@ def test_frames_are_in_the_file_soon_also_without_an_end() -> None:
     recorder.close()
 
 
-def test_times_are_unix_time_and_in_order_whatever_happens_to_the_clock() -> None:
+def test_times_are_unix_time_in_order_whatever_the_clock_does() -> None:
     offsets = iter([1_700_000_000_000_000, 1_600_000_000_000_000])
     recorder, first, second = Recorder(offset=lambda: next(offsets)), MemoryFile(), MemoryFile()
     recorder.start(lambda: first)
@@ -124,7 +124,7 @@ def test_a_new_log_closes_the_one_before() -> None:
     assert (first.frames, second.frames) == ([demand(1)], [demand(2)])
 
 
-def test_a_disk_that_sleeps_costs_frames_that_are_counted_and_no_time() -> None:
+def test_a_sleeping_disk_costs_counted_frames_and_no_time() -> None:
     recorder, file = Recorder(), MemoryFile()
     file.awake.clear()
     recorder.start(lambda: file)

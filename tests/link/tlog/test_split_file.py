@@ -40,7 +40,7 @@ class Folder:
         return [(self.path / str(number + 1)).read_bytes() for number in range(self.opened)]
 
 
-def test_a_file_that_would_grow_too_large_is_followed_by_the_next(tmp_path: Path) -> None:
+def test_file_that_would_grow_too_large_is_followed_by_the_next(tmp_path: Path) -> None:
     folder = Folder(tmp_path)
     log = folder.split(10)
     for data in (b"12345678", b"ab", b"c", b"a batch that is longer than a file", b"d"):

@@ -7,7 +7,7 @@ import pytest
 from link.transport.backoff import Backoff
 
 
-def test_delays_double_up_to_the_maximum_and_begin_anew_after_a_success() -> None:
+def test_delays_double_up_to_maximum_and_restart_after_success() -> None:
     backoff = Backoff()
     assert [backoff.next_delay() for _ in range(7)] == pytest.approx([0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0])
     backoff.reset()

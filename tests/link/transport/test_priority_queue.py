@@ -48,7 +48,7 @@ def test_the_oldest_telemetry_goes_when_it_is_full() -> None:
     assert queue.dropped == 20
 
 
-def test_only_the_newest_demand_of_a_target_waits_and_keeps_its_place() -> None:
+def test_only_the_newest_demand_of_a_target_waits_in_its_place() -> None:
     queue = TransmitQueue(1000)
     for data in (demand(1), ARM, demand(2, target=2), demand(3, throttle=0.0)):
         queue.push(data, 0.0)
@@ -132,7 +132,7 @@ def test_the_driver_is_believed_when_it_says_that_it_is_behind() -> None:
     assert TransmitPacer(5760.0).delay(40, 1024, 1.0) > 0.1
 
 
-def test_behind_a_full_telemetry_queue_a_demand_has_less_than_30_ms_of_bytes_ahead() -> None:
+def test_a_demand_has_less_than_30_ms_of_bytes_ahead_of_it() -> None:
     # 57600 baud, a parameter list and telemetry for ever. Counted in bytes on the wire, not in time of this machine.
     capacity = 5760.0
     pacer, queue, now = TransmitPacer(capacity), TransmitQueue(1440), 0.0

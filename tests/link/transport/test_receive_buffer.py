@@ -26,7 +26,7 @@ def test_it_returns_what_was_sent_as_a_copy(kind: socket.SocketKind) -> None:
         assert buffer.recv(near) == b""
 
 
-def test_a_datagram_comes_with_its_address_and_ends_where_the_buffer_does() -> None:
+def test_datagram_has_its_address_and_ends_where_the_buffer_does() -> None:
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as near,
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as far,
@@ -50,7 +50,7 @@ def _allocated(receive: Callable[[socket.socket], bytes]) -> int:
             tracemalloc.stop()
 
 
-def test_a_small_packet_allocates_little_where_the_socket_would_allocate_the_largest() -> None:
+def test_a_small_packet_allocates_little() -> None:
     buffer = ReceiveBuffer(LARGEST)
     assert _allocated(lambda sock: sock.recv(LARGEST)) > LARGEST
     assert _allocated(buffer.recv) < 4096

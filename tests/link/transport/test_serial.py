@@ -190,7 +190,7 @@ async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(cable: Cab
     transport.close()
 
 
-async def test_a_demand_overtakes_bulk_and_finds_less_than_30_ms_of_bytes_before_it(tmp_path: Path) -> None:
+async def test_a_demand_overtakes_bulk_within_30_ms_of_bytes(tmp_path: Path) -> None:
     cable = BaudCable(tmp_path / "ttyUSB0", 57600)
     transport = opened(cable.endpoint)
     Heard(transport)

@@ -32,7 +32,7 @@ def test_the_program_that_has_a_port_open_is_named() -> None:
     os.close(port)
 
 
-def test_a_login_that_waits_on_a_port_is_named_though_it_hides_its_files(tmp_path: Path) -> None:
+def test_a_login_on_a_port_is_named_though_it_hides_its_files(tmp_path: Path) -> None:
     login = tmp_path / "412"
     login.mkdir()
     (login / "comm").write_text("agetty\n")

@@ -83,7 +83,7 @@ async def test_frames_stay_whole_and_in_order_when_the_pipe_fills_up(pipe: Pipe)
     assert pipe.errors == []
 
 
-async def test_a_demand_overtakes_what_waits_but_not_the_frame_that_is_half_written(pipe: Pipe) -> None:
+async def test_a_demand_overtakes_all_but_the_half_written_frame(pipe: Pipe) -> None:
     writer = pipe.start()
     frames = [telemetry(number) for number in range(300)]
     for data in frames:
@@ -96,7 +96,7 @@ async def test_a_demand_overtakes_what_waits_but_not_the_frame_that_is_half_writ
     assert len(before) < PIPE + MAX_JOINED + len(frames[0])
 
 
-async def test_at_the_end_what_waits_is_written_as_far_as_there_is_room_and_the_rest_dropped(pipe: Pipe) -> None:
+async def test_at_the_end_what_fits_is_written_and_the_rest_dropped(pipe: Pipe) -> None:
     pacer = TransmitPacer(100.0)
     writer = pipe.start(pacer=pacer)
     frames = [telemetry(number) for number in range(3)]

@@ -79,7 +79,7 @@ async def test_who_connects_is_heard_of_before_he_has_said_anything(server: TcpS
     server.close()
 
 
-async def test_each_client_is_a_peer_of_its_own_and_goes_when_it_closes(server: TcpServerTransport, port: int) -> None:
+async def test_each_client_is_a_peer_and_goes_when_it_closes(server: TcpServerTransport, port: int) -> None:
     heard = Heard(server)
     one, two = connected(port), connected(port)
     one.sendall(heartbeat(0))
@@ -167,7 +167,7 @@ def is_closed(sock: socket.socket) -> bool:
         return False
 
 
-async def test_it_connects_when_somebody_listens_and_again_when_he_returns(port: int) -> None:
+async def test_it_connects_to_a_listener_and_again_when_that_returns(port: int) -> None:
     transport = client(port)
     heard = Heard(transport)
     await until(lambda: "not connected" in (transport.problem or ""))
@@ -221,7 +221,7 @@ async def test_no_nagle(server: TcpServerTransport, port: int) -> None:
     server.close()
 
 
-def test_half_a_frame_of_a_lost_connection_is_no_part_of_the_next() -> None:
+def test_half_frame_of_a_lost_connection_is_no_part_of_the_next() -> None:
     channel = Channel("tcpout:127.0.0.1:5760", 0, system=255, component=190, stream=True, target="there")
     channel.receive(heartbeat(0, system=1), "there", 0.0)
     channel.receive(heartbeat(1, system=1)[:10], "there", 0.0)

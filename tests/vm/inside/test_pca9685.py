@@ -31,7 +31,7 @@ def test_pulses_follow_the_demand_and_end_in_neutral(tmp_path: Path) -> None:
         ground.wait(lambda: both(NEUTRAL), "neutral pulses")
 
 
-def test_after_kill_9_the_chip_repeats_its_pulses_until_safe_stop(tmp_path: Path) -> None:
+def test_chip_repeats_its_pulses_after_kill_9_until_safe_stop(tmp_path: Path) -> None:
     with Ground() as ground:
         config = write_config(tmp_path, ground.endpoint, PCA9685)
         with rover(config) as process:

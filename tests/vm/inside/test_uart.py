@@ -13,7 +13,7 @@ from tests.waits import PATIENCE
 VEHICLE_END, BRIDGE_END = "serial:/dev/ttyS1:115200", "serial:/dev/ttyS2:115200"
 
 
-def test_it_is_driven_over_the_cable_and_stops_when_the_other_end_is_killed(tmp_path: Path) -> None:
+def test_cable_drives_it_and_a_kill_of_the_other_end_stops_it(tmp_path: Path) -> None:
     with Ground() as ground, rover(write_config(tmp_path, VEHICLE_END, GPIO)):
         bridge = subprocess.Popen([sys.executable, "-m", "link.bridge", BRIDGE_END, ground.endpoint])
         try:

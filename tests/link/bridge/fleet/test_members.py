@@ -64,7 +64,7 @@ def test_the_file_of_a_member_is_all_that_it_needs(farm: Path) -> None:
     assert list(config.routers) == read_fleet_file(farm).routers
 
 
-def test_the_router_certificate_names_its_addresses_and_the_authority_signs_nothing_more(farm: Path) -> None:
+def test_router_certificate_has_its_addresses_and_signs_no_more(farm: Path) -> None:
     ssl.create_default_context(cafile=str(farm.parent / "authority.pem"))
     text = subprocess.run(
         ["openssl", "x509", "-in", str(farm.parent / "router.pem"), "-noout", "-text"],

@@ -22,7 +22,7 @@ def ack(command: int, result: int, target: int = 255) -> Received:
     return received(CommandAck(command, result, target_system=target, target_component=190), 1, 1)
 
 
-def test_a_command_is_repeated_with_a_rising_confirmation_and_then_given_up() -> None:
+def test_command_repeats_with_rising_confirmation_then_gives_up() -> None:
     client, now, confirmations = CommandClient(255, 190), 0.0, []
     client.send(Command.COMPONENT_ARM_DISARM, 1.0, target_system=1, now=now)
     while not (outcomes := client.outcomes()):
@@ -103,7 +103,7 @@ def test_a_lossy_link_still_ends_every_command() -> None:
     assert sum(each.result is Result.ACCEPTED for each in ended) > 190
 
 
-def test_a_command_with_a_place_is_a_command_int_and_repeats_without_confirmation() -> None:
+def test_command_with_a_place_is_an_int_and_repeats_unconfirmed() -> None:
     client = CommandClient(255, 190)
     place = CommandPlace(3, -353632621, 1491652374)
     client.send(192, -1.0, 1.0, 0.0, 0.0, 9.0, 9.0, 5.0, target_system=1, now=0.0, place=place)
@@ -163,7 +163,7 @@ def test_a_command_that_is_taken_as_command_int_only_goes_so() -> None:
     assert client.outcomes()[0].result is Result.ACCEPTED
 
 
-def test_a_command_int_that_is_taken_as_command_long_only_goes_so() -> None:
+def test_command_int_is_sent_as_long_to_a_vehicle_that_needs_it() -> None:
     client = CommandClient(255, 190)
     place = CommandPlace(3, 475_000_000, 82_500_000)
     client.send(Command.DO_REPOSITION, -1.0, 1, 0, math.nan, 0, 0, 3.0, target_system=1, now=0.0, place=place)
@@ -185,7 +185,7 @@ def test_a_command_that_is_refused_in_both_forms_ends() -> None:
     assert [each.number for each in client.outcomes()] == [INT_ONLY], "parameter 5 fits no integer"
 
 
-def test_a_stop_without_an_answer_goes_in_both_forms_to_all_components() -> None:
+def test_an_unanswered_stop_goes_in_both_forms_to_all_components() -> None:
     client = CommandClient(255, 190)
     client.send(400, 0.0, target_system=1, target_component=1, further=(0, 2), stop=True, now=0.0)
     assert forms(client) == [(CommandLong, 1), (CommandLong, 0), (CommandLong, 2)]
@@ -202,7 +202,7 @@ def test_other_commands_keep_their_form_without_an_answer() -> None:
     assert {kind for kind, _ in forms(client)} == {CommandLong}
 
 
-def test_a_refusal_of_one_component_ends_nothing_while_others_may_accept() -> None:
+def test_a_refusal_of_one_component_ends_nothing_for_the_others() -> None:
     client = CommandClient(255, 190)
     client.send(400, 0.0, target_system=1, target_component=1, further=(0, 2), stop=True, now=0.0)
     client.receive(received(CommandAck(400, 3, target_system=255), 1, 2), 0.1)
@@ -211,7 +211,7 @@ def test_a_refusal_of_one_component_ends_nothing_while_others_may_accept() -> No
     assert [each.number for each in client.outcomes()] == [0]
 
 
-def test_a_stop_is_not_refused_by_a_vehicle_that_does_not_know_its_second_form() -> None:
+def test_a_stop_is_not_refused_for_its_unknown_second_form() -> None:
     client = CommandClient(255, 190)
     client.send(400, 0.0, target_system=1, stop=True, now=0.0)
     client.tick(REPEAT_AFTER)

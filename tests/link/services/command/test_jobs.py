@@ -122,7 +122,7 @@ def test_long_after_its_beginning_only_what_says_so_is_a_repeat() -> None:
     assert vehicle.ask(REPEAT_WINDOW + 1) == [Result.TEMPORARILY_REJECTED]
 
 
-def test_a_repeat_after_the_end_hears_of_the_end_and_a_new_wish_begins_anew() -> None:
+def test_repeat_after_end_hears_of_it_and_a_new_wish_starts_anew() -> None:
     vehicle = Vehicle()
     vehicle.ask(0.0)
     assert results(vehicle.server.tick(2.0)) == [Result.ACCEPTED]
@@ -132,7 +132,7 @@ def test_a_repeat_after_the_end_hears_of_the_end_and_a_new_wish_begins_anew() ->
     assert len(vehicle.works) == 2
 
 
-def test_a_command_int_has_no_confirmation_and_counts_as_a_repeat_for_a_while() -> None:
+def test_a_command_int_counts_as_a_repeat_for_a_while() -> None:
     vehicle = Vehicle()
     same = CommandInt(1, 1, 0, TEST, 0, 0, 0, 0, 0, 0, 0, 0, 0)
     vehicle.say(same, 0.0)
@@ -161,7 +161,7 @@ def test_whoever_cancels_and_whoever_began_hear_of_it() -> None:
     assert results(words) == [Result.CANCELLED] * 2
 
 
-def test_a_cancel_finds_nothing_when_idle_and_nothing_that_is_for_others() -> None:
+def test_a_cancel_finds_nothing_idle_and_nothing_of_others() -> None:
     vehicle = Vehicle()
     assert vehicle.cancel(0.0) == []
     vehicle.ask(0.0)
@@ -180,7 +180,7 @@ def test_a_cancel_long_after_the_end_is_ignored() -> None:
     assert vehicle.cancel(2.0 + REPEAT_WINDOW) == []
 
 
-def test_a_client_waits_for_the_end_on_a_line_that_loses_the_first_words() -> None:
+def test_client_waits_for_end_on_a_line_that_loses_first_words() -> None:
     vehicle, client, now = Vehicle(), CommandClient(255, 190), 0.0
     client.send(TEST, target_system=1, now=now)
     answers, outcomes = 0, client.outcomes()

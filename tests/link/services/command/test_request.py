@@ -15,7 +15,7 @@ def test_a_parameter_that_is_left_out_has_its_default() -> None:
     assert value_or_default(1.5, 2.5) == 1.5
 
 
-def test_a_repeat_is_equal_to_the_first_also_with_parameters_left_out() -> None:
+def test_a_repeat_equals_the_first_also_with_parameters_left_out() -> None:
     first = CommandLong(1, 1, 400, 0, 1, math.nan, float("nan"), 0, 5, 6, 7)
     again = CommandLong(1, 1, 400, 1, 1, float("nan"), math.nan, 0, 5, 6, 7)
     one, two = parse_command(first, received(first)), parse_command(again, received(again))

@@ -57,7 +57,7 @@ def test_what_was_kept_of_another_file_is_noticed() -> None:
 
 
 @pytest.mark.parametrize("have", [DATA, DATA + b"more"])
-def test_a_whole_file_is_only_compared_and_a_longer_one_fetched_anew(have: bytes) -> None:
+def test_whole_file_is_only_compared_and_longer_one_fetched_anew(have: bytes) -> None:
     server = Watched(Vehicle(logs={"1.bin": DATA}))
     outcome = fetch(server, have=have, verify=True)
     assert outcome.done
@@ -65,7 +65,7 @@ def test_a_whole_file_is_only_compared_and_a_longer_one_fetched_anew(have: bytes
     assert (FtpOpcode.BURST in {op for op, _ in server.asked}) == (have != DATA)
 
 
-def test_the_beginning_of_a_file_is_kept_when_the_vehicle_falls_silent() -> None:
+def test_beginning_of_a_file_is_kept_when_the_vehicle_is_silent() -> None:
     vehicle = Vehicle(logs={"1.bin": DATA}, rate=10_000.0)
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)

@@ -42,7 +42,7 @@ def test_answers_are_never_answered() -> None:
         assert Vehicle().send(FtpPacket(1, op)) == []
 
 
-def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered() -> None:
+def test_what_is_for_others_or_from_strangers_is_not_answered() -> None:
     vehicle = Vehicle()
     question = FtpPacket(1, FtpOpcode.LIST, data=b"/")
     for target in ((2, 1), (0, 0), (1, 42)):
@@ -75,7 +75,7 @@ def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) ->
         max_size=30,
     )
 )
-def test_any_order_of_questions_raises_nothing_and_writes_only_plans(questions: list[FtpPacket]) -> None:
+def test_any_order_of_questions_is_safe_and_writes_only_plans(questions: list[FtpPacket]) -> None:
     vehicle = Vehicle()
     for number, question in enumerate(questions):
         vehicle.send(question, number * 0.5)

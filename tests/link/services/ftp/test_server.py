@@ -110,7 +110,7 @@ def burst(vehicle: Vehicle, offset: int = 0, size: int = 239, now: float = 1.0) 
     return pieces
 
 
-def test_a_burst_brings_the_file_in_order_and_says_when_it_is_over() -> None:
+def test_a_burst_brings_the_file_in_order_and_reports_its_end() -> None:
     vehicle = Vehicle()
     vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
     pieces = burst(vehicle)

@@ -15,7 +15,7 @@ from tests.link.services_world import OTHER_PEER
 # ---- repeats ----
 
 
-def test_74_a_question_said_again_gets_the_stored_answer_and_has_no_second_effect() -> None:
+def test_74_a_repeated_question_gets_its_stored_answer() -> None:
     vehicle = Vehicle()
     remove = FtpPacket(9, FtpOpcode.REMOVE, data=b"/missions/old.plan")
     first, second = vehicle.send(remove), vehicle.send(remove)
@@ -24,7 +24,7 @@ def test_74_a_question_said_again_gets_the_stored_answer_and_has_no_second_effec
     assert vehicle.written == [("old.plan", None)]
 
 
-def test_the_same_sequence_with_another_question_is_another_question() -> None:
+def test_same_sequence_with_another_question_is_a_new_question() -> None:
     vehicle = Vehicle()
     vehicle.send(FtpPacket(0, FtpOpcode.OPEN, data=b"/logs/1.bin"))
     [listed] = vehicle.send(FtpPacket(0, FtpOpcode.LIST, data=b"/logs"))
@@ -198,7 +198,7 @@ class SlowMissions(MemoryFolder):
 
 @pytest.mark.parametrize("op", [FtpOpcode.TERMINATE, FtpOpcode.RESET])
 @pytest.mark.parametrize(("data", "answer"), [(b"{new}", None), (b"rubbish", FtpError.FAIL)])
-def test_closing_what_was_written_waits_for_the_disk_and_is_said_again(
+def test_closing_written_file_waits_for_disk_and_is_said_again(
     op: FtpOpcode, data: bytes, answer: FtpError | None
 ) -> None:
     missions = SlowMissions({"old.plan": b"{old}"}, accept=only_plans)

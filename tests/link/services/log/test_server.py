@@ -89,7 +89,7 @@ def test_where_there_is_nothing_an_empty_piece_says_so(log: int, offset: int) ->
     assert (answer.id, answer.ofs, answer.count) == (log, offset, 0)
 
 
-def test_several_holes_are_filled_in_turn_and_one_asked_twice_once() -> None:
+def test_holes_are_filled_in_turn_and_one_asked_twice_once() -> None:
     vehicle = Vehicle()
     for offset in (180, 0, 180):
         vehicle.server.receive(from_gcs(m.LogRequestData(1, 1, 0, offset, 90)), 0.0)
@@ -154,9 +154,7 @@ def test_many_clients_may_come_one_after_the_other() -> None:
 @pytest.mark.parametrize(
     ("system", "component", "introduced"), [(2, 1, True), (0, 0, True), (1, 9, True), (1, 1, False)]
 )
-def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered(
-    system: int, component: int, introduced: bool
-) -> None:
+def test_what_is_for_others_or_from_strangers_is_not_answered(system: int, component: int, introduced: bool) -> None:
     assert Vehicle().ask(m.LogRequestList(system, component, 0, 0xFFFF), introduced=introduced) == []
     assert Vehicle().ask(m.LogRequestData(system, component, 0, 0, 90), introduced=introduced) == []
 

@@ -91,7 +91,7 @@ def test_a_disk_that_does_not_answer_is_given_up() -> None:
     assert result(vehicle.end()) == [(MissionResult.ACCEPTED, MISSION)]
 
 
-def test_what_may_not_be_changed_any_more_when_it_is_written_stays() -> None:
+def test_a_plan_that_may_no_longer_change_when_written_stays() -> None:
     vehicle = Disk()
     vehicle.upload(NEW)
     vehicle.verdict = MissionResult.DENIED
@@ -119,7 +119,7 @@ def test_a_part_waits_too() -> None:
 
 @pytest.mark.parametrize("word", [m.MissionClearAll(1, 1, MISSION), m.MissionCount(1, 1, 0, MISSION)])
 @pytest.mark.parametrize(("problem", "verdict"), [(None, MissionResult.ACCEPTED), (FULL, MissionResult.ERROR)])
-def test_clearing_waits_and_is_answered_once_however_often_it_is_asked(
+def test_clearing_waits_and_is_answered_once_however_often_asked(
     word: m.Message, problem: str | None, verdict: MissionResult
 ) -> None:
     vehicle = Disk()
@@ -149,7 +149,7 @@ def test_all_plans_are_cleared_together_or_none() -> None:
 @pytest.mark.parametrize(
     "word", [m.MissionCount(1, 1, 1), m.MissionWritePartialList(1, 1, 0, 0), m.MissionClearAll(1, 1, MISSION)]
 )
-def test_who_begins_anew_hears_no_answer_that_could_be_one_to_this(word: m.Message) -> None:
+def test_who_begins_anew_hears_no_answer_to_the_former_request(word: m.Message) -> None:
     vehicle = Disk()
     vehicle.upload(NEW)
     assert vehicle.ask(word) == []
@@ -213,7 +213,7 @@ def test_another_file_meanwhile_is_refused() -> None:
     assert folder.store("mission.waypoints", encode_plan(NEW)) is None  # who wrote first hears how that went
 
 
-def test_a_file_that_may_not_be_put_in_force_any_more_when_it_is_written_is_refused() -> None:
+def test_a_written_file_that_may_not_be_in_force_is_refused() -> None:
     vehicle, driving = Disk(), False
     folder = PlanFolder(vehicle.server, lambda kind: "AUTO drives by it" if driving else None)
     with pytest.raises(NotReadyError):
@@ -224,7 +224,7 @@ def test_a_file_that_may_not_be_put_in_force_any_more_when_it_is_written_is_refu
     assert folder.store("mission.waypoints", encode_plan(NEW)) is FtpError.FAIL
 
 
-def test_a_file_that_nobody_heard_of_again_is_written_anew_once_the_plan_is_another() -> None:
+def test_unreported_file_is_written_anew_once_the_plan_differs() -> None:
     vehicle = Disk()
     folder = PlanFolder(vehicle.server)
     with pytest.raises(NotReadyError):

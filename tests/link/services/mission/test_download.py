@@ -58,7 +58,7 @@ def test_no_part_of_what_is_not_there(first: int, last: int, kind: int, verdict:
     assert vehicle.tick(1.0) == []
 
 
-def test_a_newer_question_replaces_the_one_before_and_there_are_not_too_many() -> None:
+def test_a_newer_question_replaces_the_former_and_there_are_few() -> None:
     vehicle = Vehicle()
     vehicle.upload([waypoint(0), waypoint(1), waypoint(2)])
     vehicle.ask(m.MissionRequestPartialList(1, 1, 0, 1))

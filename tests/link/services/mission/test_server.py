@@ -134,7 +134,7 @@ def test_a_lone_item_with_floats_is_the_same_request() -> None:
     assert (request, item.x, item.y) == (ItemRequest.DRIVE_TO, 475_000_000, 82_500_000)
 
 
-def test_a_lone_item_to_all_systems_is_handled_and_one_to_another_is_not() -> None:
+def test_a_lone_item_to_all_is_handled_and_one_to_another_is_not() -> None:
     """DroneKit's simple_goto sends target system 0."""
     vehicle = Vehicle()
     assert len(vehicle.ask(lone(2, target=0, component=0))) == 1
@@ -144,7 +144,7 @@ def test_a_lone_item_to_all_systems_is_handled_and_one_to_another_is_not() -> No
     assert len(vehicle.requests) == 1
 
 
-def test_a_lone_item_without_a_heartbeat_of_its_sender_is_not_answered() -> None:
+def test_lone_item_of_a_sender_without_heartbeat_is_not_answered() -> None:
     vehicle = Vehicle()
     assert vehicle.ask(lone(2), introduced=False) == []
     assert vehicle.requests == []

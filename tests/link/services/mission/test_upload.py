@@ -63,7 +63,7 @@ def test_65_too_many_items_are_no_space() -> None:
     assert vehicle.tick(100.0) == []
 
 
-def test_66_silence_is_asked_again_and_then_cancelled_and_the_old_plan_stays() -> None:
+def test_66_silence_is_asked_again_then_cancelled_and_plan_stays() -> None:
     vehicle = Vehicle()
     vehicle.upload([waypoint()])
     vehicle.ask(m.MissionCount(1, 1, 5), 10.0)
@@ -83,7 +83,7 @@ def test_66_silence_is_asked_again_and_then_cancelled_and_the_old_plan_stays() -
     assert vehicle.give(waypoint(7), 0, 20.0) == []
 
 
-def test_who_refuses_to_be_asked_in_floats_is_asked_in_integers_at_once_and_from_then_on() -> None:
+def test_who_refuses_floats_is_asked_in_integers_from_then_on() -> None:
     """As MAVSDK does: its refusal is no wish to end."""
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 2))
@@ -98,14 +98,14 @@ def test_who_refuses_to_be_asked_in_floats_is_asked_in_integers_at_once_and_from
     assert [ack.type for ack in vehicle.give(waypoint(1), 1)] == [MissionResult.ACCEPTED]
 
 
-def test_unsupported_ends_an_upload_that_was_asked_for_in_integers() -> None:
+def test_unsupported_ends_an_upload_asked_for_in_integers() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 2))
     assert vehicle.ask(m.MissionAck(1, 1, MissionResult.UNSUPPORTED)) == []
     assert vehicle.give(waypoint(0), 0) == []
 
 
-def test_67_an_item_out_of_order_is_dropped_and_the_right_one_asked_for() -> None:
+def test_67_item_out_of_order_is_dropped_and_the_right_one_asked() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 3), 0.0)
     vehicle.give(waypoint(0), 0, 0.1)
@@ -137,7 +137,7 @@ def test_67_items_of_another_ground_station_do_not_count() -> None:
     assert plain(vehicle.plan) == plain((waypoint(0),))
 
 
-def test_a_second_sender_is_denied_while_one_is_busy_and_the_first_may_begin_again() -> None:
+def test_a_second_sender_is_denied_and_the_first_may_begin_again() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 5), 0.0)
     assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 1), 0.1, system=254)] == [MissionResult.DENIED]
@@ -185,9 +185,7 @@ def test_the_vehicle_may_refuse_to_be_changed(verdict: MissionResult) -> None:
 @pytest.mark.parametrize(
     ("system", "component", "introduced"), [(2, 1, True), (0, 0, True), (1, 42, True), (1, 1, False)]
 )
-def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered(
-    system: int, component: int, introduced: bool
-) -> None:
+def test_what_is_for_others_or_from_strangers_is_not_answered(system: int, component: int, introduced: bool) -> None:
     vehicle = Vehicle()
     assert vehicle.ask(m.MissionCount(system, component, 1), introduced=introduced) == []
     assert vehicle.ask(m.MissionRequestList(system, component, 0), introduced=introduced) == []

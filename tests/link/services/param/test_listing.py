@@ -140,7 +140,7 @@ def test_indexes_beyond_the_count_are_not_counted() -> None:
     assert "_HASH_CHECK" not in client.params
 
 
-def test_names_of_sixteen_bytes_that_are_not_ascii_stay_apart_and_can_be_set() -> None:
+def test_names_of_16_bytes_that_are_not_ascii_stay_apart() -> None:
     one, other = b"\xff\xfe" * 8, b"\xff\xfd" * 8
     client = ParamClient(255, 190, target_system=1)
     client.fetch(0.0)
@@ -157,14 +157,14 @@ def test_names_of_sixteen_bytes_that_are_not_ascii_stay_apart_and_can_be_set() -
     assert [outcome.done for outcome in client.outcomes()] == [True]
 
 
-def test_another_component_of_the_vehicle_has_parameters_of_its_own() -> None:
+def test_another_component_has_parameters_of_its_own() -> None:
     client = ParamClient(255, 190, target_system=1)
     client.fetch(0.0)
     client.receive(from_vehicle(value(0, 1), component=100), 0.1)
     assert client.params == {}
 
 
-def test_what_was_loaded_from_a_file_is_complete_and_keeps_its_defaults() -> None:
+def test_values_loaded_from_file_are_complete_and_keep_defaults() -> None:
     client = ParamClient(255, 190, target_system=1)
     client.load([Param("A", 1.0, REAL32, None, default=2.0), Param("B", 3.0, REAL32, None)])
     assert client.complete

@@ -51,7 +51,7 @@ def packed() -> bytes:
     return bytes(data)
 
 
-def test_the_list_is_complete_although_its_count_changed_on_the_way() -> None:
+def test_the_list_is_complete_although_its_count_changed() -> None:
     counts = {each.message.param_count for each in recorded() if isinstance(each.message, m.ParamValue)}
     assert len(counts) == 2
     assert listed().complete

@@ -15,7 +15,7 @@ from tests.link.param_vehicle import TABLE, Vehicle, big_table, faults, values
 from tests.link.services_world import OTHER_PEER, PEER, from_gcs, messages
 
 
-def test_a_set_is_answered_to_all_with_the_value_that_is_in_force() -> None:
+def test_a_set_is_answered_to_all_with_the_value_in_force() -> None:
     vehicle = Vehicle()
     [outgoing] = vehicle.server.receive(from_gcs(m.ParamSet(1, 1, b"MAN_DEADBAND", 4.5, REAL32)), 0.0)
     value = outgoing.message
@@ -39,7 +39,7 @@ def test_values_are_stored_as_people_write_them() -> None:
 
 
 @pytest.mark.parametrize("value", [0.1, 0.9])
-def test_bounds_themselves_are_allowed_though_float32_misses_them(value: float) -> None:
+def test_bounds_are_allowed_though_float32_misses_them(value: float) -> None:
     assert faults(Vehicle().set("SIXTEEN_LETTERS_", value)) == []
 
 
@@ -57,7 +57,7 @@ def test_bounds_themselves_are_allowed_though_float32_misses_them(value: float) 
         ("VERSION", 8.0, REAL32, ParamErrorCode.READ_ONLY),
     ],
 )
-def test_what_is_wrong_is_answered_by_the_reason_and_then_the_old_value(
+def test_a_mistake_is_answered_by_its_reason_and_the_old_value(
     name: str, value: float, kind: int, fault: ParamErrorCode
 ) -> None:
     vehicle = Vehicle()
@@ -72,7 +72,7 @@ def test_what_is_wrong_is_answered_by_the_reason_and_then_the_old_value(
 
 
 @pytest.mark.parametrize("name", ["NO_SUCH", "MAN_TIMEOUT_LONGER_THAN_16", "\xff\xff", ""])
-def test_a_name_that_does_not_exist_is_answered_by_an_error_that_names_it(name: str) -> None:
+def test_an_unknown_name_is_answered_by_an_error_that_names_it(name: str) -> None:
     vehicle = Vehicle()
     [error] = vehicle.set(name, 1.0)
     assert isinstance(error, m.ParamError)
