@@ -121,16 +121,27 @@ _STOPS_AT_ZERO = (
 
 
 def is_stop(message: m.Message) -> bool:
-    """Return whether this only stops: disarm, safety switch to SAFE, termination, pause, ArduRover's HOLD."""
-    if isinstance(message, m.SetMode):
-        return _holds(message.base_mode, message.custom_mode, 0.0)
+    """Return whether this only stops: disarm, safety switch to SAFE, termination, pause, ArduRover's HOLD.
+
+    HOLD as our vehicle and ArduRover understand it. Where a stop needs no permission, ask whether this is such a
+    vehicle: the same numbers are a mission of PX4, and GUIDED of ArduCopter (link/fleet/circumstances.py).
+    """
+    if holds_by_number(message):
+        return True
     if not isinstance(message, m.CommandLong | m.CommandInt):
         return False
     if message.command == rover.MAV_CMD_DO_FLIGHTTERMINATION:
         return bool(message.param1 > 0.5)
-    if message.command == rover.MAV_CMD_DO_SET_MODE:
-        return _holds(message.param1, message.param2, message.param3)
     return message.command in _STOPS_AT_ZERO and bool(message.param1 == 0)
+
+
+def holds_by_number(message: m.Message) -> bool:
+    """Return whether this selects the custom mode 4, which is HOLD of our vehicle and of ArduRover."""
+    if isinstance(message, m.SetMode):
+        return _holds(message.base_mode, message.custom_mode, 0.0)
+    if not isinstance(message, m.CommandLong | m.CommandInt) or message.command != rover.MAV_CMD_DO_SET_MODE:
+        return False
+    return _holds(message.param1, message.param2, message.param3)
 
 
 _ASKS = (

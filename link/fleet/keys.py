@@ -16,10 +16,11 @@ from __future__ import annotations
 import msgspec
 
 from dialects.messages import MESSAGES
-from link.fleet.roles import needed_role
+from link.fleet.roles import needed_role, watch_condition
 from link.fleet.traffic import TELEMETRY, traffic_class
 from link.protocol.frame import Frame
 from link.protocol.framer import Framer
+from link.signing.role import Role
 
 _BRIEF = "brief"
 _CHUNKS = 6
@@ -69,8 +70,14 @@ class Place(msgspec.Struct, frozen=True):
     is_telemetry: bool
 
     def fits(self, frame: Frame) -> bool:
-        """Return whether a frame is of this message, and needs exactly this role."""
-        return frame[0] == self.message_id and (not self.role or needed_role(frame).word == self.role)
+        """Return whether a frame is of this message and needs exactly this role, or may be a watcher's."""
+        if frame[0] != self.message_id:
+            return False
+        return not self.role or needed_role(frame).word == self.role or self.is_conditional(frame)
+
+    def is_conditional(self, frame: Frame) -> bool:
+        """Return whether this is a watcher's frame that counts in some circumstances only."""
+        return self.role == Role.WATCH.word and watch_condition(frame) is not None
 
 
 class FleetKeys(msgspec.Struct, frozen=True):
@@ -111,11 +118,11 @@ class FleetKeys(msgspec.Struct, frozen=True):
             return chunks[2] if len(chunks) == 4 and chunks[3] == "alive" else None
         return "/".join(chunks[4:]) if len(chunks) == _CHUNKS and chunks[3] == "gcs" else None
 
-    def place(self, frame: Frame, address: str) -> str:
-        """Return the key under which to publish a frame for an address."""
+    def place(self, frame: Frame, address: str, role: Role | None = None) -> str:
+        """Return the key under which to publish a frame for an address; `role`: None for the one that it needs."""
         base = f"fleet/{self.fleet}/{address}/down/{self.me}" if self.me else f"{self._base}/up/{address}"
-        role = f"{needed_role(frame).word}/" if self.me else ""
-        return f"{base}/{role}{traffic_class(frame[0]).word}/{message_word(frame[0])}"
+        word = f"{(role or needed_role(frame)).word}/" if self.me else ""
+        return f"{base}/{word}{traffic_class(frame[0]).word}/{message_word(frame[0])}"
 
     def parse(self, key: str) -> Place | None:
         """Return what a key says of the frame under it; None if it is the key of no frame to this program."""

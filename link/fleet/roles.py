@@ -1,74 +1,99 @@
 """Which role of its sender a frame to a vehicle needs. A router grants keys by role, and the vehicle checks the key.
 
-As vehicle/commands decides it for our rover; here also for autopilots that know no roles. Sans-IO.
+As vehicle/commands decides it for our rover; here also for autopilots that know no roles. The meaning of a frame can
+depend on the autopilot, and on who else transfers: watch_condition() names that, circumstances.py decides it. Sans-IO.
 """
 
 from __future__ import annotations
 
+from enum import Enum
+
 from dialects import codec, rover
 from dialects import messages as m
-from dialects.messages import MESSAGES
-from dialects.traits import COMMANDS, is_stop, only_asks
+from dialects.messages import MESSAGES, Message, target_system
+from dialects.traits import COMMANDS, holds_by_number, is_stop, only_asks
+from link.fleet.drive_commands import DRIVE_COMMANDS
 from link.protocol.frame import Frame, payload_of
 from link.signing.role import Role
+
+
+class WatchCondition(Enum):
+    """When the role watch may send a frame that else needs drive."""
+
+    HOLD = "the vehicle's custom mode 4 is HOLD"
+    PLAN = "nobody else transfers a plan"
+    LOG = "nobody else downloads a log"
+    FILE = "nobody else has a file open"
+
 
 _WATCH = frozenset(
     message.id
     for message in (
         m.Heartbeat, m.Timesync, m.Ping, m.SystemTime, m.CommandAck,
-        m.ParamRequestList, m.ParamRequestRead, m.RequestDataStream,
-        m.MissionRequestList, m.MissionRequest, m.MissionRequestInt, m.MissionAck,
-        m.LogRequestList, m.LogRequestData, m.LogRequestEnd,
+        m.ParamRequestList, m.ParamRequestRead,
+        m.MissionRequestList, m.MissionRequest, m.MissionRequestInt,
+        m.LogRequestList, m.LogRequestData,
     )
 )  # fmt: skip
-"""Messages that read, or only say who is there."""
+"""Messages that read, or only say who is there. REQUEST_DATA_STREAM sets the rates of a whole channel of ArduPilot, and
+so of everybody behind the same bridge; SET_MESSAGE_INTERVAL is the way for a watcher."""
 
+_ENDS = {m.MissionAck.id: WatchCondition.PLAN, m.LogRequestEnd.id: WatchCondition.LOG}
+"""Messages that end a transfer, of whoever runs it."""
+
+_SET_UP_NAMES = frozenset(
+    (
+        "PARAM_EXT_SET", "PARAM_MAP_RC", "SERIAL_CONTROL", "TUNNEL", "V2_EXTENSION", "RESOURCE_REQUEST", "AUTH_KEY",
+        "SAFETY_SET_ALLOWED_AREA", "WIFI_CONFIG_AP", "CAN_FRAME", "CANFD_FRAME", "CAN_FILTER_MODIFY",
+        "HIL_STATE", "HIL_STATE_QUATERNION", "HIL_CONTROLS", "HIL_ACTUATOR_CONTROLS", "HIL_RC_INPUTS_RAW", "HIL_SENSOR",
+        "HIL_GPS", "HIL_OPTICAL_FLOW",
+    )
+)  # fmt: skip
+"""Messages without a class of their own that set up: a shell or the ports of an autopilot (SERIAL_CONTROL), its bus,
+its sensors (HIL_*), and what a program behind it may understand."""
 _SET_UP = frozenset(
     message.id
     for message in (
         m.ParamSet, m.MissionCount, m.MissionItem, m.MissionItemInt, m.MissionClearAll, m.MissionWritePartialList,
         m.LogErase, m.SetupSigning,
     )
-)  # fmt: skip
-"""Messages that change parameters, plans, logs or keys."""
-
-_SET_UP_COMMANDS = frozenset(
-    (
-        rover.MAV_CMD_PREFLIGHT_CALIBRATION,
-        rover.MAV_CMD_PREFLIGHT_SET_SENSOR_OFFSETS,
-        rover.MAV_CMD_PREFLIGHT_UAVCAN,
-        rover.MAV_CMD_PREFLIGHT_STORAGE,
-        rover.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN,
-        rover.MAV_CMD_DO_MOTOR_TEST,
-        rover.MAV_CMD_ACTUATOR_TEST,
-        rover.MAV_CMD_CONFIGURE_ACTUATOR,
-        rover.MAV_CMD_STORAGE_FORMAT,
-        rover.MAV_CMD_FIXED_MAG_CAL_YAW,
-        42424,  # MAV_CMD_DO_START_MAG_CAL of ArduPilot's dialect, and its ACCEPT and CANCEL
-        42425,
-        42426,
-    )
-)
+) | {number for number, message in MESSAGES.items() if message.msgname in _SET_UP_NAMES}  # fmt: skip
+"""Messages that change parameters, plans, logs, keys, or the machine itself."""
 
 _SEND_BANNER = 42428
 """MAV_CMD_DO_SEND_BANNER of ArduPilot's dialect."""
 
 _FILE_OPCODE = 6
 """Offset of the opcode in FILE_TRANSFER_PROTOCOL: three ids of the target, then two bytes of number, one of session."""
-_READING_OPCODES = frozenset((0, 1, 2, 3, 4, 5, 14, 15))
-"""Of MAV_FTP_OPCODE: none, terminate, reset, list, open, read, CRC, burst (link/services/ftp/protocol.py)."""
+_READING_OPCODES = frozenset((0, 1, 3, 4, 5, 14, 15))
+"""Of MAV_FTP_OPCODE: none, terminate, list, open, read, CRC, burst (link/services/ftp/protocol.py)."""
+_RESET_SESSIONS = 2
+"""Of MAV_FTP_OPCODE: ends the sessions of all who have a file open."""
 
 
 def needed_role(frame: Frame) -> Role:
-    """Return the least role that may send this frame. An unknown message may do anything, so it needs the highest."""
+    """Return the least role that may send this frame to any vehicle at any time.
+
+    An unknown message or command may do anything, so it needs the highest.
+    """
     number = frame[0]
     if number in _WATCH:
         return Role.WATCH
     if number in _SET_UP or number not in MESSAGES:
         return Role.SET_UP
     if number == m.FileTransferProtocol.id:
-        return _needed_for_file(payload_of(frame[4]))
-    return _needed_for_command(frame) if number in COMMANDS else Role.DRIVE
+        return _needed_for_file(frame)
+    return _needed_for_command(_decode(frame)) if number in COMMANDS else Role.DRIVE
+
+
+def watch_condition(frame: Frame) -> WatchCondition | None:
+    """Return when the role watch may send a frame, if needed_role() is drive; None: never."""
+    number = frame[0]
+    if number == m.FileTransferProtocol.id:
+        return WatchCondition.FILE if file_opcode(frame) == _RESET_SESSIONS else None
+    if number in COMMANDS:
+        return WatchCondition.HOLD if holds_by_number(_decode(frame)) else None
+    return _ENDS.get(number)
 
 
 def depends_on_content(message_id: int) -> bool:
@@ -76,14 +101,43 @@ def depends_on_content(message_id: int) -> bool:
     return message_id in COMMANDS or message_id == m.FileTransferProtocol.id
 
 
-def _needed_for_file(payload: bytes) -> Role:
-    opcode = payload[_FILE_OPCODE] if len(payload) > _FILE_OPCODE else 0  # zeros at the end are not sent
-    return Role.WATCH if opcode in _READING_OPCODES else Role.SET_UP
+def target_of(frame: Frame) -> int:
+    """Return the system that a frame is for; 0: all."""
+    return target_system(_decode(frame))
 
 
-def _needed_for_command(frame: Frame) -> Role:
-    message = codec.decode(frame[0], payload_of(frame[4]))
-    command = getattr(message, "command", None)
-    if is_stop(message) or only_asks(message) or command == _SEND_BANNER:
+def file_opcode(frame: Frame) -> int:
+    """Return the opcode of a FILE_TRANSFER_PROTOCOL."""
+    payload = payload_of(frame[4])
+    return payload[_FILE_OPCODE] if len(payload) > _FILE_OPCODE else 0  # zeros at the end are not sent
+
+
+def _needed_for_file(frame: Frame) -> Role:
+    opcode = file_opcode(frame)
+    if opcode in _READING_OPCODES:
         return Role.WATCH
-    return Role.SET_UP if command in _SET_UP_COMMANDS else Role.DRIVE
+    return Role.DRIVE if opcode == _RESET_SESSIONS else Role.SET_UP
+
+
+def _needed_for_command(message: Message) -> Role:
+    if isinstance(message, m.SetMode):
+        return Role.DRIVE
+    assert isinstance(message, m.CommandLong | m.CommandInt)
+    if message.command == _SEND_BANNER or (is_stop(message) and not holds_by_number(message)):
+        return Role.WATCH
+    if only_asks(message):
+        return Role.DRIVE if _sets_rate_of_heartbeat(message) else Role.WATCH
+    if message.command == rover.MAV_CMD_DO_FENCE_ENABLE and message.param1 != 1:
+        return Role.SET_UP
+    return Role.DRIVE if message.command in DRIVE_COMMANDS else Role.SET_UP
+
+
+def _sets_rate_of_heartbeat(message: m.CommandLong | m.CommandInt) -> bool:
+    """Return whether this may silence the HEARTBEAT of a channel, by which all behind it know the vehicle."""
+    if message.command != rover.MAV_CMD_SET_MESSAGE_INTERVAL:
+        return False
+    return not message.param1 >= 0.5  # an autopilot reads the id as a whole number; a NaN as 0
+
+
+def _decode(frame: Frame) -> Message:
+    return codec.decode(frame[0], payload_of(frame[4]))

@@ -14,14 +14,16 @@ import time
 from collections.abc import Callable, Hashable
 from functools import partial
 
+from dialects.messages import Heartbeat
 from link.endpoint import Endpoint, Side
 from link.fleet.arrivals import PACE, Arrivals
 from link.fleet.brevity import BriefTelemetry
+from link.fleet.circumstances import Circumstances
 from link.fleet.config import VEHICLE_ROLE, FleetConfig, load_config
 from link.fleet.inbox import BATCH, Inbox
 from link.fleet.keys import MAX_KEYS, FleetKeys, KeyReader, Place, new_framer, read_frame
 from link.fleet.presence import Presence
-from link.fleet.roles import depends_on_content, needed_role
+from link.fleet.roles import WatchCondition, depends_on_content, needed_role, target_of, watch_condition
 from link.fleet.session import FleetSession
 from link.protocol.frame import Frame, Header, read_header
 from link.protocol.link_events import CONNECTING
@@ -68,6 +70,7 @@ class FleetTransport:
         self._delivery: asyncio.TimerHandle | None = None
         self._presence = Presence()
         self._brief = BriefTelemetry()
+        self._circumstances = Circumstances()
         self._looked_at: frozenset[int] | None = None
         self._unsent = 0
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -128,6 +131,8 @@ class FleetTransport:
         way = None if header is None or header.size != len(data) else self._ways.get((address, header.message_id))
         if way is None:
             way = self._find_way(data, address)
+        if header is not None and header.message_id == Heartbeat.id and not self._keys.me:
+            self._note_heartbeat(data)
         if way is None or header is None or not self._publish(way, data, header, address):
             self._unsent += 1
 
@@ -145,7 +150,7 @@ class FleetTransport:
         if why := self._role_missing(frame):
             self._say(f"a message was not sent: {why}", f"{frame[0]}")
             return None
-        way = self._keys.place(frame, address)
+        way = self._keys.place(frame, address, self._claimed_role(frame))
         if not depends_on_content(frame[0]):
             if len(self._ways) >= MAX_KEYS:
                 self._ways.clear()
@@ -156,9 +161,19 @@ class FleetTransport:
         if not self._keys.me or self._role is None:
             return None
         needed = needed_role(frame)
-        if needed <= self._role:
+        if needed <= self._role or self._claimed_role(frame) is Role.WATCH:
             return None
         return f"the certificate of {self._name} may {self._role.word} only; ask for the role {needed.word}"
+
+    def _claimed_role(self, frame: Frame) -> Role | None:
+        """Return WATCH for what a watcher may send in these circumstances; None for the role that the frame needs.
+
+        A ground station does not see what others transfer: the vehicle's end decides that.
+        """
+        condition = watch_condition(frame) if self._role is Role.WATCH else None
+        if condition is None or (condition is WatchCondition.HOLD and not self._circumstances.holds(target_of(frame))):
+            return None
+        return Role.WATCH
 
     # ---- from threads of Zenoh ----
 
@@ -235,7 +250,19 @@ class FleetTransport:
         if found is None:
             self.refused += 1
             self._refused_key = key  # the next tick says so: a flood must not keep the loop busy
-        return None if found is None else found[0]
+            return None
+        place, frame = found
+        return place if self._keys.me or self._is_allowed(place, frame) else None
+
+    def _is_allowed(self, place: Place, frame: Frame) -> bool:
+        """Return whether a frame to this vehicle may come from its sender now."""
+        now = time.monotonic()
+        if place.is_conditional(frame) and not self._circumstances.allows_watcher(frame, place.sender, now):
+            self.refused += 1
+            self._say("a watcher's frame was dropped: it would end another's transfer, or is no stop", place.sender)
+            return False
+        self._circumstances.note_transfer(frame, place.sender, now)
+        return True
 
     def _is_owner(self, data: bytes, address: str) -> bool:
         """Return whether a frame's system id is that of its vehicle; two vehicles with one id would look like one."""
@@ -246,7 +273,14 @@ class FleetTransport:
         if owner != address:
             self.refused += 1
             self._say(f"{address} sends with system id {header.system} of {owner}: give it another MAV_SYSID", address)
+        elif header.message_id == Heartbeat.id:
+            self._note_heartbeat(data)
         return owner == address
+
+    def _note_heartbeat(self, data: bytes) -> None:
+        """Learn from a vehicle's HEARTBEAT of which autopilot it is."""
+        if frame := self._read(data):
+            self._circumstances.note_heartbeat(frame)
 
     def _note_token(self, address: str, is_there: bool) -> None:
         if self._loop is None:
@@ -282,6 +316,7 @@ class FleetTransport:
             log.debug("%s: %s has disconnected", self.endpoint.text, address)
             self._inbox.forget(address)
             self._brief.set(address, is_brief=False)
+            self._circumstances.forget_sender(address)
             self._on_disconnect(address)
         self._ask_for_brief()  # of those that have come, and whose system id has become known
         if self._refused_key:

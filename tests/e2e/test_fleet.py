@@ -128,6 +128,26 @@ def test_a_watcher_sees_and_stops(fleet: Fleet) -> None:
     assert not fleet.armed()
 
 
+def test_a_watcher_stops_by_hold_and_downloads_a_log_to_its_end(fleet: Fleet) -> None:
+    """Its certificate grants watch only: these frames need drive unless the vehicle is ours and nobody downloads."""
+    wires, vehicle = fleet.wires, fleet.wires.vehicle
+    watcher = Driver(wires, "bob", ids=(254, 190))  # type: ignore[arg-type]
+    refusal = wires.transport("bob").refusal
+
+    def both(now: float) -> None:
+        fleet.driver.step(AHEAD)
+        watcher.step(None)
+
+    wires.until(lambda: any(who == "bob" and isinstance(each, m.Heartbeat) for who, each in wires.sent), both)
+    assert vehicle.turning()
+    for allowed in (m.SetMode(1, 1, 4), m.LogRequestEnd(1, 1), m.MissionAck(1, 1, 0)):
+        assert refusal(frame(allowed)) is None
+    for refused in (m.SetMode(1, 1, 0), m.RequestDataStream(1, 1, 0, 4, 1)):
+        assert refusal(frame(refused)) == "the certificate of bob may watch only; ask for the role drive"
+    wires.transport("bob").send(frame(m.SetMode(1, 1, 4)), "rover1")
+    wires.until(vehicle.stands, lambda now: fleet.driver.step(AHEAD))
+
+
 def test_many_tokens_at_once_do_not_hold_up_the_router(fleet: Fleet) -> None:
     """They need more room than there is in the queue of the session to which they go."""
     wires, base = fleet.wires, "fleet/farm/rover2/gcs/bob"

@@ -213,6 +213,18 @@ def test_a_key_to_watch_does_not_drive_and_one_to_drive_does_not_set_up() -> Non
     assert driver.text("mission not changed: its key may drive but not set up")
 
 
+def test_the_fence_is_switched_off_by_a_key_to_set_up_only() -> None:
+    wires = guarded()
+    phone, laptop = SignedProgram(wires, "phone", ids=(254, 190)), SignedProgram(wires)
+    phone.key = DRIVES_ONLY
+    for each in (phone, laptop):
+        each.hold(1.0, None)
+    assert phone.command(Command.DO_FENCE_ENABLE, 1) is Result.ACCEPTED
+    assert phone.command(Command.DO_FENCE_ENABLE, 0) is Result.DENIED
+    assert phone.text("its key may drive but not set up")
+    assert laptop.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
+
+
 def test_a_watcher_with_the_drivers_ids_and_address_moves_nothing() -> None:
     """It may stop, as everybody may; its demands are not the driver's, however they are numbered."""
     wires = guarded()

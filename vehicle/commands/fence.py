@@ -5,6 +5,7 @@ from __future__ import annotations
 from dialects.enums import Command, Result, Severity
 from link.services.command.request import CommandRequest
 from link.services.mission.items import ItemRule, MissionItem
+from link.signing.role import Role
 from vehicle.autonomy.mission.rules import DoItem
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
@@ -28,12 +29,12 @@ class FenceCommands:
         """Return the rows of the commands handled here."""
         return (
             CommandSpec(Command.DO_FENCE_ENABLE, self._enable, Access.DRIVER_OR_UNCLAIMED,
-                        "1: 1 on, 0 off; not off while armed, and nothing that the configuration file forbids",
+                        "1: 1 on, 0 off (key: setup); not off while armed, nor what the configuration file forbids",
                         item=DoItem(ItemRule(ranges={1: (0.0, 1.0)}), self._run_item)),
         )  # fmt: skip
 
     def _enable(self, request: CommandRequest, now: float) -> Result:
-        """Parameter 1: 0 off, 1 on. An armed vehicle keeps its fence."""
+        """Parameter 1: 0 off, 1 on. An armed vehicle keeps its fence. Off needs setup, as FENCE_ENABLE does."""
         action = request.params[0]
         if action == FLOOR_ONLY:
             return Result.UNSUPPORTED
@@ -43,6 +44,8 @@ class FenceCommands:
             return self._access.reject(request, self._fence.damage, now)
         if action == DISABLE and self._safety.armed and self._fence.enabled:
             return self._access.reject(request, "disarm first", now)
+        if action == DISABLE and (denied := self._access.deny_role(Role.SET_UP, request, now)):
+            return denied
         before = self._fence.enabled
         denial = self._fence.set_enabled(action == ENABLE)
         if denial:

@@ -31,7 +31,7 @@ def key(data: bytes, keys: FleetKeys = ALICE, address: str = "rover1") -> str:
         (ARM, "drive/cmd/COMMAND_LONG"),
         (DISARM, "watch/cmd/COMMAND_LONG"),
         (frame(m.ParamSet(1, 1, b"A", 1.0, 9)), "setup/rel/PARAM_SET"),
-        (frame(m.RequestDataStream(1, 1, 0, 4, 1)), "watch/tlm/REQUEST_DATA_STREAM"),
+        (frame(m.RequestDataStream(1, 1, 0, 4, 1)), "drive/tlm/REQUEST_DATA_STREAM"),
     ],
 )
 def test_a_frame_to_a_vehicle_and_back_from_its_key(data: bytes, tail: str) -> None:
@@ -87,6 +87,19 @@ def test_a_command_counts_only_under_its_role_and_class(wrong: str) -> None:
 def test_a_lesser_frame_does_not_count_under_a_higher_role(role: str) -> None:
     assert TO_ROVER.read(f"{BASE}/watch/cmd/COMMAND_LONG", DISARM) is not None
     assert TO_ROVER.read(f"{BASE}/{role}/cmd/COMMAND_LONG", DISARM) is None
+
+
+HOLD = frame(m.SetMode(1, 1, 4))
+MODE_0 = frame(m.SetMode(1, 1, 0))
+
+
+def test_a_hold_may_come_under_watch_where_its_meaning_is_checked() -> None:
+    for role, conditional in (("drive", False), ("watch", True)):
+        found = TO_ROVER.read(f"{BASE}/{role}/cmd/SET_MODE", HOLD)
+        assert found is not None
+        assert found[0].is_conditional(found[1]) is conditional
+    assert TO_ROVER.read(f"{BASE}/setup/cmd/SET_MODE", HOLD) is None
+    assert TO_ROVER.read(f"{BASE}/watch/cmd/SET_MODE", MODE_0) is None
 
 
 def test_tokens() -> None:

@@ -106,6 +106,32 @@ async def test_frames_both_ways_and_what_is_refused(port: int) -> None:
     assert set(threading.enumerate()) <= others
 
 
+@pytest.mark.parametrize(("autopilot", "passes"), [(3, True), (12, False)])
+async def test_a_watchers_hold_reaches_ardurover_and_not_px4(port: int, autopilot: int, passes: bool) -> None:
+    station, rover = ends(port, "rover1")
+    await until(lambda: station.received and rover.received)
+    me = rover.received[0][1]
+    beat = frame(m.Heartbeat(10, autopilot, 129, 4, 4, 3), 0, 1, 1)
+    rover.transport.send(beat, me)
+    await until(lambda: (beat, "rover1") in station.received)
+    watcher = station.transport._session._router.session
+    assert watcher is not None
+    hold = frame(m.SetMode(1, 1, 4))
+
+    def put() -> None:
+        watcher.put(f"fleet/farm/rover1/down/{me}/watch/cmd/SET_MODE", hold)
+
+    if passes:
+        await until(lambda: (hold, me) in rover.received, put)
+    else:
+        await until(lambda: rover.transport.refused >= 3, put)
+        assert (hold, me) not in rover.received
+        station.transport.send(hold, "rover1")  # under the role drive
+        await until(lambda: (hold, me) in rover.received)
+    for each in (station, rover):
+        each.transport.close()
+
+
 async def test_two_vehicles_with_one_system_id_are_not_taken_for_one(port: int) -> None:
     station, first, second = ends(port, "rover1", "rover2")
     await until(lambda: {address for _, address in station.received} == {"rover1", "rover2"})
