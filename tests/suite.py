@@ -31,7 +31,7 @@ LONG = (
     "link/signing/test_c_library.py", "link/signing/test_verifier.py::test_81",
     "vehicle/accessories/test_accessory_missions.py", "vehicle/autonomy/mission", "vehicle/autonomy/modes",
     "vehicle/autonomy/test_navigator.py", "vehicle/cli/test_motor_test.py", "vehicle/cli/test_systemd_unit.py",
-    "vehicle/commands/test_go_to.py", "vehicle/commands/test_params.py::test_what_could_not_be_saved_is_tried",
+    "vehicle/commands/test_go_to.py", "vehicle/commands/test_params.py::test_an_unsaved_value_is_retried",
     "vehicle/machine", "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
     "vehicle/storage/test_tlog_files.py::test_a_real_card",
     "groundstation/cli/test_keys_verb.py", "groundstation/connect", "groundstation/export", "groundstation/gamepad",

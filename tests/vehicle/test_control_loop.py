@@ -118,7 +118,7 @@ def test_a_driver_that_fails_to_enable_is_stopped_and_told() -> None:
     assert "failed: no power" in mind.calls
 
 
-def test_what_cannot_prove_itself_is_told_before_anything_turns_and_asked_again() -> None:
+def test_unproven_output_is_told_before_motion_and_asked_again() -> None:
     reasons = ["no timeout", "no timeout still"]
 
     def prove() -> None:
@@ -212,7 +212,7 @@ def test_close_is_neutral_then_disabled_then_let_go() -> None:
     assert len(motors.asked) == 3
 
 
-def test_a_driver_that_is_never_neutral_again_still_loses_its_power() -> None:
+def test_a_driver_that_is_never_neutral_again_still_loses_power() -> None:
     body, _, motors = driving()
     motors.broken["set"] = OSError("unplugged")
     body.close()

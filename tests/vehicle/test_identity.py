@@ -180,7 +180,7 @@ def test_old_frames_after_the_driver_has_gone_move_nothing(kind: type[Program], 
     assert not any(outputs)
 
 
-def test_a_copy_at_any_lag_moves_nothing_but_where_its_number_comes_next() -> None:
+def test_copy_at_any_lag_moves_nothing_unless_its_number_is_next() -> None:
     """U2: of a foreign driver, on its own address, what is 256 less 1 to 8 numbers old is taken for the next frame."""
     wires, driver = driving()
     driver.hold(20.0, AHEAD)
@@ -248,7 +248,7 @@ def test_a_driver_who_comes_back_is_ready_within_a_second(kind: type[Program], w
 
 
 @pytest.mark.parametrize("behind", [0, 3, 20, 32])
-def test_a_program_that_restarts_a_little_behind_its_last_number_drives_again_at_once(behind: int) -> None:
+def test_a_program_restarted_a_little_behind_drives_at_once(behind: int) -> None:
     wires, driver = driving()
     driver.hold(0.5, NEUTRAL)
     wires.wait(1.5)
@@ -265,7 +265,7 @@ def test_a_program_that_restarts_a_little_behind_its_last_number_drives_again_at
 
 @settings(max_examples=6, deadline=None)
 @given(st.integers(0, 2**32), st.integers(0, 32), st.floats(0.75, 4.0), st.floats(0.0, 0.3))
-def test_frames_of_the_former_run_move_nothing_before_and_after_a_restart(
+def test_frames_of_the_former_run_move_nothing_around_a_restart(
     seed: int, behind: int, silence: float, loss: float
 ) -> None:
     """Copies of its last 33 frames, most with full throttle, while the driver is gone and the next program is idle."""
@@ -319,7 +319,7 @@ def test_still_older_frames_after_a_restart_move_it_once_at_most(kind: type[Prog
         assert sum(turned) * 0.02 <= 0.45 + 0.4
 
 
-def test_a_tcp_client_that_connects_again_is_the_same_program_once_the_first_is_silent() -> None:
+def test_a_reconnected_tcp_client_is_the_same_program_in_the_end() -> None:
     wires, driver = driving()
     again = Program(wires, "gcs on a new connection", number=driver.number)
     again.hold(SUCCESSION_TIME - 0.1, NEUTRAL)
@@ -375,7 +375,7 @@ def test_a_twin_may_not_command(kind: type[Program]) -> None:
     assert driver.set_mode(Mode.HOLD) is Result.ACCEPTED
 
 
-def test_a_request_for_control_is_forwarded_to_the_driver_and_not_to_its_twin() -> None:
+def test_a_request_for_control_goes_to_the_driver_not_its_twin() -> None:
     wires, driver = driving()
     twin = Program(wires, "elsewhere", number=128)
     twin.hold(0.1, None)
@@ -493,7 +493,7 @@ def test_rover_control_names_the_program_in_control() -> None:
     assert newest_control(driver)[:3] == (0, 0, 0)
 
 
-def test_rover_control_of_a_driver_without_sessions_tells_of_a_clash() -> None:
+def test_rover_control_tells_of_clash_of_driver_without_sessions() -> None:
     wires, driver = driving()
     watcher = SessionProgram(wires, "watcher", ids=(254, 190))
     watcher.hold(1.5, None)

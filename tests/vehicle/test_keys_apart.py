@@ -212,7 +212,7 @@ def test_another_key_with_any_clock_locks_no_drive_key_out(fast: float, set_righ
 
 @pytest.mark.parametrize("wall", [12.0, NOON])
 @pytest.mark.parametrize("synchronized", [False, True])
-def test_a_watch_key_behind_the_drivers_bridge_spoils_no_drive_key(wall: float, synchronized: bool) -> None:
+def test_watch_key_behind_the_drivers_bridge_spoils_no_drive_key(wall: float, synchronized: bool) -> None:
     """40 years ahead, from the driver's address; then the vehicle restarts, and the driver comes from elsewhere."""
     field = Field(wall)
     field.set_clock(wall, synchronized=synchronized)
@@ -245,7 +245,7 @@ def _streams() -> list[Stream]:
     return list(signing.memory(0.0).newest)
 
 
-def test_a_stamp_of_a_day_ahead_is_refused_where_the_time_is_right() -> None:
+def test_a_stamp_a_day_ahead_is_refused_where_the_time_is_right() -> None:
     for fast, accepted in ((86_390.0, True), (86_410.0, False), (40 * YEAR, False)):
         field = Field(NOON + 100.0)
         field.set_clock(NOON + field.now, synchronized=True)
@@ -253,14 +253,14 @@ def test_a_stamp_of_a_day_ahead_is_refused_where_the_time_is_right() -> None:
         assert bool(field.accepted) is accepted
 
 
-def test_a_clock_of_the_last_shutdown_refuses_nobody_who_is_ahead() -> None:
+def test_a_clock_of_the_last_shutdown_refuses_nobody_ahead() -> None:
     """A computer without a battery for its clock begins where it was switched off: that looks like a set clock."""
     field = Field(NOON - 30 * 86_400.0)
     assert field.signing.clock.trusted
     assert field.drive() < 3.0
 
 
-def test_where_the_time_is_right_nobody_is_told_a_time_of_years_ahead() -> None:
+def test_where_time_is_right_nobody_is_told_one_of_years_ahead() -> None:
     """A station that followed it would be refused: the clock of the vehicle was set after it had met that key."""
     field = Field(NOON - 30 * 86_400.0)
     field.send(BEAT, DRIVER, 40 * YEAR, DESK, (255, 190))
@@ -281,7 +281,7 @@ def answers(field: Field) -> list[tuple[Hashable, bytes]]:
     return found
 
 
-def test_a_genuine_frame_that_is_too_old_is_answered_once_a_second() -> None:
+def test_genuine_frame_that_is_too_old_is_answered_once_a_second() -> None:
     field, count = Field(NOON + 100.0), 0
     old = [signed(BEAT, stamp=NOW - DAY + n, ids=(255, 190), link_id=3) for n in range(100)]
     for data in old:
@@ -317,7 +317,7 @@ def test_answers_go_to_32_addresses_a_second_at_most() -> None:
     assert len(answers(field)) == 32
 
 
-def test_a_station_says_that_a_clock_is_a_day_ahead_before_it_follows() -> None:
+def test_a_station_reports_a_clock_a_day_ahead_before_it_follows() -> None:
     station = DrivingStation(0.0)
     ahead = to_stamp(NOON + 40 * YEAR)
     station.receive(signed(BEAT, stamp=ahead, ids=(1, 1)), 0.0)

@@ -47,7 +47,7 @@ def test_the_emergency_stop_is_read_in_each_cycle(idle: Machine, after: int) -> 
     assert idle.rover.state is SafetyState.ESTOP
 
 
-def test_a_rover_that_was_just_armed_works_in_each_cycle_and_drives_at_once(idle: Machine) -> None:
+def test_just_armed_rover_works_in_each_cycle_and_drives_at_once(idle: Machine) -> None:
     assert idle.arm() is Result.ACCEPTED
     assert idle.whole_cycles(1.0, NEUTRAL) == 50
     idle.stick(AHEAD)
@@ -64,7 +64,7 @@ def test_a_rover_rests_until_something_is_under_way(idle: Machine) -> None:
     assert idle.body.rest_period
 
 
-def test_a_message_during_a_rest_finds_the_emergency_stop_as_it_is(idle: Machine) -> None:
+def test_a_message_during_a_rest_sees_the_emergency_stop(idle: Machine) -> None:
     idle.freeze(0.09)
     idle.pressed = "pressed"
     assert idle.arm() is not Result.ACCEPTED

@@ -192,7 +192,7 @@ def going() -> Script:
 
 @settings(max_examples=120)
 @given(st.lists(STEPS, max_size=40))
-def test_it_moves_only_for_a_fresh_demand_of_its_driver_after_neutral(steps: list[Step]) -> None:
+def test_it_moves_only_for_a_fresh_demand_of_its_driver(steps: list[Step]) -> None:
     script = going()
     for step in steps:
         script.play(step)

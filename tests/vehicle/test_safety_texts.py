@@ -149,7 +149,7 @@ def operations(action: Callable[[], None]) -> int:
 
 
 @pytest.mark.parametrize("system", [DRIVER, STRANGER])
-def test_a_refusal_costs_the_same_after_ten_and_after_three_thousand(system: int) -> None:
+def test_a_refusal_costs_the_same_after_10_and_after_3000(system: int) -> None:
     bench = Bench()
     assert bench.arm() is Result.ACCEPTED
 

@@ -110,7 +110,7 @@ def test_an_outsider_in_the_network_moves_nothing_and_may_watch(kind: type[Progr
 @pytest.mark.parametrize("kind", [SignedProgram, SignedSession])
 @pytest.mark.parametrize("address", ["gcs", "elsewhere"])
 @pytest.mark.parametrize("policy", [OPEN, SigningPolicy(unsigned=None, open_stops=True)])
-def test_an_outsider_with_the_drivers_ids_neither_drives_nor_clashes(
+def test_outsider_with_drivers_ids_neither_drives_nor_clashes(
     kind: type[Program], address: str, policy: SigningPolicy
 ) -> None:
     """Without signing a forger who counts as the driver stops the vehicle (docs/safety.md, U2)."""
@@ -192,7 +192,7 @@ def test_with_closed_stops_only_key_holders_stop(command: Command, params: tuple
     assert not wires.turning
 
 
-def test_a_key_to_watch_does_not_drive_and_one_to_drive_does_not_set_up() -> None:
+def test_a_watch_key_does_not_drive_and_a_drive_key_not_set_up() -> None:
     wires = guarded()
     watcher, driver = SignedProgram(wires, "a", ids=(254, 190)), SignedProgram(wires, "b", ids=(253, 190))
     watcher.key, driver.key = WATCHER, DRIVES_ONLY
@@ -225,7 +225,7 @@ def test_the_fence_is_switched_off_by_a_key_to_set_up_only() -> None:
     assert laptop.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
 
 
-def test_a_watcher_with_the_drivers_ids_and_address_moves_nothing() -> None:
+def test_watcher_with_the_drivers_ids_and_address_moves_nothing() -> None:
     """It may stop, as everybody may; its demands are not the driver's, however they are numbered."""
     wires = guarded()
     driver = drive_fully(SignedProgram, wires)

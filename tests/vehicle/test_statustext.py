@@ -43,7 +43,7 @@ def test_fifty_bytes_need_no_chunks() -> None:
     assert [message.id for message in texts.pop_due(0.0)] == [0]
 
 
-def test_the_daemons_log_hears_each_text_whole_though_nobody_listens() -> None:
+def test_daemons_log_gets_each_text_whole_though_none_listens() -> None:
     heard: list[tuple[Severity, str]] = []
     texts = StatusTextQueue(lambda severity, text: heard.append((severity, text)))
     long = "Motor driver failed: " + "x" * 100
@@ -102,7 +102,7 @@ def test_memory_is_bounded() -> None:
     assert len(texts._repeats) <= 32
 
 
-def test_the_most_important_comes_first_and_is_never_dropped_for_less() -> None:
+def test_the_most_important_comes_first_and_is_never_dropped() -> None:
     heard: list[str] = []
     texts = StatusTextQueue(lambda severity, text: heard.append(text))
     texts.send_event(Severity.EMERGENCY, "EMERGENCY STOP", 0.0)

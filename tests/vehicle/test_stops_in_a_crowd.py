@@ -150,7 +150,7 @@ def test_the_sender_of_a_stop_without_a_place_sees_its_effect(stop: m.CommandLon
     assert any(isinstance(each, m.CommandAck) for each in link.replies[NEW_STATION])
 
 
-def test_a_heartbeat_a_second_answers_stops_however_many_there_are() -> None:
+def test_a_heartbeat_a_second_answers_stops_of_any_number() -> None:
     link = CrowdedLink()
     link.drive()
     for _ in range(100):

@@ -118,7 +118,7 @@ def test_a_repeat_goes_on_while_the_rover_drives_on() -> None:
         (do(Command.DO_REPEAT_RELAY, 7, 1, 1), "there is no relay 7"),
     ],
 )
-def test_what_this_vehicle_has_not_is_told_at_the_upload_and_passed_over(item: Item, why: str) -> None:
+def test_items_the_vehicle_lacks_are_named_at_upload_and_skipped(item: Item, why: str) -> None:
     field = ready(way(2, 0), item, do(RELAY, 0, 1), way(4, 0))
     field.wait(0.2)
     assert said(field, f"Mission: no accessory for items 1, will be skipped: {why}")

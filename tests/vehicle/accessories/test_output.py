@@ -82,7 +82,7 @@ def test_another_wish_ends_a_repeat() -> None:
     assert changes(outlet, 5.0) == [(0.0, 1100)]
 
 
-def test_a_repeat_in_the_place_of_a_repeat_ends_where_the_first_began() -> None:
+def test_repeat_in_place_of_a_repeat_ends_where_the_first_began() -> None:
     outlet, _ = relay()
     outlet.start_repeat(None, 9, 0.5, 0.0)
     changes(outlet, 0.3)
@@ -140,7 +140,7 @@ def test_close_makes_it_safe_first() -> None:
     assert made.value == 1
 
 
-def test_one_that_does_not_open_keeps_its_reason_and_gives_nothing() -> None:
+def test_an_output_that_does_not_open_keeps_its_reason() -> None:
     def make(value: int) -> Flaky:
         raise OSError("no such bus")
 

@@ -101,7 +101,7 @@ def test_a_lost_ground_station_ends_every_mode_in_hold(drive: Callable[[Field], 
     assert field.stands_for(1.0)  # a returning ground station starts nothing
 
 
-def test_an_armed_rover_without_a_driver_does_not_begin_to_drive_itself() -> None:
+def test_an_armed_rover_without_a_driver_does_not_drive_itself() -> None:
     """Nobody's silence would end it: the failsafe of a lost ground station has acted before."""
     field = Field()
     auto(field)
@@ -231,7 +231,7 @@ class Witness:
 
 @settings(max_examples=40)
 @given(st.lists(STEPS, max_size=25))
-def test_no_command_moves_a_rover_that_is_disarmed_stopped_or_in_a_failsafe(steps: list[Step]) -> None:
+def test_no_command_moves_a_disarmed_stopped_or_failing_rover(steps: list[Step]) -> None:
     field = Field()
     upload(field, way(20, 0), way(20, 20))
     witness = Witness(field)

@@ -61,7 +61,7 @@ def test_home_can_be_set_to_the_present_position() -> None:
 
 
 @pytest.mark.parametrize("altitude", [None, math.nan])
-def test_home_at_the_present_position_keeps_the_altitude_if_unknown(altitude: float | None) -> None:
+def test_home_at_the_present_position_keeps_an_unknown_altitude(altitude: float | None) -> None:
     bench = placed()
     set_home(bench, 0, 520)
     bench.readings = replace(EVERYTHING, altitude=altitude)

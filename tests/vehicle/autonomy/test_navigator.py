@@ -67,7 +67,7 @@ class TestHome:
         assert field.command_int(Command.DO_SET_HOME, 0, x=500000000, y=80000000, frame=1) is Result.UNSUPPORTED_FRAME
 
     @pytest.mark.parametrize("mode", [Mode.RTL, Mode.LOITER])
-    def test_arming_in_an_autonomous_mode_moves_nothing_until_it_is_chosen_again(self, mode: Mode) -> None:
+    def test_arming_in_autonomous_mode_moves_nothing_until_rechosen(self, mode: Mode) -> None:
         field = away()
         field.set_mode(mode)
         field.command(Command.COMPONENT_ARM_DISARM, 0)
@@ -93,7 +93,7 @@ class TestModes:
         assert field.mode is Mode.RTL
         assert field.command(Command.DO_SET_STANDARD_MODE, 2) is Result.FAILED
 
-    def test_the_available_modes_follow_the_sensors_and_the_sequence_number_changes(self) -> None:
+    def test_available_modes_and_their_sequence_follow_the_sensors(self) -> None:
         bench = Bench()
         bench.wait(4.0)
         before = bench.newest(m.AvailableModesMonitor).seq

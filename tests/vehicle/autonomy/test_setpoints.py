@@ -69,7 +69,7 @@ def test_a_slow_clock_is_followed_for_days() -> None:
     assert max(age for age in ages if age is not None) < 0.1
 
 
-def test_47_setpoints_delayed_by_two_seconds_do_not_move_the_rover() -> None:
+def test_47_setpoints_delayed_by_2_s_do_not_move_the_rover() -> None:
     field = Field()
     field.begin(Mode.GUIDED)
     for step in range(20):

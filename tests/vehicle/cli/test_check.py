@@ -104,7 +104,7 @@ def test_motors_that_turned_stand_after_it(tmp_path: Path) -> None:
     assert chip.pulse(1) is None  # that gave no pulses, and was not woken
 
 
-def test_hardware_that_is_not_there_is_a_fault_and_the_rest_is_tried(tmp_path: Path) -> None:
+def test_missing_hardware_is_a_fault_and_the_rest_is_tried(tmp_path: Path) -> None:
     text = (
         'endpoints = ["serial:/dev/no-such-port:57600", "udpout:127.0.0.1:9"]\n'
         '[motors]\ndriver = "roboclaw"\nport = "/dev/nowhere"\n'
@@ -118,7 +118,7 @@ def test_hardware_that_is_not_there_is_a_fault_and_the_rest_is_tried(tmp_path: P
     assert "sensors.battery: ina219 at 0x40 on I2C bus 99" in lines[4]
 
 
-def test_a_log_that_cannot_be_written_is_found_before_the_vehicle_starts(tmp_path: Path) -> None:
+def test_an_unwritable_log_is_found_before_the_vehicle_starts(tmp_path: Path) -> None:
     log = f'{FREE}{QUIET}[motors]\ndriver = "simulated"\n[log]\n'
     text = f'{log}file = "{tmp_path}/none/log"\nmotors = "{tmp_path}/motors"\n'
     code, lines = checked(tmp_path, text)
@@ -131,7 +131,7 @@ def test_a_log_that_cannot_be_written_is_found_before_the_vehicle_starts(tmp_pat
     assert (code, lines[-1]) == (1, "FAIL  log.file: FOLDER is a folder")
 
 
-def test_folders_that_cannot_be_written_are_found_before_the_vehicle_starts(tmp_path: Path) -> None:
+def test_unwritable_folders_are_found_before_the_vehicle_starts(tmp_path: Path) -> None:
     (tmp_path / "taken").touch()
     text = f'{FREE}{QUIET}[motors]\ndriver = "simulated"\n'
     code, lines = all_checked(tmp_path, text, "--state", str(tmp_path / "taken"))

@@ -135,7 +135,7 @@ def test_a_signal_ends_it_at_once() -> None:
     assert ASKED[-3:] == ["0 0", "disable", "disable"]
 
 
-def test_another_number_of_motors_is_refused_before_any_has_power() -> None:
+def test_wrong_number_of_motors_is_refused_before_any_has_power() -> None:
     with pytest.raises(RefusedError, match="the driver has 2 motors, DRIVE_TYPE needs 4"):
         run_motor_test(TABLE, build_options("3", 0.2, 1.0, Params({"DRIVE_TYPE": 4})))
     assert "enable" not in ASKED

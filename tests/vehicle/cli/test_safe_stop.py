@@ -159,9 +159,7 @@ def test_after_a_kill_in_a_motor_test_safe_stop_ends_it(tmp_path: Path) -> None:
     ],
     ids=["broken", "gone", "other motors"],
 )
-def test_a_file_that_was_changed_while_the_vehicle_drove_keeps_nothing_turning(
-    tmp_path: Path, now: str | None, says: str
-) -> None:
+def test_a_file_changed_during_the_drive_keeps_nothing_turning(tmp_path: Path, now: str | None, says: str) -> None:
     file = tmp_path / "rover.toml"
     with ExitStack() as opened:
         rig = roboclaw(opened, tmp_path)
@@ -218,7 +216,7 @@ def ends_what_turns(rig: Rig, folder: Path) -> None:
     assert rig.silent()
 
 
-def test_a_mistake_elsewhere_in_the_file_does_not_keep_motors_turning(tmp_path: Path) -> None:
+def test_a_mistake_elsewhere_in_the_file_keeps_no_motor_turning(tmp_path: Path) -> None:
     with ExitStack() as opened:
         rig = pca9685(opened, tmp_path)
         chip = FiledPca9685(tmp_path / "registers")
@@ -231,7 +229,7 @@ def test_a_mistake_elsewhere_in_the_file_does_not_keep_motors_turning(tmp_path: 
         assert not rig.turning()
 
 
-def test_what_cannot_be_stopped_is_said_and_the_code_is_0_all_the_same(tmp_path: Path) -> None:
+def test_a_motor_that_cannot_be_stopped_is_named_with_code_0(tmp_path: Path) -> None:
     file = tmp_path / "rover.toml"
     file.write_text('[motors]\ndriver = "roboclaw"\nport = "/dev/nowhere"\n')
     code, _, error = said_by("safe-stop", "--config", str(file))

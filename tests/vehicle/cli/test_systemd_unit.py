@@ -40,7 +40,7 @@ def service(place: UnitOptions) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
-def test_it_is_watched_restarted_and_its_motors_are_stopped_after_any_end(place: UnitOptions) -> None:
+def test_it_is_watched_and_restarted_and_its_end_stops_motors(place: UnitOptions) -> None:
     said = service(place)
     assert said["Type"] == "notify"
     assert said["ExecStart"] == f"{PYTHON} -m vehicle --config {place.config}"
@@ -102,7 +102,7 @@ def test_a_mistake_is_the_code_that_ends_the_restarts() -> None:
     assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == str(USAGE_ERROR)
 
 
-def test_only_where_the_file_allows_it_the_computer_follows_the_exit_code() -> None:
+def test_the_computer_follows_the_exit_code_only_where_allowed() -> None:
     assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == "2"
     assert "OnFailure" not in build_unit(PLACES["of nobody"])
     assert service(PLACES["with power"])["RestartPreventExitStatus"] == "2 81 82"

@@ -72,7 +72,7 @@ def test_access_levels(access: Access, sender: CommandRequest, result: Result | 
     assert Denials().access.deny(access, sender, 1.0) is result
 
 
-def test_a_denial_names_the_command_also_one_without_a_name_of_ours() -> None:
+def test_a_denial_names_the_command_or_its_number() -> None:
     denials = Denials()
     denials.access.deny(Access.DRIVER_OR_UNCLAIMED, request(OTHER), 1.0)
     denials.access.deny(Access.DRIVER_OR_UNCLAIMED, request(OTHER, command=Command.DO_SET_GLOBAL_ORIGIN), 1.0)

@@ -209,7 +209,7 @@ class TestSafe:
 
 
 class TestTold:
-    def test_relays_and_servos_are_in_telemetry_at_once_and_when_asked(self) -> None:
+    def test_relays_and_servos_are_sent_at_once_and_on_request(self) -> None:
         bench = Equipped()
         bench.wait(3.0)
         assert (bench.newest(m.RelayStatus).on, bench.newest(m.RelayStatus).present) == (0, 0b111)

@@ -297,7 +297,7 @@ class TestRefusals:
 
 
 class TestRepeats:
-    def test_a_slider_goes_on_with_each_request_and_stops_with_the_last(self) -> None:
+    def test_slider_goes_on_with_each_request_and_stops_with_last(self) -> None:
         bench = Bench()
         for step in range(40):
             assert bench.command(*actuator(0.1 + 0.005 * (step % 10), 0.5)) is Result.ACCEPTED

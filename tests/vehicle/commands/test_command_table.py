@@ -49,7 +49,7 @@ def test_anyone_may_stop() -> None:
 @pytest.mark.parametrize(
     ("row", "first", "accepted"), [(TOY, 0, False), (STOP, 0, True), (STOP, 1, False), (OPEN, 1, True)]
 )
-def test_a_broadcast_is_accepted_from_a_row_that_stops_or_harms_nothing(
+def test_broadcast_is_accepted_by_rows_that_stop_or_harm_nothing(
     row: CommandSpec, first: float, accepted: bool
 ) -> None:
     message = CommandLong(0, 1, row.command, 0, first, 0, 0, 0, 0, 0, 0)

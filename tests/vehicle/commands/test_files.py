@@ -109,7 +109,7 @@ def test_plans_are_files() -> None:
     assert b"47.1000000\t8.5000000" in fetch(bench, path)
 
 
-def test_a_file_that_is_no_plan_is_refused_in_words_and_one_that_has_no_place_at_once() -> None:
+def test_a_file_without_a_plan_or_a_place_is_refused_in_words() -> None:
     bench = Bench()
     assert ask(bench, FtpOpcode.CREATE, b"/missions/fence.waypoints").op == FtpOpcode.ACK
     bench.say(FtpPacket(500, FtpOpcode.WRITE, 0, b"no plan").message(1, 1))
@@ -131,7 +131,7 @@ def test_nothing_is_written(op: FtpOpcode) -> None:
     assert ask(Bench(), op, b"/general.json.xz").op == FtpOpcode.NAK
 
 
-def test_who_is_at_an_address_that_the_user_named_may_ask_before_its_heartbeat() -> None:
+def test_a_named_address_may_ask_before_its_heartbeat() -> None:
     bench = Bench()
     assert ask(bench, FtpOpcode.LIST, b"/", named=True).op == FtpOpcode.ACK
     asked = m.CommandLong(1, 1, Command.REQUEST_MESSAGE, 0, m.AutopilotVersion.id, 0, 0, 0, 0, 0, 0)

@@ -104,7 +104,7 @@ def test_a_request_that_was_not_answered_in_time_is_over(within: float, after: f
     assert bench.mode is (Mode.MANUAL if given else Mode.HOLD)
 
 
-def test_control_goes_to_the_one_that_is_named_and_to_nobody_else() -> None:
+def test_control_goes_to_the_named_station_and_nobody_else() -> None:
     bench = driven()
     ask(bench, THIRD)
     assert release(bench, station=OTHER) is Result.ACCEPTED

@@ -384,9 +384,7 @@ UNCLEAR = (NAN,) * 7
 
 @pytest.mark.parametrize("row", [each for each in COMMANDS if each.access is Access.DRIVER_OR_UNCLAIMED], ids=named)
 @pytest.mark.parametrize("state", [owned, armed, stopped], ids=lambda each: str(each.__name__))
-def test_a_command_of_the_driver_is_denied_to_others_and_to_senders_without_heartbeat(
-    row: CommandSpec, state: Callable[[], Bench]
-) -> None:
+def test_a_command_of_the_driver_is_denied_to_all_others(row: CommandSpec, state: Callable[[], Bench]) -> None:
     bench = state()
     assert bench.command(row.command, *UNCLEAR, system=OTHER) is R.FAILED
     assert bench.command(row.command, *UNCLEAR, introduced=False) is R.FAILED

@@ -69,7 +69,7 @@ def test_the_place_on_the_globe_and_the_way_home_stay_the_same(place: Point) -> 
     assert moved == pytest.approx((-place.north, -place.east), abs=3)  # flat ground, 0.05 % of 3 km
 
 
-def test_the_rover_drives_the_same_mission_home_and_fence_after_it() -> None:
+def test_rover_drives_mission_home_and_fence_the_same_after_it() -> None:
     field = away()
     fence = square(FenceItem.POLYGON_INCLUSION, -10, -10, 30)
     assert upload(field, *fence, kind=MissionType.FENCE) == 0

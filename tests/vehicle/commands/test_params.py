@@ -261,7 +261,7 @@ def observed(bench: Bench, seconds: int) -> None:
         bench.wait(1.0)
 
 
-def test_what_could_not_be_saved_is_tried_again_ever_less_often_and_told_once_when_it_is() -> None:
+def test_an_unsaved_value_is_retried_and_its_save_told_once() -> None:
     bench, memory = bench_with(Params())
     memory.problem = "No space left on device"
     observed(bench, 20)
@@ -293,7 +293,7 @@ def test_a_disk_that_still_writes_is_not_asked_to_write_again() -> None:
     assert memory.saves == 1
 
 
-def test_a_value_that_a_full_disk_refused_is_on_the_disk_when_it_has_room(tmp_path: Path) -> None:
+def test_a_value_a_full_disk_refused_is_saved_when_it_has_room(tmp_path: Path) -> None:
     folder = tmp_path / "state"
     store = ParamStore(FileWriter(folder))
     folder.write_text("in the way")  # as little room as a full disk, for root too
@@ -320,7 +320,7 @@ def settled(store: ParamStore) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_no_value_that_can_be_set_keeps_the_vehicle_from_starting(name: str) -> None:
+def test_no_value_that_can_be_set_prevents_the_start(name: str) -> None:
     """A ground station could not mend it."""
     parameter = TABLE[NAMES.index(name)]
     between = {float(value) for value in range(20) if parameter.low <= value <= parameter.high}

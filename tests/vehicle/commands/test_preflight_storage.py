@@ -77,7 +77,7 @@ class TestStorage:
         assert said(bench, "Parameters: 2 reset to defaults")
         assert bench.command(STORAGE, 4) is Result.ACCEPTED
 
-    def test_reset_reaches_what_is_kept_and_leaves_what_the_file_pins(self) -> None:
+    def test_reset_reaches_stored_values_and_leaves_what_file_pins(self) -> None:
         store, params = MemoryStore(), Params(pinned=["WP_SPEED"])
         params.set("WP_SPEED", 2)
         params.set("MAN_DEADBAND", 10)
@@ -98,7 +98,7 @@ class TestStorage:
         assert bench.command(STORAGE, 2) is Result.ACCEPTED
         assert (params["MOT1_MIN"], params["MOT1_MAX"]) == (50, 80)
 
-    def test_reset_leaves_what_this_run_was_given_and_keeps_its_default(self) -> None:
+    def test_reset_leaves_values_of_this_run_and_keeps_their_default(self) -> None:
         """FS_LOOP_TIMEOUT of a simulation, which runs on a desktop."""
         store, given = MemoryStore(), {"FS_LOOP_TIMEOUT": 1.0, "WP_SPEED": 2.0}
         store.values = {"WP_SPEED": 1.5}
@@ -191,7 +191,7 @@ class TestStorage:
         assert said(field, "PREFLIGHT_STORAGE refused: the plans could not be erased")
         assert lengths(field) == [1, 1, 1]
 
-    def test_plans_are_saved_once_more_where_the_disk_did_not_take_them(self) -> None:
+    def test_plans_are_saved_again_where_the_disk_did_not_take_them(self) -> None:
         field = stocked(disk := SlowDisk())
         before = dict(disk.plans)
         disk.plans.clear()

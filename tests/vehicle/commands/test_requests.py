@@ -65,7 +65,7 @@ def test_55_what_is_no_message_id_is_denied(number: float) -> None:
         assert bench.command(command, number) is Result.DENIED
 
 
-def test_a_message_we_do_not_have_is_unsupported_and_one_without_its_sensor_fails() -> None:
+def test_unknown_message_is_unsupported_and_sensorless_one_fails() -> None:
     bench = Bench()
     assert bench.command(REQUEST, 259) is Result.UNSUPPORTED
     assert bench.command(REQUEST, m.Attitude.id) is Result.FAILED
@@ -99,7 +99,7 @@ def test_the_older_questions(command: Command, message: type[m.Message]) -> None
 
 
 @pytest.mark.parametrize("command", [REQUEST, SET, GET, Command.REQUEST_AUTOPILOT_CAPABILITIES])
-def test_22_who_has_shown_no_heartbeat_gets_no_more_than_a_refusal(command: Command) -> None:
+def test_22_a_sender_without_heartbeat_gets_only_a_refusal(command: Command) -> None:
     bench = equipped()
     count = len(bench.sent)
     assert bench.command(
@@ -116,7 +116,7 @@ def interval(bench: Bench, kind: type[m.Message]) -> int:
     return int(answer.interval_us)
 
 
-def test_the_longest_interval_can_be_asked_for_and_read_back_as_bytes() -> None:
+def test_the_longest_interval_can_be_requested_and_read_back() -> None:
     """3e9 us is capped to what MESSAGE_INTERVAL can hold; more was accepted, and never answered."""
     bench = equipped()
     assert bench.command(SET, m.Attitude.id, 3e9) is Result.ACCEPTED
@@ -152,7 +152,7 @@ def test_a_stream_that_is_off_at_the_start_can_be_turned_on() -> None:
     assert len(bench.all(m.RoverDriveInfo)) == pytest.approx(4, abs=1)
 
 
-def test_54_every_microsecond_is_clamped_and_the_whole_has_a_budget() -> None:
+def test_54_every_microsecond_is_clamped_and_all_have_a_budget() -> None:
     bench = equipped()
     for stream in STREAMS:
         assert bench.command(SET, stream.message.id, 1) is Result.ACCEPTED

@@ -61,7 +61,7 @@ def test_the_answer_comes_once_the_key_is_on_the_disk() -> None:
     assert len(bench.texts) == 1
 
 
-def test_a_key_that_cannot_be_written_is_reported_and_may_be_given_again() -> None:
+def test_an_unwritable_key_is_reported_and_may_be_given_again() -> None:
     store = Store(disk=PendingWrite(done=True, problem="see the log of the vehicle"))
     bench = bench_with(store, 0)
     assert give(bench) == ["Signing: key not stored, see the log of the vehicle"]
@@ -105,7 +105,7 @@ def test_for_another_vehicle_or_component_it_is_not_ours(target: int, component:
     assert store.ring == KeyRing()
 
 
-def test_a_refusal_is_repeated_at_most_every_3_s_and_the_key_is_never_sent_back() -> None:
+def test_a_refusal_repeats_at_most_every_3_s_without_the_key() -> None:
     bench = bench_with(Store(), 1)
     for _ in range(10):
         give(bench)

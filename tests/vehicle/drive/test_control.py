@@ -37,7 +37,7 @@ def test_31_a_demand_for_another_system_is_ignored(target: int) -> None:
         assert not bench.turning
 
 
-def test_32_demands_from_another_ground_station_are_ignored_counted_and_reported_once() -> None:
+def test_32_demands_of_another_station_are_ignored_and_reported() -> None:
     bench = Bench()
     bench.drive()
     bench.texts.clear()

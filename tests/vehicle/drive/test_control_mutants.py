@@ -26,7 +26,7 @@ def override(rig: Rig, target: int = 1, **channels: int) -> bool:
     return rig.control.handle_rc_override(rig.received(message), message, rig.now)
 
 
-def test_at_the_start_no_station_is_in_control_and_no_neutral_was_seen() -> None:
+def test_at_start_no_station_has_control_and_no_neutral_was_seen() -> None:
     control = Rig().control
     assert (control.ownership.owner, control.demand, control.not_in_control_count) == (0, None, 0)
     assert not control.ownership.takeover_allowed
@@ -64,7 +64,7 @@ class TestManualControl:
             assert not rig.control.handle_manual_control(received, message, START)
         assert rig.control.not_in_control_count == 0
 
-    def test_without_a_station_in_control_the_text_says_how_to_take_it(self) -> None:
+    def test_without_control_the_text_says_how_to_take_it(self) -> None:
         rig = Rig()
         assert not rig.stick(AHEAD)
         assert rig.said("arm to take it")
@@ -132,9 +132,7 @@ class TestNeutralFirst:
         assert not rig.control.neutral_seen
 
     @pytest.mark.parametrize(("axes", "seen"), [(AHEAD, False), (NEUTRAL, True)])
-    def test_a_stale_demand_for_motion_needs_it_again_and_a_stale_neutral_does_not(
-        self, axes: Axes, seen: bool
-    ) -> None:
+    def test_stale_motion_needs_neutral_again_and_stale_neutral_not(self, axes: Axes, seen: bool) -> None:
         rig = Rig(MAN_TIMEOUT=0.5).controlled()
         rig.stick(axes)
         rig.control.expire_stale_demand(START + 0.5)
@@ -144,7 +142,7 @@ class TestNeutralFirst:
         rig.control.expire_stale_demand(START + 0.51)
         assert rig.control.neutral_seen is seen
 
-    def test_a_demand_after_a_stale_one_needs_it_also_between_two_cycles(self) -> None:
+    def test_a_demand_after_a_stale_one_needs_neutral_between_cycles(self) -> None:
         rig = Rig(MAN_TIMEOUT=0.5).controlled()
         rig.stick(AHEAD)
         rig.now += 0.6
@@ -157,7 +155,7 @@ class TestOperator:
         """The driver has seen nothing newer than of `age` s ago."""
         rig.presence(echo=round((rig.now - BOOT - age) * 1000))
 
-    def test_demands_that_are_old_are_refused_and_that_is_reported_once(self) -> None:
+    def test_old_demands_are_refused_and_reported_once(self) -> None:
         rig = Rig(OPR_ECHO_MAX=0.5).controlled()
         self.old(rig, 0.5)
         assert rig.stick(AHEAD)
@@ -170,7 +168,7 @@ class TestOperator:
         assert rig.severity("OPR_ECHO_MAX") is Severity.WARNING
         assert rig.control.demand_age(START + 60.0) == 60.0
 
-    def test_an_old_neutral_is_a_demand_and_no_proof_of_a_stick_at_rest(self) -> None:
+    def test_an_old_neutral_is_a_demand_but_no_stick_at_rest(self) -> None:
         rig = Rig(OPR_ECHO_MAX=0.5).controlled()
         rig.stick(AHEAD)
         rig.control.require_neutral()
@@ -250,7 +248,7 @@ def test_a_clash_forgets_the_demand_and_the_stick_at_rest() -> None:
     assert rig.stick(NEUTRAL)
 
 
-def test_the_presence_of_another_program_is_not_that_of_the_driver() -> None:
+def test_the_presence_of_another_program_is_not_the_drivers() -> None:
     rig = Rig().controlled()
     rig.control.hear(rig.received(BEAT)._replace(numbering=2), rig.now)
     message = RoverOperatorPresence(1, 1, 0, 0, 9, 1, 0, 1)

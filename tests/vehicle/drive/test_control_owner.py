@@ -35,7 +35,7 @@ def test_control_is_free_at_boot_and_taken_by_a_request() -> None:
     assert said(bench, f"PreArm: GCS {OTHER} is in control")
 
 
-def test_a_control_request_is_rejected_and_forwarded_to_the_owner() -> None:
+def test_control_request_is_rejected_and_forwarded_to_the_owner() -> None:
     bench = Bench()
     bench.drive()
     assert ask(bench, OTHER) is Result.FAILED
@@ -120,7 +120,7 @@ def test_only_the_configured_ground_station_may_take_control() -> None:
     assert bench.arm(OTHER) is Result.ACCEPTED
 
 
-def test_control_is_released_from_an_owner_that_timed_out_while_disarmed() -> None:
+def test_an_owner_that_times_out_while_disarmed_loses_control() -> None:
     bench = Bench()
     ask(bench, DRIVER)
     bench.wait(5.5)

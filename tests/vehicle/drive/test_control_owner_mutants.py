@@ -48,7 +48,7 @@ class TestOwner:
         assert rig.severity(f"GCS {DRIVER} gave it up") is Severity.NOTICE
 
     @pytest.mark.parametrize("change", ["release", "owner"])
-    def test_after_a_change_others_get_the_text_again_that_they_are_ignored(self, change: str) -> None:
+    def test_after_a_change_others_are_told_again_of_their_refusal(self, change: str) -> None:
         rig = Rig().controlled()
         assert not rig.stick(AHEAD, OTHER)
         first = sum(f"GCS {OTHER} ignored" in text for _, text in rig.texts)

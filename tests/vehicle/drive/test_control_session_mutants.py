@@ -110,7 +110,7 @@ class TestTakingControl:
 
 
 class TestDemands:
-    def test_a_proof_is_a_demand_that_lasts_for_what_is_left_of_its_age(self) -> None:
+    def test_a_proof_is_a_demand_for_the_rest_of_its_age(self) -> None:
         rig = Sessions().owned()
         assert rig.prove(x=500, age=0.2)
         demand = rig.control.demand
@@ -130,7 +130,7 @@ class TestDemands:
         assert rig.control.demand.throttle == 0.5
         assert rig.prove(x=600, clock=11)
 
-    def test_an_old_one_for_motion_is_rejected_and_an_old_stop_still_stops(self) -> None:
+    def test_an_old_motion_is_rejected_and_an_old_stop_still_stops(self) -> None:
         rig = Sessions().owned()
         assert rig.prove(x=500)
         assert rig.prove(x=500, age=2.0) is False
@@ -217,7 +217,7 @@ class TestSuccession:
         assert rig.said("release the keys first")
         assert rig.control.ownership.silence_duration(rig.now) == 0.0
 
-    def test_the_stick_at_rest_of_the_one_before_is_no_proof_for_the_successor(self) -> None:
+    def test_former_drivers_neutral_is_no_proof_for_the_successor(self) -> None:
         rig = Sessions().owned()
         rig.now += 1.0
         assert rig.prove(8, x=900)

@@ -65,7 +65,7 @@ class TestMemory:
         assert not memory.is_repeat(frame(TWIN, 2))
         assert memory.is_repeat(frame(TWIN, 3))
 
-    def test_the_frames_of_other_ids_are_forgotten_with_another_driver(self) -> None:
+    def test_frames_of_other_ids_are_forgotten_with_another_driver(self) -> None:
         memory = remembering(1)
         memory.begin(TWIN)
         assert memory.is_repeat(frame(TWIN, 1))
@@ -100,7 +100,7 @@ class TestNewcomer:
         assert memory.newcomer(TWIN) is newcomer
         assert memory.newcomer(DRIVER) is None
 
-    def test_of_too_many_the_one_that_was_heard_longest_ago_is_forgotten(self) -> None:
+    def test_of_too_many_the_one_heard_longest_ago_is_forgotten(self) -> None:
         memory = remembering()
         speakers = [conversation(255, numbering=number) for number in range(NEWCOMERS_MAX + 1)]
         for speaker in speakers[:NEWCOMERS_MAX]:

@@ -57,7 +57,7 @@ def test_dead_zone() -> None:
     assert not bench.turning
 
 
-def test_42_a_released_channel_is_neutral_but_proves_no_stick_at_rest() -> None:
+def test_42_a_released_channel_is_neutral_but_no_stick_at_rest() -> None:
     bench = armed()
     repeat(bench, 0.2, chan3=1500)
     repeat(bench, chan3=1700)

@@ -23,7 +23,7 @@ def test_each_axis_moves_beyond_the_dead_band_either_way(axis: str, sign: int) -
 
 
 @pytest.mark.parametrize("axis", ["throttle", "steering"])
-def test_an_axis_without_a_demand_moves_nothing_and_is_no_stick_at_rest(axis: str) -> None:
+def test_an_axis_without_a_demand_is_still_but_no_stick_at_rest(axis: str) -> None:
     missing = demand(**{axis: None})
     assert not missing.is_neutral(0.25)
     assert not missing.requests_motion(0.25)
@@ -31,7 +31,7 @@ def test_an_axis_without_a_demand_moves_nothing_and_is_no_stick_at_rest(axis: st
     assert demand().is_neutral(0.0)
 
 
-def test_a_demand_of_a_driver_is_not_direct_and_has_no_sideways_axis() -> None:
+def test_a_drivers_demand_is_not_direct_and_has_no_sideways_axis() -> None:
     made = Demand(0.5, 0.5, 1.0, 255, 7)
     assert not made.direct
     assert made.sideways is None

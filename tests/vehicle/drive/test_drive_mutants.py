@@ -120,7 +120,7 @@ def test_limits_add_up() -> None:
     assert rig.drive.limits == DriveLimit.SLEW | DriveLimit.REVERSE_DELAY
 
 
-def test_on_the_spot_wheels_that_skid_get_their_share_and_those_that_steer_all() -> None:
+def test_on_spot_skid_wheels_get_a_share_and_steered_wheels_all() -> None:
     assert Rig(MOT_PIVOT_MAX=50).update(demand(0.0, 0.5)).throttles == (0.25, -0.25)
     assert Rig(MOT_PIVOT_MAX=50).update(demand(0.5, 0.0)).throttles == (0.5, 0.5)
     assert Rig(MOT_PIVOT_MAX=50, DRIVE_TYPE=DriveType.ACKERMANN).update(demand(0.0, 0.5)).throttles == (0.0, 0.5)
@@ -240,14 +240,14 @@ def test_an_axis_without_a_demand_is_zero() -> None:
     assert shape_demand(demand(None, None), Params()) == (0.0, 0.0, 0.0)
 
 
-def test_a_sideways_demand_that_is_no_number_stops_a_drive_that_has_no_use_for_it() -> None:
+def test_a_sideways_nan_stops_a_drive_that_does_not_use_it() -> None:
     rig = Rig(DRIVE_TYPE=DriveType.SKID)
     assert rig.update(demand(0.5)).throttles == (0.5, 0.5)
     assert rig.update(demand(0.5, sideways=math.nan)) == OFF
     assert rig.drive.rejected_cycles == 1
 
 
-def test_the_trim_of_a_steering_servo_counts_beside_a_motor_without_settings() -> None:
+def test_steering_trim_counts_beside_a_motor_without_settings() -> None:
     rig = Rig(DRIVE_TYPE=DriveType.ACKERMANN, MOT2_TRIM=10.0)
     assert rig.update(demand(0.5)).throttles == (0.5, 0.1)
     assert rig.drive.wheels == (0.5, 0.0)

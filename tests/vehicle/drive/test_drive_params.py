@@ -6,7 +6,7 @@ from tests.vehicle.bench import AHEAD
 from tests.vehicle.pacing import cruise, idle_machine
 
 
-def test_another_parameter_reaches_the_wheels_of_a_demand_that_stays() -> None:
+def test_a_new_parameter_reaches_the_wheels_of_a_steady_demand() -> None:
     driven = cruise(idle_machine())
     assert driven.motors.outputs == (1.0, 1.0)
     driven.rover._params.set("MOT_THR_MAX", 50)

@@ -150,7 +150,7 @@ def test_an_empty_battery_ends_the_drive() -> None:
     assert drive.motors.outputs == (0.0, 0.0)
 
 
-def test_after_shutdown_nothing_turns_and_the_last_message_is_poweroff() -> None:
+def test_after_shutdown_nothing_turns_and_last_state_is_poweroff() -> None:
     drive = driving()
     drive.machine.shutdown(drive.now)
     assert drive.motors.outputs == (0.0, 0.0)

@@ -128,7 +128,7 @@ def test_a_wheel_at_zero_requires_its_motor_at_zero() -> None:
     assert centred == Outputs((0.5, 0.1), enabled=True)
 
 
-def test_a_servo_off_its_centre_does_not_keep_the_outputs_enabled() -> None:
+def test_a_servo_off_centre_does_not_keep_the_outputs_enabled() -> None:
     gate = Gate(2, driven=1)
     gate.filter((0.5, 0.0), (0.5, 0.1), Permit.DRIVE, FALL_TIME, 0.0)
     assert gate.filter((0.1, 0.0), (0.1, 0.1), Permit.RAMP_DOWN, FALL_TIME, 0.02) == Outputs((0.1, 0.1), enabled=True)
@@ -157,7 +157,7 @@ def test_a_motor_test_is_permitted_while_disarmed_and_on_time() -> None:
     assert CLEARED._replace(motor_test=TRIAL).permit is Permit.DRIVE
 
 
-def test_a_motor_test_passes_one_motor_for_three_seconds_and_no_longer() -> None:
+def test_a_motor_test_passes_one_motor_for_3_s_and_no_longer() -> None:
     gate = Gate(2)
     for cycle in range(150):
         assert judge(gate, (-0.3, 0.0), Permit.TEST, FALL_TIME, 10 + cycle * 0.02, TRIAL) == Outputs((-0.3, 0.0), True)
@@ -180,7 +180,7 @@ def test_without_a_request_there_is_no_motor_test() -> None:
 
 
 @pytest.mark.parametrize("between", [Permit.NONE, Permit.RAMP_DOWN, Permit.DRIVE])
-def test_an_interrupted_motor_test_is_over_and_a_new_request_has_its_own_time(between: Permit) -> None:
+def test_interrupted_motor_test_is_over_and_new_one_has_its_time(between: Permit) -> None:
     gate = Gate(2)
     assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL).enabled
     judge(gate, (0.0, 0.0), between, FALL_TIME, 0.02, TRIAL)
@@ -219,7 +219,7 @@ def test_a_clock_that_goes_back_ends_a_motor_test() -> None:
         )
     )
 )
-def test_no_request_turns_a_motor_for_longer_or_faster_than_it_may(
+def test_no_request_turns_a_motor_longer_or_faster_than_allowed(
     moves: list[tuple[int | None, tuple[float, ...], float]],
 ) -> None:
     gate, now, first = Gate(2), 0.0, dict[int, float]()

@@ -31,7 +31,7 @@ class TestClearance:
         del facts[fact]
         assert Clearance(armed=True, **facts).permit is Permit.RAMP_DOWN  # type: ignore[arg-type]
 
-    def test_by_default_a_cycle_is_on_time_and_there_is_no_motor_test(self) -> None:
+    def test_by_default_a_cycle_is_on_time_without_a_motor_test(self) -> None:
         assert Clearance(motor_test=TEST).permit is Permit.TEST
         assert Clearance(motor_test=TEST, late=True).permit is Permit.NONE
         assert Clearance().motor_test is None

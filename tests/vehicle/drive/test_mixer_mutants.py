@@ -8,7 +8,7 @@ from dialects.enums import DriveType
 from vehicle.drive.mixer import MIXERS, MixerLimits, MixerOutput, clamp, four_wheels, skid
 
 
-def test_limits_cut_alike_and_push_as_much_back_as_ahead_by_default() -> None:
+def test_limits_cut_alike_and_allow_equal_reverse_by_default() -> None:
     assert MixerLimits() == (0.5, 1.0)
     assert not MixerOutput((0.0,)).saturated
 

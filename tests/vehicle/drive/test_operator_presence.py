@@ -171,7 +171,7 @@ def test_presence_messages_of_others_are_ignored() -> None:
     assert bench.turning
 
 
-def test_the_demand_behind_a_presence_moves_the_motors_on_arrival() -> None:
+def test_demand_behind_a_presence_moves_the_motors_on_arrival() -> None:
     # Both come in one moment. Were the ramp advanced by the first, nothing would be left for the second until a tick.
     bench = Bench()
     bench.wait(2.0)

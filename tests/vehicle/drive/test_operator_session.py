@@ -171,7 +171,7 @@ def test_armed_over_a_late_link_its_demands_have_the_same_bound() -> None:
     assert bench.throttles[0] < full, "0.47 s after what it had seen"
 
 
-def test_armed_over_a_late_link_it_drives_only_once_a_proof_has_come() -> None:
+def test_armed_over_a_late_link_it_drives_only_after_a_proof() -> None:
     """MANUAL_CONTROL alone, its proofs lost, says nothing of its age."""
     bench = Bench()
     bench.wait(2.0)
@@ -233,7 +233,7 @@ def test_an_old_proof_that_is_the_newest_still_stops() -> None:
     assert bench.turning  # a stop of any age, but no proof of a stick at rest: the interlock was open all the while
 
 
-def test_the_demand_ends_when_its_proof_is_as_old_as_opr_echo_max() -> None:
+def test_a_demand_ends_when_its_proof_is_as_old_as_opr_echo_max() -> None:
     bench, station = going()
     station.send(AHEAD, echo_age=0.3)  # 0.15 s are left of OPR_ECHO_MAX
     full = bench.throttles[0]

@@ -83,12 +83,12 @@ class TestSession:
         session.add_proof(slow, PROOF, 10.6, good=True)
         assert session.is_proven(slow, 10.6)
 
-    def test_the_age_of_a_setpoint_is_that_of_the_proof_and_the_time_since(self) -> None:
+    def test_age_of_a_setpoint_is_that_of_its_proof_plus_time_since(self) -> None:
         session = DrivingSession.begin(SENDER, PROOF, 10.0)
         assert session.setpoint_age(SENDER, 10.2) == pytest.approx(0.3)
         assert session.setpoint_age(SENDER._replace(numbering=2), 10.2) == math.inf
 
-    def test_of_too_many_conversations_the_one_that_was_proven_longest_ago_is_forgotten(self) -> None:
+    def test_of_too_many_conversations_the_oldest_proof_is_forgotten(self) -> None:
         session = DrivingSession.begin(SENDER, PROOF, 10.0)
         for number in range(1, LINKS_MAX + 5):
             session.add_proof(SENDER._replace(numbering=number), PROOF, 5.0, good=number % 2 == 0)

@@ -83,7 +83,7 @@ def test_a_steering_servo(fit: OutputScaling, steering: float, output: float) ->
 
 
 @given(fits(), UNIT)
-def test_no_scaling_starts_or_reverses_a_motor_or_leaves_its_range(fit: OutputScaling, throttle: float) -> None:
+def test_scaling_neither_starts_nor_reverses_nor_leaves_range(fit: OutputScaling, throttle: float) -> None:
     output = fit.scale_throttle(throttle)
     assert abs(output) <= fit.largest
     assert throttle or output == 0.0

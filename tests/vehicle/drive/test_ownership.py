@@ -133,7 +133,7 @@ class TestQuestions:
         assert scene.ownership.driver_proves(scene.now + 1.0)
         assert not scene.ownership.driver_proves(scene.now + 1.01)
 
-    def test_of_the_senders_of_proofs_the_one_that_is_silent_longest_is_forgotten(self) -> None:
+    def test_of_the_provers_the_one_silent_longest_is_forgotten(self) -> None:
         scene = Scene()
         others = [conversation(system, numbering=1) for system in range(1, SENDERS_MAX)]
         for sender in (GCS, *others, GCS, conversation(99, numbering=1)):
@@ -162,7 +162,7 @@ class TestQuestions:
         assert late == "older than OPR_ECHO_MAX on arrival"
         assert scene.ownership.setpoint_denial_reason(OTHER, scene.now) == "GCS 255 is in control"
 
-    def test_setpoints_of_a_driver_that_repeats_old_frames_do_not_count(self) -> None:
+    def test_setpoints_of_a_driver_that_repeats_frames_do_not_count(self) -> None:
         scene = Scene()
         assert scene.ownership.setpoint_denial_reason(GCS, scene.now) is None
         scene.hear(GCS, digest=77)
@@ -325,7 +325,7 @@ class TestSuccession:
 
 
 class TestReports:
-    def test_the_driver_is_told_of_a_program_with_its_ids_and_again_after_a_minute(self) -> None:
+    def test_the_driver_is_told_of_a_twin_and_again_after_a_minute(self) -> None:
         scene = Scene()
         counts = []
         for _ in range(130):
@@ -379,7 +379,7 @@ class TestReports:
 
 
 class TestClash:
-    def test_the_driver_is_barred_and_all_are_told_once_in_ten_seconds(self) -> None:
+    def test_the_driver_is_barred_and_all_are_told_once_in_10_s(self) -> None:
         scene = Scene()
         text = "Two programs count as 255/190 behind one address: stopped"
         scene.hear(GCS, clash=True)

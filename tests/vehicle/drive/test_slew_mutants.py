@@ -58,7 +58,7 @@ def test_nothing_waits_that_is_to_stand() -> None:
         assert not slew.waiting
 
 
-def test_the_rest_before_a_reversal_counts_and_starts_again_with_each_motion() -> None:
+def test_the_rest_before_a_reversal_restarts_with_each_motion() -> None:
     slew = Slew()
     slew.step(0.25, 0.25, DELAYED)
     slew.step(0.0, 0.125, DELAYED)
@@ -94,7 +94,7 @@ def test_a_reset_stands_at_once_and_tells_nothing() -> None:
     assert (slew.value, slew.limited, slew.waiting) == (0.0, False, False)
 
 
-def test_what_is_no_number_stays_none_and_is_not_reported_as_waiting() -> None:
+def test_a_nan_stays_none_and_is_not_reported_as_waiting() -> None:
     slew = Slew()
     slew.step(0.25, 0.25, DELAYED)
     slew.step(-1.0, 0.125, DELAYED)

@@ -85,7 +85,7 @@ def test_the_oracle_sees_the_wheels_turn_and_stop() -> None:
     assert not any(rig.rover.outputs.throttles)
 
 
-def test_a_program_without_proofs_succeeds_a_session_at_its_own_address() -> None:
+def test_program_without_proofs_succeeds_session_at_its_address() -> None:
     """Found by 2000 sequences of 200 steps: the oracle took it for the session, which is silent."""
     rig = Rig(mission=True)
     DRIVER["A arms"](rig)

@@ -89,7 +89,7 @@ class SerialContract(MotorsContract):
             assert turns or machine_paused, "it stopped by its timeout in the middle of driving"
             pause.wait(0.02)
 
-    def test_killed_with_9_the_controller_stops_and_safe_stop_confirms(self, line: OnPty) -> None:
+    def test_after_kill_9_controller_stops_and_safe_stop_confirms(self, line: OnPty) -> None:
         settings = {"port": line.path, **KINDS[self.kind][1]}
         with Driving(self.kind, settings) as process:
             line.until(lambda: line.controller.outputs == pytest.approx([0.5, -0.5], abs=0.01))

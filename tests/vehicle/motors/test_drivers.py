@@ -129,7 +129,7 @@ class Broken:
         raise ValueError("no\nhardware")
 
 
-def test_a_driver_of_your_own_that_does_not_start_is_said_in_one_line() -> None:
+def test_an_own_driver_that_does_not_start_is_told_in_one_line() -> None:
     with pytest.raises(MotorError) as caught:
         open_motors(f"{__name__}:Broken")
     assert str(caught.value) == f"driver '{__name__}:Broken' does not start: ValueError: no hardware"

@@ -8,7 +8,7 @@ from vehicle.motors import MotorError
 from vehicle.motors.error_budget import FAILURES_MAX, SILENCE_MAX, ErrorBudget
 
 
-def test_consecutive_failures_are_an_error_and_a_response_starts_anew() -> None:
+def test_consecutive_failures_are_an_error_and_a_response_resets() -> None:
     budget = ErrorBudget()
     for _ in range(2):
         for _ in range(FAILURES_MAX - 1):

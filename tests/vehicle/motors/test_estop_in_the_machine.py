@@ -69,7 +69,7 @@ def state(car: Car) -> states.SafetyState:
 
 
 @pytest.mark.parametrize("enable_pin", [ENABLE, None])
-def test_pressed_everything_is_off_in_the_same_cycle_and_the_state_is_the_emergency_stop(
+def test_a_press_turns_all_off_in_the_cycle_and_enters_the_estop(
     enable_pin: int | None,
 ) -> None:
     car = Car(enable_pin=enable_pin)
@@ -101,7 +101,7 @@ def test_a_message_between_press_and_cycle_stops_too() -> None:
     assert not car.wheels.enabled
 
 
-def test_leaving_it_needs_the_contact_closed_and_the_ground_station_in_control_and_then_arming() -> None:
+def test_leaving_needs_a_closed_contact_control_and_arming() -> None:
     car = Car()
     car.drive()
     car.press()
@@ -143,7 +143,7 @@ def test_open_at_boot_nothing_arms_and_the_checks_say_why() -> None:
     car.drive()
 
 
-def test_pressed_while_disarmed_it_stays_too_even_a_touch_shorter_than_a_cycle() -> None:
+def test_press_while_disarmed_lasts_even_if_shorter_than_a_cycle() -> None:
     car = Car()
     car.press()
     car.let_go()
@@ -168,7 +168,7 @@ def test_pressed_between_arming_and_the_first_cycle() -> None:
     assert not car.rolling
 
 
-def test_a_ground_stations_stop_is_not_released_while_the_contact_is_open() -> None:
+def test_station_stop_is_not_released_while_the_contact_is_open() -> None:
     car = Car()
     car.drive()
     car.command(SWITCH, 0)

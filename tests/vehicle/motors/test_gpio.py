@@ -59,7 +59,7 @@ def test_the_pwm_pins_have_the_frequency(factory: MockFactory, settings: GpioSet
     motors.close()
 
 
-def test_enabling_begins_with_low_inputs_whatever_happened_to_them_meanwhile(factory: MockFactory) -> None:
+def test_enabling_begins_with_low_inputs_in_any_case(factory: MockFactory) -> None:
     motors = GpioMotors(TWO_INPUTS)
     factory.pin(10).state = 1.0
     motors.enable()
@@ -72,7 +72,7 @@ def test_pins_are_let_go_by_close(factory: MockFactory) -> None:
     GpioMotors(TWO_INPUTS).close()
 
 
-def test_a_pin_in_use_is_said_in_one_line_and_the_others_are_let_go(factory: MockFactory) -> None:
+def test_a_pin_in_use_is_named_in_one_line_and_others_are_freed(factory: MockFactory) -> None:
     other = GpioMotors(GpioSettings(bridges=(TwoInputs(8, 6),)))
     with pytest.raises(MotorError, match="GPIO8") as caught:
         GpioMotors(TWO_INPUTS)
@@ -174,7 +174,7 @@ def test_settings_are_read_strictly(factory: MockFactory, settings: dict[str, An
     assert "\n" not in str(caught.value)
 
 
-def test_safe_stop_pulls_pins_down_that_a_killed_process_left_high(factory: MockFactory) -> None:
+def test_safe_stop_pulls_down_pins_that_killed_process_left_high(factory: MockFactory) -> None:
     for number in (10, 7):
         pin = factory.pin(number)
         pin.function = "output"

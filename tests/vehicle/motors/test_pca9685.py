@@ -119,7 +119,7 @@ class Watched(FakePca9685):
 
 
 @pytest.mark.parametrize("frequency", [60, 100])
-def test_another_frequency_in_the_file_makes_no_other_width_of_neutral(frequency: float) -> None:
+def test_another_frequency_in_the_file_keeps_the_neutral_width(frequency: float) -> None:
     fake = Watched()
     before = Pca9685Motors(SETTINGS, bus=fake)
     before.enable()
@@ -173,7 +173,7 @@ def test_slow_failures_end_after_a_fifth_of_a_second() -> None:
         motors.set((0.6, 0.6))
 
 
-def test_disable_says_when_the_chip_does_not_hear_it_and_works_when_it_does_again() -> None:
+def test_disable_reports_deaf_chip_and_works_when_it_hears_again() -> None:
     fake = FakePca9685()
     motors = Pca9685Motors(SETTINGS, bus=fake)
     motors.enable()
@@ -186,7 +186,7 @@ def test_disable_says_when_the_chip_does_not_hear_it_and_works_when_it_does_agai
     assert fake.pulse(0) == pytest.approx(307 * STEP)
 
 
-def test_a_chip_that_lost_its_power_is_set_up_again_before_it_is_enabled() -> None:
+def test_a_chip_that_lost_power_is_set_up_again_before_enabling() -> None:
     fake = FakePca9685()
     motors = Pca9685Motors(SETTINGS, bus=fake)
     fake.lose_power()

@@ -95,7 +95,7 @@ def emptied(line: Line) -> bytes:
     return data
 
 
-def test_a_line_that_does_not_send_is_an_error_and_not_waited_for(line: Line) -> None:
+def test_line_that_does_not_send_is_an_error_and_not_waited_for(line: Line) -> None:
     """The port stays open, because the line may continue. Only whole frames are in it then."""
     port = opened(line)
     error = fill(port)
@@ -109,7 +109,7 @@ def test_a_line_that_does_not_send_is_an_error_and_not_waited_for(line: Line) ->
     port.close()
 
 
-def test_a_line_that_is_gone_closes_the_port_which_opens_again_under_its_name(line: Line) -> None:
+def test_lost_line_closes_the_port_which_reopens_under_its_name(line: Line) -> None:
     port = opened(line)
     line.unplug()
     with pytest.raises(OSError, match=str(line.path)):

@@ -71,14 +71,14 @@ class TestRoboClaw(SerialContract):
             RoboClawMotors(RoboClawSettings(port=line.path))
         assert "\n" not in str(caught.value)
 
-    def test_missing_replies_while_driving_end_it_in_a_fifth_of_a_second(self, bench: Bench, line: OnPty) -> None:
+    def test_missing_replies_while_driving_end_it_in_fifth_of_second(self, bench: Bench, line: OnPty) -> None:
         self.drive(bench)
         line.controller.mute = True
         waits, began = Waits(), time.monotonic()
         assert "no reply" in fault_of(bench.motors, calls=100, pause=0.02)
         assert 0.19 < time.monotonic() - began < 0.2 + MARGIN + waits.total()
 
-    def test_a_dead_controller_holds_each_control_cycle_up_for_one_reply_only(self, line: OnPty) -> None:
+    def test_a_dead_controller_delays_each_cycle_by_one_reply_only(self, line: OnPty) -> None:
         motors = RoboClawMotors(RoboClawSettings(port=line.path))
         line.controller.mute = True
         with pytest.raises(MotorError):

@@ -20,7 +20,7 @@ from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
 class TestSabertooth(SerialContract):
     kind = "sabertooth"
 
-    def test_it_does_not_enable_before_a_person_has_proven_the_timeout(self, line: OnPty) -> None:
+    def test_it_does_not_enable_before_a_person_proves_the_timeout(self, line: OnPty) -> None:
         motors = SabertoothMotors(SabertoothSettings(port=line.path))
         with pytest.raises(MotorError, match="set timeout_proven = true"):
             motors.enable()
@@ -36,7 +36,7 @@ class TestSabertooth(SerialContract):
         motors.enable()
         line.until(lambda: line.controller.timeout == 0.4)
 
-    def test_a_controller_that_lost_its_power_while_driving_gets_its_timeout_again(self, line: OnPty) -> None:
+    def test_a_controller_that_lost_power_gets_its_timeout_again(self, line: OnPty) -> None:
         times = iter([0.0, 0.02, 1.1])
         settings = SabertoothSettings(port=line.path, timeout_proven=True)
         motors = SabertoothMotors(settings, clock=times.__next__)

@@ -73,14 +73,12 @@ class TestGuardedMotors(MotorsContract):
         )
 
 
-def test_pressed_the_power_is_off_at_the_edge_before_anything_is_called(guarded: Guarded, pins: MockFactory) -> None:
+def test_a_press_cuts_the_power_at_the_edge_before_any_call(guarded: Guarded, pins: MockFactory) -> None:
     press(pins)
     assert not guarded.powered()
 
 
-def test_pressed_the_next_write_raises_and_nothing_turns_after_release_alone(
-    guarded: Guarded, pins: MockFactory
-) -> None:
+def test_after_a_press_writes_raise_and_release_turns_nothing(guarded: Guarded, pins: MockFactory) -> None:
     press(pins)
     with pytest.raises(MotorError, match="the emergency stop is pressed, or its wire is open"):
         guarded.motors.set((0.5, 0.5))
@@ -114,7 +112,7 @@ def test_pressed_nothing_can_be_enabled_or_tested(pins: MockFactory) -> None:
     assert guarded.powered()
 
 
-def test_pressed_in_the_very_moment_of_switching_on_the_power_goes_off_again(pins: MockFactory) -> None:
+def test_press_at_moment_of_switching_on_cuts_the_power_again(pins: MockFactory) -> None:
     class Pressing:
         """An enable pin that is switched on just after somebody pressed."""
 
@@ -143,7 +141,7 @@ def test_an_input_without_a_wire_is_pressed(pins: MockFactory) -> None:
         motors.enable()
 
 
-def test_the_heartbeat_changes_with_each_write_and_stands_still_without(guarded: Guarded, pins: MockFactory) -> None:
+def test_the_heartbeat_changes_with_each_write_and_stops_without(guarded: Guarded, pins: MockFactory) -> None:
     pin = pins.pin(HEARTBEAT)
     pin.clear_states()
     for _ in range(4):
@@ -168,7 +166,7 @@ def test_a_driver_that_fails_to_enable_gets_no_power(pins: MockFactory) -> None:
     assert not pins.pin(ENABLE).state
 
 
-def test_the_power_goes_off_also_when_the_driver_fails_to_disable(pins: MockFactory) -> None:
+def test_the_power_goes_off_even_if_the_driver_fails_to_disable(pins: MockFactory) -> None:
     class Broken(SimulatedMotors):
         def disable(self) -> None:
             raise MotorError("no reply")
@@ -200,7 +198,7 @@ class TestByItsSettings:
         assert not pins.pin(ENABLE).state
         motors.close()
 
-    def test_safe_stop_takes_the_power_away_with_the_stop_pressed_too(self, pins: MockFactory) -> None:
+    def test_safe_stop_cuts_the_power_with_the_stop_pressed_too(self, pins: MockFactory) -> None:
         pins.pin(ENABLE).function = "output"
         pins.pin(ENABLE).state = True
         press(pins)

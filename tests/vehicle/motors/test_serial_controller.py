@@ -20,7 +20,7 @@ from vehicle.motors.serial_controller import SerialController
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_rover_whose_controller_proves_no_timeout_cannot_be_armed(kind: str) -> None:
+def test_a_rover_whose_controller_proves_no_timeout_cannot_arm(kind: str) -> None:
     """The rover itself in its machine; then the same one with a controller that does."""
     make, settings, _ = KINDS[kind]
     for proven in (False, True):
@@ -52,9 +52,7 @@ def test_a_port_that_is_not_there_is_said_in_one_line(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_port_that_goes_while_it_is_set_up_is_an_error_of_the_motors(
-    kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_port_that_goes_during_set_up_is_an_error_of_the_motors(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def gone(*words: Any) -> None:  # no pty goes between two calls of the same function; a loose plug does
         raise termios.error(5, "Input/output error")
 

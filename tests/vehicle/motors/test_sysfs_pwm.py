@@ -104,7 +104,7 @@ def test_a_channel_that_the_chip_lacks_is_said(sysfs: FakeSysfs, pins: MockFacto
         opened(settings, sysfs, pins)
 
 
-def test_the_period_and_a_neutral_pulse_are_there_before_the_output_is(sysfs: FakeSysfs, pins: MockFactory) -> None:
+def test_period_and_neutral_pulse_are_set_before_output_is_on(sysfs: FakeSysfs, pins: MockFactory) -> None:
     motors = opened(SERVOS, sysfs, pins)
     assert sysfs.value(0, "period") == 20_000_000
     assert sysfs.pulse(0) is None
@@ -201,7 +201,7 @@ def test_settings_are_read_strictly(outputs: list[Any], says: str) -> None:
     assert says in str(caught.value)
 
 
-def test_a_freshly_exported_channel_is_waited_for_until_it_may_be_written(
+def test_an_exported_channel_is_waited_for_until_it_is_writable(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     answers = iter([False, False, True])

@@ -27,7 +27,7 @@ def test_a_heading_correction_turns_the_distance_already_driven() -> None:
     assert reckoning.place == pytest.approx((40.0, 0.0), abs=0.02)
 
 
-def test_a_scale_correction_stretches_the_distance_already_driven() -> None:
+def test_scale_correction_stretches_the_distance_already_driven() -> None:
     reckoning = driven(scale=1.02)
     reckoning.correct_scale(1 / 1.02)
     assert reckoning.place == pytest.approx((40.0, 0.0))

@@ -112,7 +112,7 @@ class TestReturnPoint:
     POINT: Item = (FenceItem.RETURN_POINT, Point(1.0, 1.0), ())
     WORDS = "return point stored but not used"
 
-    def test_a_return_point_is_stored_and_reported_and_a_breach_still_holds(self) -> None:
+    def test_return_point_is_stored_and_reported_and_a_breach_holds(self) -> None:
         field = Field(FENCE_ENABLE=1, FENCE_TYPE=4)
         plan = [self.POINT, *square(FenceItem.POLYGON_INCLUSION, -5, -5, 10)]
         assert upload(field, *plan, kind=MissionType.FENCE) == MissionResult.ACCEPTED

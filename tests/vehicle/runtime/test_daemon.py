@@ -135,7 +135,7 @@ def test_gets_ready_and_says_where_it_listens(tmp_path: Path) -> None:
 # ---- ends from outside the cores ----
 
 
-async def test_an_exception_in_a_callback_of_the_loop_stops_the_motors_and_ends_the_run() -> None:
+async def test_an_exception_in_a_callback_stops_the_motors_and_the_run() -> None:
     machine, _, motors = driving()
     ending = Shutdown(machine, Runner(machine, [], period=0.02))
     loop = asyncio.get_running_loop()

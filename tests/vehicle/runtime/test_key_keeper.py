@@ -26,7 +26,7 @@ def until(keeper: KeyKeeper, condition: Callable[[], bool]) -> None:
         time.sleep(0.001)
 
 
-def test_a_key_made_beside_it_is_taken_over_and_a_revoked_one_ends(tmp_path: Path) -> None:
+def test_a_key_made_beside_it_is_adopted_and_a_revoked_one_ends(tmp_path: Path) -> None:
     path = tmp_path / "keys.toml"
     keeper = KeyKeeper(path)
     heard: list[KeyRing] = []

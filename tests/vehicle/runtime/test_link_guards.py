@@ -103,7 +103,7 @@ def test_a_section_that_cannot_hold_is_one_line(text: str, problem: str) -> None
         parse_config(f"[signing]\n{text}\n", "rover.toml")
 
 
-def test_without_keys_a_trusted_link_costs_nothing_and_the_first_key_guards_it(tmp_path: Path) -> None:
+def test_a_trusted_link_is_free_until_the_first_key_guards_it(tmp_path: Path) -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     keys = KeyKeeper(tmp_path / FILE)
     made = LinkGuards(SigningSettings(), [endpoint], keys, tmp_path / "signing.json", 0.0)

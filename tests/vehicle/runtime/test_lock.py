@@ -62,7 +62,7 @@ def test_a_killed_process_holds_nothing() -> None:
     MotorLock(MINE).close()
 
 
-def test_the_second_vehicle_of_a_folder_is_refused_until_the_first_lets_go(tmp_path: Path) -> None:
+def test_a_second_vehicle_of_a_folder_waits_for_the_first_to_end(tmp_path: Path) -> None:
     folder = tmp_path / "new" / "state"
     words = f"state folder {folder} is in use by another vehicle; stop it, or set another folder with --state"
     with lock_state_folder(folder), pytest.raises(SettingsError, match=words), lock_state_folder(folder):

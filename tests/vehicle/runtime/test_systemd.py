@@ -156,7 +156,7 @@ def passed(ground: Ground, seconds: float) -> None:
 
 
 @pytest.mark.e2e
-def test_the_daemon_is_ready_alive_while_it_runs_and_says_when_it_ends(
+def test_the_daemon_reports_ready_alive_and_its_end(
     tmp_path: Path, manager: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NOTIFY_SOCKET", str(manager.getsockname()))

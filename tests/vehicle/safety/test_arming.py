@@ -31,7 +31,7 @@ def healthy(bench: Bench, sensor: Sensor) -> bool:
     return bool(status.onboard_control_sensors_health & sensor)
 
 
-def test_a_mode_that_requires_a_position_forbids_arming_without_one() -> None:
+def test_a_mode_that_needs_a_position_forbids_arming_without_one() -> None:
     bench = with_gps()
     assert bench.set_mode(Mode.LOITER) is Result.ACCEPTED
     bench.readings = NO_GPS
@@ -87,7 +87,7 @@ def test_uploaded_areas_require_a_position_for_arming() -> None:
     assert field.arm() is Result.ACCEPTED
 
 
-def test_losing_the_position_in_manual_reports_the_unenforced_fence() -> None:
+def test_losing_position_in_manual_reports_the_unenforced_fence() -> None:
     field = Field(FENCE_ENABLE=1, FENCE_TYPE=2)
     field.wait(6.0)
     assert field.arm() is Result.ACCEPTED

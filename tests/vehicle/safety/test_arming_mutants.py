@@ -38,7 +38,7 @@ def test_nothing_is_wrong_with_a_vehicle_that_is_ready() -> None:
         ({"sticks_moving": True}, False),
     ],
 )
-def test_each_fact_alone_forbids_arming_and_the_soft_ones_not_by_force(wrong: dict[str, object], hard: bool) -> None:
+def test_each_fact_forbids_arming_and_force_skips_soft_ones(wrong: dict[str, object], hard: bool) -> None:
     facts = replace(READY, **wrong)
     found = find_problems(facts)
     assert len(found) == 1

@@ -65,7 +65,7 @@ def test_a_sensor_is_silent_after_five_seconds() -> None:
     assert battery.is_silent(105.01)
 
 
-def test_a_sensor_that_there_should_be_is_silent_from_the_beginning() -> None:
+def test_an_expected_sensor_is_silent_from_the_beginning() -> None:
     battery = BatteryMonitor(PARAMS)
     assert (battery.present, battery.is_silent(0.0)) == (False, False)
     battery.update(None, 0.0)

@@ -39,7 +39,7 @@ def status(ground: Ground) -> int | None:
 
 
 @pytest.mark.e2e
-def test_the_button_open_at_the_start_closed_and_pressed_while_driving(tmp_path: Path) -> None:
+def test_the_button_open_at_the_start_then_closed_then_pressed(tmp_path: Path) -> None:
     file = tmp_path / "rover.toml"
     switch = Command.DO_SET_SAFETY_SWITCH_STATE
     with installed(tmp_path) as header, Ground() as ground:

@@ -24,7 +24,7 @@ def beats(bench: Bench, seconds: float) -> None:
 
 
 class TestManualLoss:
-    def test_outputs_begin_to_fall_within_half_a_second_and_end_within_one(self) -> None:
+    def test_outputs_begin_to_fall_within_half_second_and_end_in_one(self) -> None:
         bench = Bench()
         bench.drive()
         bench.stick(AHEAD)
@@ -39,7 +39,7 @@ class TestManualLoss:
         assert ended <= 0.9
         assert said(bench, "manual control lost: stopping")
 
-    def test_a_demand_just_after_the_timeout_is_stale_before_the_next_cycle_runs(self) -> None:
+    def test_demand_after_the_timeout_is_stale_before_the_next_cycle(self) -> None:
         bench = Bench()
         bench.drive()
         bench.stick(AHEAD)
@@ -206,7 +206,7 @@ class TestGroundStationLoss:
         bench.wait(10.0)
         assert bench.mode is Mode.MANUAL
 
-    def test_a_returning_heartbeat_clears_the_failsafe_and_the_mode_stays(self) -> None:
+    def test_returning_heartbeat_clears_failsafe_but_not_the_mode(self) -> None:
         bench = Bench()
         bench.arm()
         bench.wait(6.0)

@@ -89,7 +89,7 @@ def test_a_neutral_demand_is_lost_when_hold_is_due() -> None:
     assert scene.found(START + 2.0) == {Failsafe.MANUAL_LOSS: START + 0.5}
 
 
-def test_a_lost_demand_counts_in_a_mode_that_obeys_it_and_where_it_has_ended_that_mode() -> None:
+def test_lost_demand_counts_in_a_mode_that_obeys_or_ended_by_it() -> None:
     scene = Scene()
     scene.stick(AHEAD, START)
     lost = {Failsafe.MANUAL_LOSS: START + 0.5}
@@ -111,7 +111,7 @@ def test_a_silent_ground_station_counts_as_it_is_set(setting: float, alone: bool
     assert scene.found(START + 9.0, mission_running=alone) == pytest.approx(expected)
 
 
-def test_an_operator_who_gives_no_sign_counts_only_while_a_fresh_demand_asks_for_motion() -> None:
+def test_an_absent_operator_counts_only_while_a_demand_moves() -> None:
     scene = Scene()
     now = START + 2.0
     scene.stick(AHEAD, now)
@@ -145,7 +145,7 @@ def test_a_hot_pi_counts_where_its_failsafe_is_on(setting: float) -> None:
 
 
 @pytest.mark.parametrize("mode", [Mode.MANUAL, Mode.GUIDED])
-def test_only_auto_goes_on_without_a_ground_station_where_the_setting_is_2(mode: Mode) -> None:
+def test_only_auto_goes_on_without_station_where_setting_is_2(mode: Mode) -> None:
     field = Field(FS_GCS_ENABLE=2)
     if mode is Mode.MANUAL:
         field.drive(AHEAD)

@@ -150,7 +150,7 @@ def test_before_its_first_step_a_condition_is_not_active() -> None:
     assert failsafes.active == Failsafe.TILT
 
 
-def test_what_takes_the_mode_or_the_arming_away_is_latched_until_acknowledged() -> None:
+def test_loss_of_mode_or_arming_is_latched_until_acknowledged() -> None:
     failsafes = Failsafes(PARAMS)
     failsafes.update(MANUAL_LOSS, 0.0)
     assert not failsafes.latched
@@ -164,7 +164,7 @@ def test_what_takes_the_mode_or_the_arming_away_is_latched_until_acknowledged() 
     assert not failsafes.latched
 
 
-def test_returning_home_is_latched_and_so_is_one_of_several_steps() -> None:
+def test_returning_home_is_latched_also_as_one_of_several_steps() -> None:
     failsafes = Failsafes(Params({"FENCE_ACTION": 1}))
     assert actions(failsafes, {Failsafe.FENCE: 0.0}, 0.0) == [WARN, RTL]
     assert failsafes.latched == Failsafe.FENCE
@@ -193,7 +193,7 @@ def test_the_way_home_is_no_lasting_action(setting: float) -> None:
     assert failsafes.lasting_action(0.0) is WARN
 
 
-def test_of_several_steps_of_a_condition_the_worst_lasts_and_hold_is_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_several_steps_the_worst_lasts_and_hold_is_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
     steps = (FailsafeStep(0, NEUTRAL), FailsafeStep(0, LIMIT), FailsafeStep(1, NEUTRAL), FailsafeStep(5, HOLD))
     monkeypatch.setitem(RULES, Failsafe.TILT, replace(RULES[Failsafe.TILT], steps=steps))
     failsafes = Failsafes(PARAMS)

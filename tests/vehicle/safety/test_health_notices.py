@@ -27,7 +27,7 @@ def pi(temperature: float | None = None, under_voltage: bool | None = None) -> R
     return replace(EVERYTHING, computer=ComputerReadings(temperature=temperature, under_voltage=under_voltage))
 
 
-def test_the_start_and_the_end_of_a_sensor_fault_are_reported_once() -> None:
+def test_the_start_and_end_of_a_sensor_fault_are_reported_once() -> None:
     bench = Bench()
     assert after(bench, EVERYTHING, 10.0) == []
     assert after(bench, NO_CHIP, 60.0) == ["battery sensor: no chip at 0x40"]

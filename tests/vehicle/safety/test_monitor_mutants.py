@@ -64,7 +64,7 @@ class TestCycle:
         rig.cycle(0.01)
         assert not rig.control.neutral_seen
 
-    def test_a_stale_demand_needs_neutral_also_where_no_failsafe_looks(self) -> None:
+    def test_a_stale_demand_needs_neutral_even_without_a_failsafe(self) -> None:
         rig = Rig(MAN_TIMEOUT=0.5).armed()
         assert rig.safety.choose_mode(Mode.GUIDED, rig.now) is None
         rig.stick(NEUTRAL)
@@ -74,7 +74,7 @@ class TestCycle:
         assert not rig.control.neutral_seen
         assert rig.safety.failsafes.active == 0
 
-    def test_values_that_are_no_numbers_three_times_in_a_row_are_hold(self) -> None:
+    def test_nan_three_times_in_a_row_is_hold(self) -> None:
         assert BAD_CYCLES_MAX == 3
         rig = Rig(FS_GCS_ENABLE=0).armed()
         rig.cycle(refused=2)
@@ -226,7 +226,7 @@ class TestFailsafes:
 
 
 class TestIdle:
-    def test_the_delay_begins_with_the_arming_not_with_the_start_of_the_vehicle(self) -> None:
+    def test_the_delay_begins_with_arming_and_not_with_the_start(self) -> None:
         bench = Bench(DISARM_DELAY=20)
         bench.wait(60.0)
         assert bench.arm() is Result.ACCEPTED
@@ -256,7 +256,7 @@ class TestIdle:
         rig.cycle(5000.0)
         assert rig.safety.armed
 
-    def test_a_demand_for_motion_restarts_the_delay_and_a_neutral_one_does_not(self) -> None:
+    def test_motion_demand_restarts_the_delay_and_a_neutral_does_not(self) -> None:
         rig = self.rig(20)
         rig.now += 10.0
         rig.stick(NEUTRAL)

@@ -17,7 +17,7 @@ class TestComputer:
         bench.wait(0.04, AHEAD if bench.turning else None)
 
     @pytest.mark.parametrize(("temperature", "weak"), [(86.0, False), (50.0, True)])
-    def test_half_speed_then_hold_then_half_speed_after_choosing_manual(self, temperature: float, weak: bool) -> None:
+    def test_half_speed_then_hold_then_half_speed_after_manual(self, temperature: float, weak: bool) -> None:
         bench = Bench()
         bench.drive()
         self.pi(bench, temperature, weak=weak)
@@ -42,7 +42,7 @@ class TestComputer:
         assert bench.throttles == (1.0, 1.0)
         assert said(bench, "Failsafe cleared: Pi under-voltage or too hot")
 
-    def test_an_intermittent_under_voltage_is_one_condition_and_ends_in_hold(self) -> None:
+    def test_intermittent_under_voltage_ends_in_hold(self) -> None:
         bench = Bench()
         bench.drive()
         for cycle in range(12):

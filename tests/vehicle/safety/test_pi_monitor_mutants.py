@@ -44,7 +44,7 @@ def test_the_limit_is_a_parameter_and_zero_is_off(limit: float, hot: bool) -> No
     assert (pi.problem() is not None) is hot
 
 
-def test_a_weak_supply_and_heat_are_reported_together_and_the_first_begin_counts() -> None:
+def test_a_weak_supply_and_heat_are_reported_together_once() -> None:
     pi = monitor()
     pi.update(at(90.0, weak=False), 1.0)
     pi.update(at(90.0, weak=True), 2.0)

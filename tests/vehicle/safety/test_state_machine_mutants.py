@@ -76,7 +76,7 @@ class TestArming:
         assert len(rig.safety.arm(conversation(OTHER), rig.now)) == 1
         assert not rig.safety.armed
 
-    def test_what_is_wrong_is_reported_and_force_skips_the_soft_checks(self) -> None:
+    def test_faults_are_reported_and_force_skips_the_soft_checks(self) -> None:
         rig = Rig()
         rig.cycle()
         rig.safety.battery.update(1.0, rig.now)
@@ -101,7 +101,7 @@ class TestArming:
     @pytest.mark.parametrize(
         ("mode", "stands"), [(Mode.AUTO, True), (Mode.RTL, True), (Mode.GUIDED, False), (Mode.HOLD, False)]
     )
-    def test_in_a_mode_that_drives_by_itself_it_stands_until_it_is_chosen_again(self, mode: Mode, stands: bool) -> None:
+    def test_in_a_self_driving_mode_it_stands_until_chosen_again(self, mode: Mode, stands: bool) -> None:
         rig = Rig()
         rig.cycle()
         assert rig.safety.choose_mode(mode, rig.now) is None
@@ -194,13 +194,13 @@ class TestDisarming:
         rig.safety.disarm("by GCS", rig.now)
         assert rig.texts == []
 
-    def test_a_silent_owner_loses_control_at_once_and_a_present_one_keeps_it(self) -> None:
+    def test_a_silent_owner_loses_control_and_a_present_one_keeps_it(self) -> None:
         for silence, owner in ((4.9, DRIVER), (5.1, 0)):
             rig = Rig(FS_GCS_TIMEOUT=5).armed()
             rig.safety.disarm("by GCS", rig.now + silence)
             assert rig.control.ownership.owner == owner
 
-    def test_the_end_of_a_motor_test_ends_what_was_requested_while_disarmed(self) -> None:
+    def test_end_of_a_motor_test_ends_requests_made_while_disarmed(self) -> None:
         rig = Rig()
         rig.cycle()
         generation = rig.safety.mode_generation

@@ -35,7 +35,7 @@ def test_a_second_emergency_stop_does_not_end_a_termination(second: str) -> None
     assert bench.newest(m.Heartbeat).system_status == SystemState.FLIGHT_TERMINATION
 
 
-def test_manual_after_a_long_hold_is_not_disarmed_for_the_old_demand() -> None:
+def test_manual_after_long_hold_does_not_disarm_for_old_demand() -> None:
     """Longer in HOLD than FS_DISARM_T, without a demand: the one before HOLD must not count in MANUAL."""
     bench = Bench()
     bench.drive()
@@ -124,7 +124,7 @@ class TestMode:
         assert rig.control.demand is None
         assert rig.severity("Mode GUIDED") is Severity.INFO
 
-    def test_the_same_again_keeps_the_demand_and_restarts_self_driving(self) -> None:
+    def test_same_mode_keeps_the_demand_and_restarts_self_driving(self) -> None:
         rig = Rig().armed()
         rig.stick(AHEAD)
         generation = rig.safety.mode_generation

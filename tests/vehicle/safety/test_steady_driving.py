@@ -36,7 +36,7 @@ def cruising(idle: Machine) -> Machine:
     return cruise(idle)
 
 
-def test_a_rover_that_is_driven_steadily_works_every_tenth_of_a_second(cruising: Machine) -> None:
+def test_a_steadily_driven_rover_works_every_tenth_of_a_second(cruising: Machine) -> None:
     assert cruising.whole_cycles(5.0, AHEAD) == pytest.approx(5.0 / PERIOD, abs=1)
     assert cruising.turning
 
@@ -48,7 +48,7 @@ def test_its_motors_are_written_in_each_cycle(cruising: Machine) -> None:
 
 
 @pytest.mark.parametrize("after", range(5))
-def test_another_demand_reaches_the_motors_at_once_and_ends_the_short_cycles(cruising: Machine, after: int) -> None:
+def test_new_demand_reaches_the_motors_at_once_and_ends_resting(cruising: Machine, after: int) -> None:
     cruising.wait(after * CYCLE)
     before = cruising.motors.outputs
     cruising.stick(TURN)
@@ -80,7 +80,7 @@ def test_the_emergency_stop_is_read_in_each_short_cycle(cruising: Machine, after
     assert cruising.rover.state is SafetyState.ESTOP
 
 
-def test_the_clock_of_the_vehicle_is_sent_on_time_between_whole_cycles(cruising: Machine) -> None:
+def test_the_vehicle_clock_is_sent_on_time_between_whole_cycles(cruising: Machine) -> None:
     times: list[float] = []
     for _ in range(500):
         before = len(cruising.all(m.RoverDriveStatus))
@@ -92,7 +92,7 @@ def test_the_clock_of_the_vehicle_is_sent_on_time_between_whole_cycles(cruising:
 
 
 @pytest.mark.parametrize("after", range(5))
-def test_an_operator_who_is_away_is_found_in_the_cycle_in_which_it_is_due(after: int) -> None:
+def test_an_absent_operator_is_found_in_the_cycle_it_is_due(after: int) -> None:
     machine = Machine(FS_GCS_ENABLE=0, OPR_TIMEOUT=5)
     machine.wait(BUSY_TIME + 1.0 + after * CYCLE)
     machine.arm()
@@ -109,7 +109,7 @@ def test_an_operator_who_is_away_is_found_in_the_cycle_in_which_it_is_due(after:
 
 
 @pytest.mark.parametrize("after", range(5))
-def test_an_idle_driver_is_disarmed_in_the_cycle_in_which_it_is_due(after: int) -> None:
+def test_an_idle_driver_is_disarmed_in_the_cycle_it_is_due(after: int) -> None:
     machine = Machine(FS_GCS_ENABLE=0, DISARM_DELAY=6)
     machine.wait(BUSY_TIME + 1.0 + after * CYCLE)
     machine.arm()

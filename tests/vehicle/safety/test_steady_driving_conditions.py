@@ -133,7 +133,7 @@ def test_the_first_time_that_runs_out_counts() -> None:
     assert idle.rover._monitor.has_deadline(idle.rover._monitor._quiet_until)
 
 
-def test_an_absent_operator_counts_while_the_demand_asks_for_motion() -> None:
+def test_an_absent_operator_counts_while_the_demand_is_motion() -> None:
     away = machine(OPR_TIMEOUT=2, FS_GCS_TIMEOUT=50)
     away.meet()  # with an input just now
     assert [deadline(away, wait) for wait in (1.99, 2.01)] == [False, True]

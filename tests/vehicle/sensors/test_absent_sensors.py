@@ -69,7 +69,7 @@ def test_a_rover_that_has_no_battery_sensor_arms(readings: Readings) -> None:
     assert not bench.newest(m.SysStatus).onboard_control_sensors_present & Sensor.BATTERY
 
 
-def test_without_its_gps_a_rover_drives_and_only_modes_that_need_a_place_are_refused() -> None:
+def test_without_gps_a_rover_drives_but_refuses_position_modes() -> None:
     bench = bench_with(NO_GPSD)
     assert said(bench, "gps sensor: no gpsd")
     health = bench.newest(m.SysStatus)

@@ -36,7 +36,7 @@ def test_backwards_is_negative() -> None:
     assert meter.update(-3, 0.1) == pytest.approx(-0.3)
 
 
-def test_the_same_time_twice_and_time_that_goes_back_are_no_speed() -> None:
+def test_a_repeated_or_earlier_time_gives_no_speed() -> None:
     meter = WheelSpeedFilter(0.01)
     assert meter.update(5, 1.0) == 0.0
     assert meter.update(9, 1.0) == 0.0

@@ -13,7 +13,7 @@ def test_a_value_is_valid_for_its_maximum_age() -> None:
     assert latest.get(3.1) is None
 
 
-def test_a_fault_lasts_until_the_next_value_and_keeps_the_last_one() -> None:
+def test_a_fault_lasts_until_the_next_value_and_keeps_the_last() -> None:
     latest = LatestValue[int](2.0)
     latest.update(7, 1.0)
     latest.set_fault(OSError("no\nanswer"))

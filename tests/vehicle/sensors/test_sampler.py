@@ -15,7 +15,7 @@ def test_a_value_counts_for_its_time_and_no_longer() -> None:
     assert latest.get(12.1) is None
 
 
-def test_a_fault_is_told_in_one_line_and_forgotten_with_the_next_value() -> None:
+def test_a_fault_is_told_in_one_line_and_forgotten_with_a_value() -> None:
     latest = LatestValue[int](max_age=2.0)
     latest.update(7, 10.0)
     latest.set_fault(OSError("two\nlines"))

@@ -75,7 +75,7 @@ def test_faults_are_listed_and_every_sensor_is_closed() -> None:
     assert gps.closed
 
 
-def test_a_sensor_that_says_nothing_at_all_is_a_fault_after_a_while() -> None:
+def test_a_sensor_that_says_nothing_is_a_fault_after_a_while() -> None:
     gps = Given[GpsReading](None)
     suite = SensorSuite(SensorSources(gps=gps))
     assert suite.read(100.0).faults == suite.read(105.0).faults == ()
@@ -87,7 +87,7 @@ def test_a_sensor_that_says_nothing_at_all_is_a_fault_after_a_while() -> None:
     assert suite.read(111.1).faults == (SensorFault("gps", "no data for 5 s"),)
 
 
-async def test_sensors_that_are_not_there_do_not_keep_the_rover_from_starting() -> None:
+async def test_missing_sensors_do_not_keep_the_rover_from_starting() -> None:
     suite = open_sensors(SensorSettings(battery=PowerSettings("ina219", bus=99), gps=GpsSettings(port=1)))
     try:
         readings = suite.read(0.0)

@@ -127,7 +127,7 @@ def test_noise_is_repeatable_and_small() -> None:
     assert measured(1)[1].motion.north == 0.0  # what the rover really does is not noisy
 
 
-def test_the_gps_speaks_five_times_a_second_and_every_sensor_lies_a_little() -> None:
+def test_the_gps_speaks_at_5_hz_and_every_sensor_errs_a_little() -> None:
     body = SimulatedBody(lambda: (1.0, 0.9), seed=3)
     readings = [body.read(cycle / 50) for cycle in range(500)]
     assert len({each.latitude for each in readings}) == pytest.approx(50, abs=1)

@@ -110,7 +110,7 @@ def test_rollers_take_it_aside_without_a_turn(throttles: tuple[float, ...], way:
     assert chassis.motion.velocity == pytest.approx(way, abs=1e-6)
 
 
-def test_four_wheels_turn_on_the_spot_by_the_reach_of_their_corners() -> None:
+def test_four_wheels_turn_on_the_spot_by_their_corner_distance() -> None:
     chassis = FourWheelChassis(ChassisDimensions(top_speed=1.0, track_width=0.6, wheelbase=0.4))
     drive(chassis, (1.0, -1.0, 1.0, -1.0), 2.0)
     assert chassis.motion.yaw_rate == pytest.approx(2.0, abs=1e-4)

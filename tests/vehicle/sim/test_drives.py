@@ -105,9 +105,7 @@ def test_a_wish_that_does_not_fit_keeps_its_direction(kind: DriveType) -> None:
 @pytest.mark.parametrize(
     ("seed", "encoders"), [(None, 4), (1, 4), (1, 2), (1, 0)], ids=["perfect", "real", "two encoders", "no encoders"]
 )
-def test_a_rover_that_is_driven_aside_knows_where_it_is_and_where_its_nose_points(
-    kind: DriveType, seed: int | None, encoders: int
-) -> None:
+def test_a_rover_driven_aside_knows_its_place_and_heading(kind: DriveType, seed: int | None, encoders: int) -> None:
     field = Field(seed=seed, DRIVE_TYPE=kind)
     if encoders == 2:
         field.blind = {"wheel_speeds": (1.0, -1.0)}

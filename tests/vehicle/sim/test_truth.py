@@ -10,7 +10,7 @@ from vehicle.sim.body import SimulatedBody
 from vehicle.sim.truth import RecordedBody
 
 
-def test_the_truth_is_told_ten_times_a_second_and_the_readings_stay_what_they_are() -> None:
+def test_the_truth_is_sent_at_10_hz_and_leaves_readings_alone() -> None:
     lines: list[str] = []
     watched, alone = (SimulatedBody(lambda: (0.5, 0.5), seed=3) for _ in range(2))
     body = RecordedBody(watched, lines.append, lambda: 7)

@@ -126,9 +126,7 @@ def test_other_names_lead_nowhere(folder: DiskFolder, tmp_path: Path, name: str)
     assert folder.open("1.tlog", {"start": "0"}) is None
 
 
-def test_a_file_that_becomes_a_link_or_a_pipe_while_it_is_open_is_read_no_more(
-    folder: DiskFolder, tmp_path: Path
-) -> None:
+def test_open_file_that_becomes_a_link_or_pipe_is_read_no_more(folder: DiskFolder, tmp_path: Path) -> None:
     log, secret = tmp_path / "logs/1.tlog", tmp_path / "secret"
     secret.write_bytes(b"s" * len(DATA))
     replacements: list[Callable[[], None]] = [lambda: log.symlink_to(secret), lambda: os.mkfifo(log)]
@@ -184,7 +182,7 @@ def test_a_disk_that_sleeps_is_asked_only_so_often(folder: DiskFolder) -> None:
     assert soon(folder.entries)
 
 
-def test_an_answer_that_nobody_fetched_is_not_the_answer_to_a_later_question(
+def test_an_unfetched_answer_does_not_answer_a_later_question(
     folder: DiskFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pytest.raises(NotReadyError):
@@ -248,7 +246,7 @@ def test_only_who_may_write_removes(folder: DiskFolder) -> None:
 
 
 @pytest.mark.parametrize("op", [FtpOpcode.READ, FtpOpcode.BURST])
-def test_a_file_that_goes_while_it_is_fetched_is_a_failure_and_not_silence(
+def test_a_file_that_goes_while_fetched_is_a_failure_not_silence(
     folder: DiskFolder, tmp_path: Path, op: FtpOpcode
 ) -> None:
     vehicle = Vehicle(folder)
@@ -268,7 +266,7 @@ def test_a_checksum_of_a_file_that_is_cut_meanwhile_is_a_failure(folder: DiskFol
     assert Vehicle(folder).ask(FtpOpcode.CRC, b"/logs/1.tlog").data == bytes([FtpError.FAIL])
 
 
-def test_a_disk_that_answers_at_once_does_not_hold_up_what_is_read_next(
+def test_disk_that_answers_at_once_does_not_delay_the_next_read(
     folder: DiskFolder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     content = opened(folder, "1.tlog")
@@ -284,7 +282,7 @@ def test_a_disk_that_answers_at_once_does_not_hold_up_what_is_read_next(
         assert content.read(offset, 100) == DATA[offset : offset + 100]
 
 
-def test_a_file_that_is_longer_than_the_protocols_can_say_is_not_served(folder: DiskFolder, tmp_path: Path) -> None:
+def test_a_file_too_long_for_the_protocols_is_not_served(folder: DiskFolder, tmp_path: Path) -> None:
     for name, size in (("3.tlog", MAX_SIZE), ("4.tlog", MAX_SIZE + 1)):
         (tmp_path / "logs" / name).touch()
         os.truncate(tmp_path / "logs" / name, size)  # holes: they take no room

@@ -95,7 +95,7 @@ def test_the_limits_are_parameters() -> None:
     assert writer.told == ["begin 7 20"]
 
 
-def test_log_disarmed_records_from_the_start_and_each_drive_apart() -> None:
+def test_log_disarmed_records_from_start_and_each_drive_apart() -> None:
     rover, writer = bench(LOG_DISARMED=1)
     assert writer.told == [BEGIN]
     rover.arm()
@@ -124,7 +124,7 @@ def test_log_backend_type_0_records_nothing() -> None:
     assert not [text for text in rover.texts if text.startswith("Log:")]
 
 
-def test_what_keeps_it_from_recording_is_told_once_a_drive_and_stops_nothing() -> None:
+def test_recording_fault_is_told_once_a_drive_and_stops_nothing() -> None:
     rover, writer = bench()
     writer.problem = "No space left on device"
     rover.drive()
@@ -143,7 +143,7 @@ def test_what_keeps_it_from_recording_is_told_once_a_drive_and_stops_nothing() -
     assert len([text for text in rover.texts if text.startswith("Log:")]) == 2
 
 
-def test_a_log_begins_with_all_parameters_and_only_the_log_is_told() -> None:
+def test_a_log_begins_with_all_parameters_for_the_log_alone() -> None:
     rover, _ = bench(SPEED_MAX=3)
     before = len(rover.sent)
     rover.arm()
@@ -275,7 +275,7 @@ def test_the_list_tells_when_a_log_was_begun() -> None:
     ]
 
 
-def test_a_vehicle_that_has_nowhere_to_record_to_drives_all_the_same() -> None:
+def test_a_vehicle_with_nowhere_to_record_drives_all_the_same() -> None:
     rover = Bench(LOG_DISARMED=1)
     rover.drive()
     erase(rover)

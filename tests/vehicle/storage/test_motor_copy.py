@@ -35,7 +35,7 @@ def test_while_it_drives_there_is_a_copy_and_after_the_end_none(tmp_path: Path, 
     assert list(state.iterdir()) == []
 
 
-def test_an_end_by_an_exception_leaves_it_and_the_next_start_replaces_it(tmp_path: Path) -> None:
+def test_an_exception_leaves_it_and_the_next_start_replaces_it(tmp_path: Path) -> None:
     file = tmp_path / "rover.toml"
     kill(file)
     assert load_settings_copy(file) == TABLE

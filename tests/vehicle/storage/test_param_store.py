@@ -46,7 +46,7 @@ def test_values_survive_a_restart(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", [b"", b"MAN_TIMEOUT 0.4\n", b"\0" * 100])
-def test_a_damaged_file_is_kept_aside_and_stays_damage_until_a_good_one(tmp_path: Path, text: bytes) -> None:
+def test_a_damaged_file_is_kept_aside_until_a_good_one(tmp_path: Path, text: bytes) -> None:
     kept(tmp_path, **VALUES)
     (tmp_path / "parameters").write_bytes(text)
     for _ in range(2):  # a restart does not make it good
@@ -71,9 +71,7 @@ def test_a_file_without_an_end_is_neither_waited_for_nor_read(make: Callable[[Pa
     assert ParamStore(FileWriter(tmp_path)).damage == "parameter file cannot be read, not a regular file"
 
 
-def test_a_disk_that_takes_nothing_is_a_problem_and_the_old_file_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_is_a_problem_and_the_old_file_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kept(tmp_path, **VALUES)
 
     def full(descriptor: int) -> None:
@@ -129,7 +127,7 @@ store.close()
 
 
 @pytest.mark.parametrize("calls", range(8))
-def test_64_killed_at_any_step_of_a_save_leaves_the_old_file_or_the_new(tmp_path: Path, calls: int) -> None:
+def test_64_kill_at_any_step_of_a_save_leaves_the_old_or_the_new(tmp_path: Path, calls: int) -> None:
     kept(tmp_path, **VALUES)
     ended = subprocess.run([sys.executable, "-c", KILLED_WHILE_WRITING, str(tmp_path), str(calls)], check=False)
     assert ended.returncode == -9

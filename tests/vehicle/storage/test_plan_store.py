@@ -140,7 +140,7 @@ def test_other_tools_read_the_files(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("harm", [lambda data: data[:-20], lambda data: data.replace(b"16", b"17"), lambda data: b""])
-def test_a_damaged_plan_is_kept_aside_and_stays_damage_until_a_good_one(tmp_path: Path, harm: Any) -> None:
+def test_a_damaged_plan_is_kept_aside_until_a_good_one(tmp_path: Path, harm: Any) -> None:
     kept(tmp_path, PLANS)
     file = tmp_path / "mission.waypoints"
     file.write_bytes(harm(file.read_bytes()))
@@ -209,7 +209,7 @@ def test_a_slow_disk_delays_the_answer_and_the_plan() -> None:
     assert answer.opaque_id != 0
 
 
-def test_a_disk_that_refuses_leaves_the_old_plan_in_force_and_on_the_disk() -> None:
+def test_a_disk_that_refuses_leaves_the_old_plan_in_force() -> None:
     field, first = field_that_kept(way(5, 0), disk := SlowDisk())
     send(field, way(7, 0))
     disk.end("No space left on device")
@@ -221,7 +221,7 @@ def test_a_disk_that_refuses_leaves_the_old_plan_in_force_and_on_the_disk() -> N
     assert field.newest(m.MissionItemInt).x == first.x
 
 
-def test_who_sets_off_by_the_old_plan_while_the_new_one_is_written_goes_on_by_it() -> None:
+def test_drive_begun_by_old_plan_goes_on_by_it_during_a_write() -> None:
     field, first = field_that_kept(way(30, 0), disk := SlowDisk())
     send(field, way(0, 30))
     field.begin(Mode.AUTO)
@@ -235,7 +235,7 @@ def test_who_sets_off_by_the_old_plan_while_the_new_one_is_written_goes_on_by_it
     assert field.truth.north > 1.0
 
 
-def test_a_failed_upload_does_not_make_a_damaged_fence_a_good_one() -> None:
+def test_a_failed_upload_does_not_mend_a_damaged_fence() -> None:
     disk = SlowDisk()
     disk.damage[FENCE] = "saved fence damaged"
     field = field_with(disk, FENCE_ENABLE=1)
@@ -279,7 +279,7 @@ def test_it_is_said_again_while_disarmed() -> None:
     assert told() == 3
 
 
-def test_a_damaged_fence_that_counts_forbids_to_arm_also_by_force() -> None:
+def test_a_damaged_fence_in_force_forbids_arming_also_by_force() -> None:
     field = field_with(MemoryStore(fence="saved fence damaged"), FENCE_ENABLE=1)
     assert field.arm() is Result.FAILED
     assert said(field, "PreArm: saved fence damaged, upload it again or set FENCE_ENABLE 0")
@@ -288,7 +288,7 @@ def test_a_damaged_fence_that_counts_forbids_to_arm_also_by_force() -> None:
     assert field.arm() is Result.ACCEPTED
 
 
-def test_a_damaged_fence_that_does_not_count_can_only_not_be_turned_on() -> None:
+def test_a_damaged_fence_not_in_force_only_cannot_be_turned_on() -> None:
     field = field_with(MemoryStore(fence="saved fence damaged"))
     assert field.arm() is Result.ACCEPTED
     assert field.command(Command.DO_FENCE_ENABLE, 1) is Result.FAILED
@@ -362,7 +362,7 @@ def test_plans_survive_kill_9(tmp_path: Path) -> None:
 
 
 @pytest.mark.e2e
-def test_a_plan_that_the_disk_refuses_is_refused_and_the_one_before_stays(tmp_path: Path) -> None:
+def test_a_plan_the_disk_refuses_is_refused_and_the_former_stays(tmp_path: Path) -> None:
     client = MissionClient(255, 190, target_system=1)
     with Ground() as ground, running(tmp_path, "--sim", "--state", "/proc/no/such", ground.endpoint) as vehicle:
         vehicle.ready()

@@ -158,7 +158,7 @@ def test_a_drive_is_recorded_fetched_three_ways_and_read(tmp_path: Path) -> None
     assert stamps == sorted(stamps)
 
 
-def test_what_the_vehicle_does_is_recorded_also_where_nobody_listens(tmp_path: Path) -> None:
+def test_the_vehicles_actions_are_recorded_though_nobody_listens(tmp_path: Path) -> None:
     folder = tmp_path / "logs"
     words = (f"udpin:127.0.0.1:{free_port()}", "--tlog", str(folder), "--param", "LOG_DISARMED=1")
     with Ground() as ground, running(tmp_path, "--sim", *words) as vehicle:
@@ -288,7 +288,7 @@ def test_a_disk_that_takes_no_more_is_told_and_the_wheels_go_on(tmp_path: Path) 
     assert {1, 255} <= {system for _, system, *_ in whole}
 
 
-def test_a_folder_that_cannot_be_had_does_not_keep_it_from_driving(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_had_does_not_prevent_driving(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with Reader() as ground, running(tmp_path, "--sim", ground.endpoint, "--tlog", str(tmp_path / "file")) as vehicle:
         vehicle.ready()

@@ -51,7 +51,7 @@ def test_digits_that_are_no_date_are_no_time() -> None:
     assert log_time("00000001_2026-13-41T99-05-09Z.tlog") == 0
 
 
-def test_numbers_go_on_after_a_restart_and_after_all_were_removed(tmp_path: Path) -> None:
+def test_numbers_go_on_after_restart_and_after_a_removal_of_all(tmp_path: Path) -> None:
     folder = tmp_path / "state" / "logs"
     for _ in range(2):
         files(folder).open(MANY).close()
@@ -85,7 +85,7 @@ def test_the_oldest_go_until_enough_is_free(tmp_path: Path) -> None:
     assert [log_number(name) for name in names(tmp_path)] == [4, 5, 6]
 
 
-def test_what_is_written_is_there_at_once_and_the_file_has_its_name_while_it_is_written(tmp_path: Path) -> None:
+def test_writes_are_there_at_once_under_the_final_name(tmp_path: Path) -> None:
     folder = files(tmp_path)
     log = folder.open(MANY)
     log.write(b"data")

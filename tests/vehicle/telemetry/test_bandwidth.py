@@ -86,7 +86,7 @@ def test_the_usual_streams_fit_a_usual_radio_unchanged() -> None:
     assert len(bench.all(m.Attitude)) - before == pytest.approx(40, abs=1)
 
 
-def test_a_radio_that_asks_for_less_gets_less_and_later_all_again() -> None:
+def test_radio_that_asks_for_less_gets_less_and_later_all_again() -> None:
     bench = greedy()
     streamed(bench, 2.0, report(SIK, headroom=0.25))
     assert 0.08 < streamed(bench, 10.0, report(SIK, headroom=0.25)) / SIK <= 0.6 * 0.25 + 0.01
@@ -161,7 +161,7 @@ class Wire:
 
 
 @pytest.mark.parametrize(("size", "least"), [(37, 0.82), (263, 0.82)])
-def test_while_nobody_can_drive_bulk_gets_what_telemetry_gives_up(size: int, least: float) -> None:
+def test_while_nobody_can_drive_bulk_gets_telemetrys_share(size: int, least: float) -> None:
     wire = Wire()
     assert wire.telemetry == pytest.approx(0.6)
     wire.bulk(1.0, size)
@@ -173,7 +173,7 @@ def test_bulk_gains_nothing_before_telemetry_has_given_it_up() -> None:
     assert Wire().bulk(0.98) <= 0.35
 
 
-def test_arming_takes_it_back_in_the_same_cycle_and_telemetry_follows() -> None:
+def test_arming_takes_it_back_in_the_cycle_and_telemetry_follows() -> None:
     wire = Wire()
     wire.bulk(5.0)
     wire.arm()
@@ -186,7 +186,7 @@ def test_arming_takes_it_back_in_the_same_cycle_and_telemetry_follows() -> None:
 SIMULATOR_STATION, ON_WIFI = Peer(1, ("127.0.0.1", 14550)), Peer(1, ("192.0.2.7", 14550))
 
 
-def test_files_go_faster_to_a_station_on_the_same_machine_and_no_more_once_it_is_armed() -> None:
+def test_files_go_faster_to_a_local_station_until_it_is_armed() -> None:
     wire = Wire()
     files = wire.bandwidth.file_pacer
     assert files.rate(SIMULATOR_STATION) == DEFAULT_RATE, "it may be MAVProxy, which loses frames"

@@ -77,7 +77,7 @@ def test_a_velocity_is_told_while_it_counts() -> None:
     assert len(field.all(m.PositionTargetLocalNed)) == before
 
 
-def test_a_velocity_toward_a_heading_is_told_in_the_fields_of_the_ground() -> None:
+def test_a_velocity_toward_a_heading_is_told_over_ground() -> None:
     field = Field()
     field.begin(Mode.GUIDED)
     only_velocity = 0xDC7

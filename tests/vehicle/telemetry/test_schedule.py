@@ -42,13 +42,13 @@ def greedy(crowd: Crowd, peer: Peer, rate: float = 50) -> None:
 
 
 @pytest.mark.parametrize("stream", STREAMS, ids=lambda stream: stream.message.msgname)
-def test_a_stream_is_common_where_pymavlink_knows_it_and_nowhere_else(stream: Stream) -> None:
+def test_a_stream_is_common_exactly_where_pymavlink_knows_it(stream: Stream) -> None:
     assert known(stream.message.id) == (stream.level is DialectLevel.COMMON)
     assert (stream.level is DialectLevel.ROVER) == stream.message.msgname.startswith("ROVER_")
     assert stream.group is None or stream.level is DialectLevel.COMMON, "REQUEST_DATA_STREAM must turn on no other"
 
 
-def test_who_shows_no_more_than_a_heartbeat_is_told_what_pymavlink_knows() -> None:
+def test_a_sender_of_heartbeats_only_gets_what_pymavlink_knows() -> None:
     crowd = Crowd(ONE)
     crowd.wait(1.0)
     crowd.command(ONE, Command.REQUEST_MESSAGE, m.AutopilotVersion.id)
@@ -96,7 +96,7 @@ SHOWS_OURS: dict[str, Callable[[Crowd], object]] = {
 
 
 @pytest.mark.parametrize("shows", SHOWS_OURS.values(), ids=SHOWS_OURS)
-def test_ours_come_to_who_shows_to_know_them_and_the_newer_ones_too(shows: Callable[[Crowd], object]) -> None:
+def test_ours_go_to_who_shows_to_know_them_and_newer_ones_too(shows: Callable[[Crowd], object]) -> None:
     crowd = Crowd(ONE, OTHER)
     crowd.wait(2.0)
     assert not crowd.kinds(ONE) & OWN
@@ -119,7 +119,7 @@ def test_a_stranger_shows_nothing_and_is_told_nothing() -> None:
     assert not crowd.kinds(ONE) & (NEWER | OWN)
 
 
-def test_whom_the_user_named_is_told_the_usual_before_a_heartbeat() -> None:
+def test_a_named_address_gets_the_usual_before_a_heartbeat() -> None:
     crowd = Crowd()
     crowd.peers.append(ONE)  # by the link's report alone
     crowd.wait(2.0)
@@ -232,7 +232,7 @@ def test_who_was_gone_between_two_reports_begins_anew_too() -> None:
 # ---- budgets ----
 
 
-def test_who_asks_for_everything_neither_floods_nor_slows_a_slow_line() -> None:
+def test_request_for_everything_neither_floods_nor_slows_a_line() -> None:
     alone = Crowd(RADIO, capacity={1: SIK})
     alone.wait(3.0)
     undisturbed = alone.rates(RADIO, 20.0)
@@ -335,7 +335,7 @@ def test_messages_that_telemetry_acts_on_are_decoded() -> None:
     assert {each.id for each in (m.Heartbeat, m.RequestDataStream, m.RadioStatus)} <= MESSAGE_IDS
 
 
-def test_an_origin_is_told_when_it_is_known_and_to_each_newcomer_once() -> None:
+def test_an_origin_is_sent_when_known_and_to_each_newcomer_once() -> None:
     crowd = Crowd(ONE)
     crowd.wait(5.0)
     assert len(crowd.all(ONE, m.GpsGlobalOrigin)) == 1

@@ -205,7 +205,7 @@ def with_radio(bench: Bench, free: int, seconds: int) -> dict[type[m.Message], f
     return total
 
 
-def test_a_full_radio_halves_the_rates_and_an_empty_one_brings_them_back() -> None:
+def test_a_full_radio_halves_the_rates_and_an_empty_one_restores() -> None:
     bench = equipped()
     radio(bench, free=10)
     slow = with_radio(bench, 60, 10)

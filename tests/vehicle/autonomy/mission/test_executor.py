@@ -134,7 +134,7 @@ class TestItems:
         assert said(field, "outside the fence: HOLD")
         assert field.truth.north < 10.0
 
-    def test_a_mission_ends_if_the_configuration_file_disables_the_fence(self) -> None:
+    def test_a_mission_ends_if_the_settings_file_disables_the_fence(self) -> None:
         field = ready(way(2, 0), do(Command.DO_FENCE_ENABLE, 1), way(20, 0))
         field.rover._params.pinned = frozenset({"FENCE_ENABLE"})
         start(field)
@@ -152,7 +152,7 @@ class TestItems:
 
 
 class TestProgress:
-    def test_auto_resumes_after_hold_and_a_completed_mission_restarts(self) -> None:
+    def test_auto_resumes_after_hold_and_a_finished_mission_restarts(self) -> None:
         field = ready(way(6, 0), way(6, 6), way(12, 6))
         start(field)
         field.until(Point(6, 3), 60.0)
@@ -248,7 +248,7 @@ class TestWhoMay:
             assert field.command(Command.MISSION_START, wrong) is Result.DENIED
         assert field.stands_for(1.0)
 
-    def test_69_the_running_mission_and_another_operators_mission_cannot_be_changed(self) -> None:
+    def test_69_a_running_or_foreign_mission_cannot_be_changed(self) -> None:
         field = ready(way(30, 0))
         assert upload(field, way(1, 1), system=OTHER) == MissionResult.DENIED
         start(field)

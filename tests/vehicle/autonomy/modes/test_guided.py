@@ -48,7 +48,7 @@ class TestVelocity:
         field.stream(3.0, -0.5)
         assert field.speed == pytest.approx(-0.5, abs=0.1)
 
-    def test_setpoint_loss_stops_after_one_second_and_holds_after_five(self) -> None:
+    def test_setpoint_loss_stops_after_1_s_and_holds_after_5_s(self) -> None:
         field = going()
         field.twist(0.8)
         field.wait(0.95)

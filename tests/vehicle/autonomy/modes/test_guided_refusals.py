@@ -41,7 +41,7 @@ class TestRefusals:
         assert sum(why in text for text in field.texts) == 1
 
     @pytest.mark.parametrize("index", [5, 6, 8, 9, 14, 15])
-    def test_43_a_used_value_that_is_not_a_number_rejects_the_setpoint(self, index: int) -> None:
+    def test_43_a_used_value_that_is_not_a_number_is_rejected(self, index: int) -> None:
         field = going()
         values: list[Any] = [0, 1, 1, 8, 64 | 128 | 256 | 4, 1.0, 1.0, 0, 0.1, 0.1, 0, 0, 0, 0, 0.1, 0.1]
         values[index] = NAN
@@ -57,7 +57,7 @@ class TestRefusals:
         field.wait(0.5)
         assert field.turning
 
-    def test_46_setpoints_in_another_mode_disarmed_or_from_another_station_are_ignored(self) -> None:
+    def test_46_setpoints_without_mode_arming_or_control_are_ignored(self) -> None:
         field = Field()
         field.twist(0.8)
         assert said(field, "no GCS is in control")
@@ -90,7 +90,7 @@ class TestRefusals:
         field.arm()
         assert field.command_int(Command.DO_REPOSITION, -1, 1, x=x, y=y) is Result.DENIED
 
-    def test_reposition_requires_command_int_a_global_frame_valid_flags_and_control(self) -> None:
+    def test_reposition_needs_command_int_a_global_frame_and_control(self) -> None:
         field = Field()
         place = Point(5.0, 0.0)
         assert field.reposition(place) is Result.FAILED  # not armed
@@ -102,7 +102,7 @@ class TestRefusals:
         assert field.command_int(Command.DO_REPOSITION, -1, 1, x=1, y=1, system=OTHER) is Result.FAILED
         assert field.stands_for(1.0)
 
-    def test_modes_that_require_a_position_or_gyro_are_rejected_without_one(self) -> None:
+    def test_modes_that_need_a_position_or_gyro_are_rejected_without(self) -> None:
         bench = Bench()
         bench.arm()
         for mode in (Mode.LOITER, Mode.RTL, Mode.SMART_RTL, Mode.ACRO):

@@ -49,7 +49,7 @@ def test_a_vehicle_without_faults_has_every_row(tmp_path: Path) -> None:
     assert (others, summary["ok"], code == 0) == ([], not summary["faults"], not summary["faults"])
 
 
-def test_a_mistake_in_the_file_stops_it_and_the_computer_is_examined(tmp_path: Path) -> None:
+def test_mistake_in_file_stops_it_but_the_computer_is_examined(tmp_path: Path) -> None:
     code, rows, summary = examined(tmp_path, "endpont = 1\n[params]\nMAN_TIMEOUT = 9\n")
     assert code == 7
     assert "config" in summary["faults"]
@@ -83,7 +83,7 @@ def test_a_port_in_use_stops_it_unless_the_vehicle_runs(line: OnPty, tmp_path: P
     assert line.controller.outputs == [0.0, 0.0]
 
 
-def test_a_serial_port_that_another_program_has_open_or_that_is_missing(tmp_path: Path) -> None:
+def test_a_serial_port_that_is_missing_or_in_use_is_found(tmp_path: Path) -> None:
     device, port = os.openpty()
     text = f'endpoints = ["serial:{os.ttyname(port)}:57600"]\n{SIMULATED}'
     code, rows, _ = examined(tmp_path, text)
