@@ -23,7 +23,7 @@ def test_the_selected_vehicle_and_what_is_asked_for_something() -> None:
     assert station.looked_at == frozenset((2, 3))
 
 
-def test_a_vehicle_that_this_station_drives_is_looked_at_whatever_is_selected() -> None:
+def test_a_driven_vehicle_is_of_interest_whatever_is_selected() -> None:
     flotilla = Flotilla(3)
     flotilla.run(3.0)
     driven = flotilla.station.fleet.get(1)

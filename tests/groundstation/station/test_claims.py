@@ -60,7 +60,7 @@ def test_after_a_disarm_nobody_is_in_control() -> None:
     assert (cockpit.view.armed, cockpit.view.in_control) == (True, True)
 
 
-def test_a_control_request_to_a_disarmed_vehicle_ends_when_another_station_arms_it() -> None:
+def test_a_request_to_a_disarmed_vehicle_ends_when_another_arms() -> None:
     cockpit = cockpit_with(FakeArduPilot())
     cockpit.do(ReportKeyReleases(), RequestControl())
     cockpit.run(5.0)

@@ -44,7 +44,7 @@ def test_the_log_joins_the_request_the_result_and_the_reason() -> None:
     assert (text.origin.component, text.origin.vehicle) == (1, cockpit.view.name)
 
 
-def test_a_reason_after_the_refusal_counts_and_a_later_text_does_not() -> None:
+def test_a_reason_after_the_refusal_counts_and_a_later_text_not() -> None:
     vehicle = FakeVehicle()
     vehicle.answers[ARM] = Result.DENIED
     cockpit = cockpit_with(vehicle)

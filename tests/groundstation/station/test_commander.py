@@ -51,7 +51,7 @@ def test_unknown_mode_is_reported_and_not_sent(name: str) -> None:
     assert cockpit.view.refusal == f"mode {name}: Rover 1: it has no mode {name}"
 
 
-def test_request_control_of_a_vehicle_that_does_not_know_the_command_claims_it() -> None:
+def test_request_control_claims_a_vehicle_without_the_command() -> None:
     vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT)
     vehicle.armed = True
     vehicle.answers[Command.REQUEST_OPERATOR_CONTROL] = Result.UNSUPPORTED

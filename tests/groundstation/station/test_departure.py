@@ -80,7 +80,7 @@ def test_a_vehicle_that_drives_itself_is_left_alone_and_named() -> None:
     assert left(cockpit) == ("Rover 1 is left ARMED in AUTO",)
 
 
-def test_a_vehicle_that_another_station_drives_or_armed_is_left_alone() -> None:
+def test_a_vehicle_driven_or_armed_by_another_is_left_alone() -> None:
     taken = armed_cockpit()
     taken.vehicle.driver = 254
     foreign = cockpit_with(FakeArduPilot())

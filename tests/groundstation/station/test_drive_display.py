@@ -63,7 +63,7 @@ def test_key_to_motor_of_our_vehicle_is_in_parts() -> None:
         way.key_sent, way.sent_heard, way.heard_motor)))  # fmt: skip
 
 
-def test_the_outputs_of_our_vehicle_are_no_measure_of_its_latency() -> None:
+def test_outputs_of_our_vehicle_are_no_measure_of_its_latency() -> None:
     """It reports which demand it obeys; SERVO_OUTPUT_RAW comes later, at 2 Hz."""
     cockpit = armed_cockpit()
     cockpit.vehicle.send(m.RoverDriveStatus(1, 0, 0, 0, [0, 0, 0, 0], 0, 0, 0))

@@ -40,7 +40,7 @@ def test_a_copy_follows_a_change_and_none_its_repeats() -> None:
     assert [at for at, x, _ in cockpit.demands(before) if x] == [first, *repeats], "a copy is the proof alone"
 
 
-def test_a_key_that_is_pressed_in_the_moment_of_a_stop_drives_only_after_a_neutral_was_sent() -> None:
+def test_a_key_pressed_during_a_stop_drives_only_after_a_neutral() -> None:
     cockpit = driving_cockpit()
     station, now = cockpit.station, cockpit.now
     station.messages_to_send()
@@ -74,7 +74,7 @@ def test_no_copy_follows_a_screen_that_hangs() -> None:
     assert all(x == 0 for _, x, _ in cockpit.demands(silent))
 
 
-def test_release_is_neutral_at_once_then_20_hz_for_a_second_then_5_hz() -> None:
+def test_release_is_neutral_at_once_then_20_hz_for_1_s_then_5_hz() -> None:
     cockpit = driving_cockpit()
     released = cockpit.now
     cockpit.do(DriveKeyUp(key="i"))

@@ -61,7 +61,7 @@ def test_demands_keep_their_rate_without_ticks_in_between() -> None:
     assert max(later - earlier for earlier, later in pairwise(times)) <= DRIVING_PERIOD + STEP
 
 
-def test_a_reported_change_of_the_mode_blocks_and_frees_the_keys_before_the_next_tick() -> None:
+def test_mode_change_blocks_and_frees_keys_before_the_next_tick() -> None:
     cockpit = driving_cockpit()
     cockpit.vehicle.mode = Mode.AUTO
     cockpit.vehicle.beat()
@@ -76,7 +76,7 @@ def test_a_reported_change_of_the_mode_blocks_and_frees_the_keys_before_the_next
     assert cockpit.operator.steering < 0, "a new key counts as soon as the neutral lead has passed"
 
 
-def test_a_repeat_of_a_held_key_extends_its_hold_and_does_nothing_else() -> None:
+def test_a_repeat_of_a_held_key_extends_its_hold_only() -> None:
     cockpit = armed_cockpit()
     cockpit.run(0.5)
     station = cockpit.station
@@ -103,7 +103,7 @@ def test_a_repeat_of_a_held_key_extends_its_hold_and_does_nothing_else() -> None
     ],
     ids=["another key", "another direction", "the proof that releases are reported"],
 )
-def test_what_changes_more_than_the_hold_is_an_intent_like_any_other(other: DriveKeyDown) -> None:
+def test_a_change_beyond_the_hold_is_an_intent_like_any_other(other: DriveKeyDown) -> None:
     cockpit = armed_cockpit()
     cockpit.run(0.5)
     cockpit.do(FORWARD)

@@ -72,7 +72,7 @@ def test_an_emergency_stop_on_a_cut_link_claims_nothing() -> None:
     assert not cockpit.view.armed
 
 
-def test_a_foreign_vehicle_confirms_by_acknowledgement_and_heartbeat() -> None:
+def test_a_foreign_vehicle_confirms_by_answer_and_heartbeat() -> None:
     vehicle = FakeArduPilot()
     cockpit = armed_cockpit(vehicle)
     cockpit.do(EmergencyStop())
@@ -84,7 +84,7 @@ def test_a_foreign_vehicle_confirms_by_acknowledgement_and_heartbeat() -> None:
     assert (progress(cockpit), cockpit.view.armed) == (EmergencyProgress.ACCEPTED, True)
 
 
-def test_a_vehicle_that_drops_commands_silently_has_not_acknowledged() -> None:
+def test_a_vehicle_that_drops_commands_has_not_acknowledged() -> None:
     vehicle = FakeVehicle()
     cockpit = armed_cockpit(vehicle)
     vehicle.silent_on |= {ARM, SWITCH}
@@ -93,7 +93,7 @@ def test_a_vehicle_that_drops_commands_silently_has_not_acknowledged() -> None:
     assert (progress(cockpit), cockpit.view.armed) == (EmergencyProgress.UNANSWERED, True)
 
 
-def test_emergency_stop_goes_on_while_the_vehicle_refuses_and_stays_armed() -> None:
+def test_estop_goes_on_while_the_vehicle_refuses_and_stays_armed() -> None:
     vehicle = FakeVehicle()
     cockpit = armed_cockpit(vehicle)
     vehicle.answers = {SWITCH: Result.UNSUPPORTED, ARM: Result.FAILED}
@@ -161,7 +161,7 @@ class MuteVehicle(FakeVehicle):
         """Send no HEARTBEAT."""
 
 
-def test_before_any_vehicle_is_heard_the_emergency_stop_goes_to_all() -> None:
+def test_before_any_vehicle_is_heard_the_estop_goes_to_all() -> None:
     vehicle = MuteVehicle()
     vehicle.armed = True
     cockpit = Cockpit(vehicle)

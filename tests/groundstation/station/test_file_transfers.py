@@ -95,7 +95,7 @@ def test_a_lost_link_delays_a_download_and_loses_nothing(tmp_path: Path) -> None
     assert len(reads) < 900, "what had arrived was not fetched again"
 
 
-def test_a_cancelled_download_goes_on_where_it_stopped_and_a_foreign_beginning_is_noticed(tmp_path: Path) -> None:
+def test_cancelled_download_resumes_and_foreign_start_is_noticed(tmp_path: Path) -> None:
     pit = cockpit(rate=5000.0)
     pit.cockpit.do(get(1, tmp_path))
     pit.run(4.0)
@@ -158,9 +158,7 @@ def test_two_downloads_of_one_name_do_not_mix(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("autopilot", [Autopilot.GENERIC, Autopilot.ARDUPILOT])
-def test_logs_are_listed_and_downloaded_by_ftp_from_ours_and_by_log_data_from_others(
-    tmp_path: Path, autopilot: int
-) -> None:
+def test_logs_come_by_ftp_from_ours_and_by_log_data_from_others(tmp_path: Path, autopilot: int) -> None:
     pit = cockpit(autopilot=autopilot, loss=0.05)
     assert seen(pit).logs is None
     assert pit.end_of(ListLogs(request=1)).state == "accepted"
@@ -270,7 +268,7 @@ def test_a_file_here_is_compared_with_that_of_the_vehicle(tmp_path: Path) -> Non
     assert pit.vehicle.logs.files["2.tlog"] == DATA, "nothing was changed there"
 
 
-def test_a_comparison_without_an_answer_fails_and_one_can_be_cancelled(tmp_path: Path) -> None:
+def test_an_unanswered_comparison_fails_and_can_be_cancelled(tmp_path: Path) -> None:
     pit = FileCockpit(FileVehicle(ftp=False))
     (tmp_path / "a").write_bytes(DATA)
     pit.cockpit.do(CompareFile(request=1, path="/a", file=str(tmp_path / "a")))

@@ -139,7 +139,7 @@ def test_a_new_press_after_the_freeze_drives(event: Callable[[HeldKey], None]) -
     assert held.moves()
 
 
-def test_renewing_an_expired_lease_releases_the_keys_and_is_reported_once() -> None:
+def test_renewing_expired_lease_releases_keys_and_is_told_once() -> None:
     session = OperatorSession(Style.HOLD, 0.6, 7)
     session.renew_lease(100.0)
     session.set_gate(SetKeyGate(open=True), 100.0)
@@ -152,7 +152,7 @@ def test_renewing_an_expired_lease_releases_the_keys_and_is_reported_once() -> N
     assert lapses == ["display not responding for 4.6 s", None, None]
 
 
-def test_a_key_that_is_held_over_a_lapse_is_named_as_long_as_it_is_held() -> None:
+def test_a_key_held_over_a_lapse_is_named_while_it_is_held() -> None:
     held = HeldKey(releases=True)
     held.now += 0.5
     for _ in range(200):
@@ -176,7 +176,7 @@ def test_a_key_that_is_held_from_before_arming_is_named() -> None:
     assert held.ignored == ""
 
 
-def test_a_slow_start_is_not_reported_and_a_lapse_with_an_armed_rover_is() -> None:
+def test_lapse_with_an_armed_rover_is_told_and_a_slow_start_not() -> None:
     starting = Station(["memory"], now=100.0)
     starting.handle_intent(RenewLease(), 100.0)
     starting.tick(100.6)
@@ -188,7 +188,7 @@ def test_a_slow_start_is_not_reported_and_a_lapse_with_an_armed_rover_is() -> No
     assert lines[-1].text == "display not responding for 0.5 s: neutral, release the keys"
 
 
-def test_a_screen_that_froze_while_the_station_rested_does_not_drive_what_somebody_arms_then() -> None:
+def test_screen_frozen_during_rest_does_not_drive_a_later_arming() -> None:
     held = HeldKey(releases=True)
     session = held.station.operator
     session.set_resting(True, held.now)
@@ -203,7 +203,7 @@ def test_a_screen_that_froze_while_the_station_rested_does_not_drive_what_somebo
     assert not held.moves()
 
 
-def test_repeated_ends_of_a_rest_do_not_keep_the_lease_of_a_frozen_screen() -> None:
+def test_repeated_ends_of_a_rest_do_not_keep_a_frozen_lease() -> None:
     session = OperatorSession(Style.HOLD, 0.6, 7)
     session.renew_lease(100.0)
     for each in range(20):

@@ -28,7 +28,7 @@ def test_what_does_not(query: str, name: str) -> None:
     assert not is_match(query, name)
 
 
-def test_the_beginning_of_a_word_is_better_than_its_middle_and_a_part_better_than_pieces() -> None:
+def test_words_beginning_beats_its_middle_and_part_beats_pieces() -> None:
     scores = [match_score("vol", name) for name in ("voltage", "revolt", "very_old_line")]
     known = [score for score in scores if score is not None]
     assert known == sorted(known)

@@ -57,7 +57,7 @@ def test_a_button_whose_press_was_not_seen_does_not_drive() -> None:
     assert cockpit.operator.ignored
 
 
-def test_a_reader_that_hangs_is_neutral_and_drives_again_only_after_a_press() -> None:
+def test_a_hung_reader_is_neutral_and_drives_again_after_a_press() -> None:
     cockpit = driven_cockpit()
     cockpit.run(0.25)
     assert cockpit.operator.throttle == 0.0
@@ -99,7 +99,7 @@ def test_every_stop_ends_it_until_the_button_is_released(stop: AnyIntent) -> Non
     assert cockpit.operator.throttle == 0.0
 
 
-def test_a_closed_gate_ends_it_and_an_open_one_wants_the_button_pressed_again() -> None:
+def test_a_closed_gate_ends_it_and_an_open_one_needs_a_new_press() -> None:
     cockpit = driven_cockpit()
     cockpit.do(SetKeyGate(open=False, reason="another screen is open"))
     go_on(cockpit, 0.5)

@@ -27,7 +27,7 @@ def test_stations_by_id_with_the_time_since_their_heartbeat() -> None:
     assert stations.build_rows(13.5) == ()
 
 
-def test_a_flood_of_ids_does_not_grow_the_table_and_makes_room_with_time() -> None:
+def test_a_flood_of_ids_does_not_grow_the_table_and_expires() -> None:
     stations = GroundStations()
     for system in range(1, 255):
         receive(stations, system, 190, 0.0)

@@ -109,7 +109,7 @@ def test_a_request_for_a_vehicle_that_is_not_ours_any_more_ends() -> None:
     assert notice(cockpit) is None
 
 
-def test_release_by_key_ends_driving_of_a_vehicle_that_manages_control() -> None:
+def test_release_by_key_ends_driving_where_control_is_managed() -> None:
     cockpit = driving_cockpit()
     cockpit.do(ReleaseControl())
     cockpit.run(0.5)
@@ -134,7 +134,7 @@ def test_release_by_key_ends_driving_of_an_ardurover_too() -> None:
     assert any("it gets no more demands from here" in text for text in cockpit.texts)
 
 
-def test_a_release_that_is_not_answered_ends_and_the_keys_drive_again() -> None:
+def test_an_unanswered_release_ends_and_the_keys_drive_again() -> None:
     cockpit = driving_cockpit()
     cockpit.vehicle.silent_on = {CONTROL}
     cockpit.do(ReleaseControl())

@@ -16,7 +16,7 @@ from groundstation.station.intent_handler import VEHICLE_COMMANDS
 from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit, driving_cockpit
 
 
-def test_style_changes_are_logged_and_latch_drives_without_a_held_key() -> None:
+def test_style_changes_are_logged_and_latch_drives_without_a_key() -> None:
     cockpit = armed_cockpit()
     cockpit.do(SetStyle(style="next"), FORWARD)
     cockpit.run(3.0)
@@ -109,7 +109,7 @@ def test_arming_is_refused_while_the_screen_lets_no_key_drive() -> None:
     assert "arming refused: the terminal is too small" in cockpit.texts
 
 
-def test_every_intent_that_a_held_key_confirms_is_refused_as_it_stands_in_the_table() -> None:
+def test_each_intent_that_held_key_confirms_is_refused_by_table() -> None:
     for action in ACTIONS.values():
         if action.confirm:
             assert action.intent in {Arm(held=0.0), ClearEmergencyStop(held=0.0)}

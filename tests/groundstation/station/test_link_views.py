@@ -70,7 +70,7 @@ def test_nothing_is_sent_or_requested_for_a_hidden_screen() -> None:
     assert (len(flotilla.views) >= 3, versions_requested(flotilla)) == (True, 1)
 
 
-def test_a_refused_version_does_not_end_the_search_for_our_dialect(one: Flotilla) -> None:
+def test_refused_version_does_not_end_the_search_for_our_dialect(one: Flotilla) -> None:
     """Both are REQUEST_MESSAGE; only the answer to ROVER_DRIVE_INFO says that a vehicle is foreign."""
     vehicle = one.vehicles[1]
     accept = vehicle.receive
@@ -131,7 +131,7 @@ def test_the_version_is_requested_three_times_at_most(one: Flotilla) -> None:
     assert versions_requested(one) == 3
 
 
-def test_distance_and_bearing_are_from_the_selected_vehicle_and_its_own_from_home(two: Flotilla) -> None:
+def test_distances_are_from_the_selected_vehicle_and_from_home(two: Flotilla) -> None:
     place(two, 1, -35.0, 149.0)
     place(two, 2, -35.0, 149.001)
     two.vehicles[1].send(m.HomePosition(round(-35.001e7), round(149e7), 0, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0))
@@ -161,7 +161,7 @@ def test_a_lost_vehicle_that_was_armed_stays_in_the_list(two: Flotilla) -> None:
     assert row.silence > 9.0
 
 
-def test_vehicles_beyond_the_limit_are_counted_and_all_rows_fit_the_pipe() -> None:
+def test_vehicles_beyond_the_limit_are_counted_and_all_rows_fit() -> None:
     flotilla = Flotilla(MAX_VEHICLES + 4)
     for vehicle in flotilla.vehicles.values():
         vehicle.armed = True
@@ -174,7 +174,7 @@ def test_vehicles_beyond_the_limit_are_counted_and_all_rows_fit_the_pipe() -> No
     assert len(encode(flotilla.station.snapshot(flotilla.now, 0.0))) < 8000
 
 
-def test_choosing_another_vehicle_sends_neutral_to_the_driven_one() -> None:
+def test_choosing_another_vehicle_sends_neutral_to_driven_one() -> None:
     flotilla = Flotilla(20)
     flotilla.run(2.0)
     flotilla.watch(*ALL)
@@ -259,7 +259,7 @@ def test_without_a_vehicle_there_are_views_all_the_same() -> None:
     assert [row.name for row in flotilla.newest(LinksView).rows] == ["near"]
 
 
-def test_links_name_their_peers_and_time_the_one_of_the_selected_vehicle(two: Flotilla) -> None:
+def test_links_name_their_peers_and_time_the_selected_vehicle(two: Flotilla) -> None:
     two.run(3.0)
     (row,) = two.newest(LinksView).rows
     assert (row.peers, row.peer_count) == (("10.0.0.1:14550", "10.0.0.2:14550"), 2)

@@ -88,7 +88,7 @@ def test_the_payload_is_that_of_the_newest_frame() -> None:
     assert chosen.view(0.0).payload == codec.encode_payload(status(12104))
 
 
-def test_an_item_of_an_array_is_plotted_and_an_index_too_large_means_the_last() -> None:
+def test_array_item_is_plotted_and_too_large_index_is_the_last() -> None:
     chosen = Chosen()
     cells = [4000, 4100] + [0xFFFF] * 8
     battery = m.BatteryStatus(0, 0, 0, 2500, cells, 100, 10, 10, 70)

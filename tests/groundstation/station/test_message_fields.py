@@ -29,7 +29,7 @@ def test_a_value_is_also_given_in_a_usual_unit() -> None:
     assert field(m.Attitude(0, math.pi, 0.0, 0.0, 0.0, 0.0, 0.0), "roll").meaning == "180.00 deg"
 
 
-def test_an_enum_has_its_name_and_an_unknown_value_is_named_as_such() -> None:
+def test_an_enum_has_its_name_and_an_unknown_value_is_called_so() -> None:
     beat = m.Heartbeat(10, 3, 0x81, 0, 4, 3)
     assert field(beat, "type").meaning == "GROUND_ROVER"
     assert field(beat, "system_status") == MessageField("system_status", "4", "", "ACTIVE")
@@ -42,7 +42,7 @@ def test_a_bitmask_is_given_as_flags() -> None:
     assert found.flags == ("CUSTOM_MODE_ENABLED", "SAFETY_ARMED")
 
 
-def test_the_health_of_sensors_says_which_are_bad_and_which_are_not_enabled() -> None:
+def test_sensor_health_names_the_bad_and_the_disabled() -> None:
     found = field(sys_status(health=0x1000021), "onboard_control_sensors_health")
     assert found.meaning == "1 of 3 enabled not healthy"
     assert found.flags == ("✓✓✗ RC_RECEIVER", "✓✓✓ 3D_GYRO", "✓✓✓ LOGGING", "✓·· GPS")

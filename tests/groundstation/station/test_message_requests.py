@@ -93,7 +93,7 @@ def test_one_message_is_requested() -> None:
     assert isinstance(views[-1], MessageView)
 
 
-def test_a_message_that_the_vehicle_lacks_is_refused_in_its_words() -> None:
+def test_a_message_the_vehicle_lacks_is_refused_in_its_words() -> None:
     drive = connected()
     state, _ = end_of(drive, SetMessageRate(1, 0, 1, 9999, "NO_SUCH", 2.0))
     assert state == "refused"
@@ -111,7 +111,7 @@ def test_other_components_are_not_asked() -> None:
     assert end_of(drive, RequestMessage(2, 0, 154, ATTITUDE, "ATTITUDE"))[0] == "refused"
 
 
-def test_a_vehicle_that_does_not_answer_ends_a_request_without_an_answer() -> None:
+def test_a_silent_vehicle_ends_a_request_without_an_answer() -> None:
     cockpit = Cockpit()
     cockpit.run(2.0)
     cockpit.vehicle.silent_on = {Command.SET_MESSAGE_INTERVAL}

@@ -41,7 +41,7 @@ def names(made: MessageTraffic, **request: object) -> list[str]:
     return [row.name or f"{row.system}/{row.component}" for row in rows(made, **request)]
 
 
-def test_the_tree_has_each_source_over_its_messages_and_ours_last() -> None:
+def test_the_tree_has_sources_over_their_messages_and_ours_last() -> None:
     made = traffic()
     assert names(made) == ["1/1", "ATTITUDE", "HEARTBEAT", "51/68", "RADIO_STATUS", "255/190", "HEARTBEAT"]
     vehicle, attitude, beat, radio, status, ours, sent = rows(made)
@@ -129,7 +129,7 @@ def test_a_page_has_the_rows_that_were_asked_for() -> None:
     assert traffic().build_page(MessagesRequest(first=10**6, count=2), 9.9, 0.0).first == 5
 
 
-def test_a_flood_of_invented_ids_has_a_bound_and_a_vehicle_still_a_place() -> None:
+def test_a_flood_of_invented_ids_is_bounded_and_spares_a_vehicle() -> None:
     made = MessageTraffic(255, 190)
     for number in range(MAX_KINDS + 500):
         made.count(BEAT, 1 + number % 255, number // 255, 0.0, known=False)
@@ -149,7 +149,7 @@ def test_a_message_comes_with_its_fields() -> None:
     assert build(MessageRequest(2, 1, False, "HEARTBEAT"), 9.9, 0.0) is None
 
 
-def test_the_station_sends_pages_and_the_message_at_their_rates_while_they_are_watched() -> None:
+def test_pages_and_messages_keep_their_rates_while_watched() -> None:
     cockpit = Cockpit()
     cockpit.run(2.0)
     sent: list[View] = []

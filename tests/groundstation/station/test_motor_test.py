@@ -105,7 +105,7 @@ def test_a_screen_that_freezes_or_dies_stops_it() -> None:
     assert "screen not responding" in bench.text
 
 
-def test_a_killed_station_leaves_a_wheel_turning_for_half_a_second_at_most() -> None:
+def test_killed_station_leaves_a_wheel_turning_for_half_a_second() -> None:
     bench = Bench()
     bench.turn()
     bench.run(0.6)
@@ -132,7 +132,7 @@ def test_a_station_that_wakes_up_turns_nothing() -> None:
     assert max(power for _, power in bench.moved) == 0.0
 
 
-def test_with_timers_a_held_key_turns_it_and_the_pause_after_the_last_repeat_stops_it() -> None:
+def test_with_timers_a_held_key_turns_it_and_a_pause_stops_it() -> None:
     bench = Bench(exact=False)
     bench.turn()
     bench.run(0.4)  # the repeat delay
@@ -247,7 +247,7 @@ def test_ardupilot_arms_itself_for_a_test_which_does_not_end_it() -> None:
     assert not tester.view.turning, "still armed: it may be another one who has armed it"
 
 
-def test_an_unanswered_request_is_not_repeated_after_the_key_was_released() -> None:
+def test_an_unanswered_request_is_not_repeated_after_the_release() -> None:
     cockpit = motor_cockpit()
     cockpit.vehicle.silent_on.add(Command.DO_MOTOR_TEST)
     cockpit.do(TurnMotor(system=1, motor=1, throttle=0.1))

@@ -28,7 +28,7 @@ def test_closing_the_gate_is_neutral_at_once() -> None:
     assert cockpit.demands()[-1][1] == 0, "a key pressed behind a closed gate must not drive after it opened"
 
 
-def test_a_key_that_repeats_from_before_the_gate_opened_does_not_drive() -> None:
+def test_key_repeating_from_before_gate_opened_does_not_drive() -> None:
     cockpit = armed_cockpit()
     cockpit.do(SetKeyGate(open=False, reason="help is open"), FORWARD)
     cockpit.run(0.3)
@@ -47,7 +47,7 @@ def test_a_key_that_repeats_from_before_the_gate_opened_does_not_drive() -> None
     assert cockpit.demands()[-1][1] == 600
 
 
-def test_frozen_screen_is_neutral_within_half_a_second_then_nothing_is_sent() -> None:
+def test_a_frozen_screen_is_neutral_in_half_a_second_then_silent() -> None:
     cockpit = driving_cockpit()
     frozen = cockpit.now
     cockpit.leasing = False
@@ -61,7 +61,7 @@ def test_frozen_screen_is_neutral_within_half_a_second_then_nothing_is_sent() ->
     assert cockpit.operator.held == ()
 
 
-def test_keys_typed_at_a_frozen_screen_do_not_drive_when_it_thaws() -> None:
+def test_keys_typed_at_a_frozen_screen_do_not_drive_at_its_thaw() -> None:
     cockpit = driving_cockpit()
     cockpit.leasing = False
     cockpit.run(2.0)
@@ -75,7 +75,7 @@ def test_keys_typed_at_a_frozen_screen_do_not_drive_when_it_thaws() -> None:
     assert cockpit.demands()[-1][1] == 600
 
 
-def test_operator_presence_precedes_each_demand_to_a_vehicle_of_our_dialect() -> None:
+def test_operator_presence_precedes_each_demand_of_our_dialect() -> None:
     cockpit = armed_cockpit()
     cockpit.run(0.5)
     cockpit.do(ReportKeyReleases(), FORWARD)

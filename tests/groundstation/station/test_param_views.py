@@ -68,7 +68,7 @@ def test_the_vehicle_serves_the_texts_of_its_parameters() -> None:
     assert [row.name for row in found.rows] == ["MOT_THST_ASYM", "MOT_THST_EXPO"], "a word of their texts"
 
 
-def test_the_users_file_serves_a_vehicle_without_texts_of_its_own() -> None:
+def test_the_users_file_serves_a_vehicle_without_own_texts() -> None:
     drive = fetched()
     damaged = read_docs(b"{", "parameters.json", None)
     mine = read_docs(b'{"parameters": [{"name": "FS_TIMEOUT", "units": "furlong"}]}', "mine.json", None)

@@ -51,7 +51,7 @@ def run() -> tuple[Snapshot, list[bytes]]:
     return station.snapshot(now, now + 1000.0), sent
 
 
-def test_a_station_that_gives_all_messages_to_all_its_parts_shows_and_sends_the_same(
+def test_station_that_gives_all_messages_to_all_parts_is_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     shown, sent = run()

@@ -70,7 +70,7 @@ def hand_over(bridge: Bridge) -> None:
     bridge.do(bridge.second, SetKeyGate(open=True))
 
 
-def test_the_second_screen_neither_drives_nor_keeps_the_first_one_alive(bridge: Bridge) -> None:
+def test_second_screen_neither_drives_nor_keeps_the_first_alive(bridge: Bridge) -> None:
     view = bridge.lease.view(bridge.second, bridge.now)
     assert (view.driver, view.asks) == ("screen on pts/1", "")
     assert bridge.lease.view(bridge.first, bridge.now).driver == ""
@@ -89,7 +89,7 @@ def test_a_watching_screen_stops(bridge: Bridge, intent: AnyIntent) -> None:
     assert not bridge.moves or not bridge.cockpit.view.armed or bridge.cockpit.view.mode == "HOLD"
 
 
-def test_a_key_that_the_driver_holds_does_not_drive_on_after_the_stop_of_another_screen(bridge: Bridge) -> None:
+def test_a_held_key_does_not_drive_on_after_another_screens_stop(bridge: Bridge) -> None:
     repeats = DriveKeyDown(key="i", throttle=1, steering=0, repeat=True)
     bridge.held = (bridge.first, repeats)
     bridge.run(0.2)
@@ -114,7 +114,7 @@ def test_what_else_a_watching_screen_does_changes_nothing(bridge: Bridge, intent
     assert "Arm of the screen on pts/2 refused: it does not drive" in bridge.cockpit.texts
 
 
-def test_keys_given_are_neutral_at_once_and_only_the_new_screen_drives(bridge: Bridge) -> None:
+def test_keys_given_are_neutral_and_only_the_new_screen_drives(bridge: Bridge) -> None:
     at = bridge.now
     hand_over(bridge)
     bridge.held = (bridge.first, FORWARD)
@@ -127,7 +127,7 @@ def test_keys_given_are_neutral_at_once_and_only_the_new_screen_drives(bridge: B
     assert bridge.lease.view(bridge.first, bridge.now).driver == "screen on pts/2"
 
 
-def test_a_key_that_is_held_on_the_new_screen_does_not_drive_until_it_is_pressed_again(bridge: Bridge) -> None:
+def test_key_held_on_new_screen_drives_only_after_a_new_press(bridge: Bridge) -> None:
     """Its terminal reports no releases, other than that of the screen before."""
     bridge.held = (bridge.second, FORWARD)
     bridge.run(0.2)
@@ -144,7 +144,7 @@ def test_a_key_that_is_held_on_the_new_screen_does_not_drive_until_it_is_pressed
     assert not bridge.moves, "a timer ends the press"
 
 
-def test_a_screen_that_ends_means_neutral_and_nobody_drives_until_one_asks(bridge: Bridge) -> None:
+def test_a_screen_that_ends_is_neutral_and_nobody_drives_unasked(bridge: Bridge) -> None:
     bridge.lease.leave(bridge.first, bridge.now)
     bridge.cockpit.world.settle()
     at = bridge.now
@@ -159,7 +159,7 @@ def test_a_screen_that_ends_means_neutral_and_nobody_drives_until_one_asks(bridg
     assert bridge.moves
 
 
-def test_without_an_answer_the_driver_keeps_the_keys_and_drives_on(bridge: Bridge) -> None:
+def test_without_an_answer_the_driver_keeps_the_keys(bridge: Bridge) -> None:
     bridge.do(bridge.second, RequestControl())
     view = bridge.lease.view(bridge.first, bridge.now)
     assert view.asks == "screen on pts/2"
@@ -171,7 +171,7 @@ def test_without_an_answer_the_driver_keeps_the_keys_and_drives_on(bridge: Bridg
     assert bridge.lease.view(bridge.second, bridge.now).waits is None
 
 
-def test_a_driver_whose_keys_do_not_drive_loses_them_without_an_answer(bridge: Bridge) -> None:
+def test_a_driver_whose_keys_do_not_drive_loses_them_unasked(bridge: Bridge) -> None:
     """As over a dead SSH connection, of which its screen knows only that the terminal does not answer."""
     bridge.do(bridge.first, SetKeyGate(open=False, reason="the terminal does not answer"))
     bridge.do(bridge.second, RequestControl())

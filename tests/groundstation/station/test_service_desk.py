@@ -56,7 +56,7 @@ def texts(drive: Drive) -> list[str]:
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.2])
-def test_parameters_are_fetched_with_their_defaults_and_sent_page_by_page(loss: float) -> None:
+def test_parameters_come_with_defaults_and_are_sent_by_page(loss: float) -> None:
     drive = connected(loss)
     assert page(drive).known == 0
     drive.tell(FetchParams(1))
@@ -86,7 +86,7 @@ def test_parameters_are_set_one_after_the_other() -> None:
     assert "Rover 1: set FS_TIMEOUT to 2: accepted, was 1.5" in texts(drive)
 
 
-def test_a_write_stops_at_the_first_refusal_with_the_vehicles_words() -> None:
+def test_a_write_stops_at_the_first_refusal_with_its_words() -> None:
     drive = connected()
     changes = (("FS_DISARM_T", 20.0), ("FS_TIMEOUT", 99.0), ("FS_GCS_TIMEOUT", 6.0))
     drive.tell(WriteParams(7, 1, changes))

@@ -99,7 +99,7 @@ def convoy(request: pytest.FixtureRequest) -> Convoy:
 
 
 @pytest.mark.parametrize("select", [SelectVehicle(system=2), SelectNextVehicle()])
-def test_the_deselected_vehicle_gets_neutral_at_once_and_then_nothing(convoy: Convoy, select: AnyIntent) -> None:
+def test_the_deselected_vehicle_gets_neutral_and_then_nothing(convoy: Convoy, select: AnyIntent) -> None:
     left = convoy.now
     convoy.do(select)
     convoy.run(3.0)
@@ -132,7 +132,7 @@ def test_commands_and_demands_go_to_the_selected_vehicle_only(convoy: Convoy) ->
     assert convoy.vehicles[1].armed, "it stands where it was left; its own failsafe looks after it"
 
 
-def test_the_emergency_stop_goes_to_every_vehicle_that_we_armed_or_drove(convoy: Convoy) -> None:
+def test_the_estop_goes_to_every_vehicle_we_armed_or_drove(convoy: Convoy) -> None:
     convoy.do(SelectNextVehicle())
     convoy.run(1.0)
     assert convoy.snapshot.also_armed == (1,)
@@ -144,7 +144,7 @@ def test_the_emergency_stop_goes_to_every_vehicle_that_we_armed_or_drove(convoy:
     assert not convoy.snapshot.also_armed
 
 
-def test_a_foreign_armed_vehicle_is_named_and_stopped_by_the_second_press(convoy: Convoy) -> None:
+def test_foreign_armed_vehicle_is_named_and_stopped_by_press_two(convoy: Convoy) -> None:
     convoy.vehicles[2].armed, convoy.vehicles[2].driver = True, 254
     convoy.run(1.2)
     convoy.do(EmergencyStop())
@@ -180,7 +180,7 @@ def test_a_vehicle_that_we_armed_and_disarmed_is_no_longer_ours(convoy: Convoy) 
     assert convoy.orders(1) == before
 
 
-def test_the_first_one_stops_although_the_second_is_driven_meanwhile(convoy: Convoy) -> None:
+def test_the_first_stops_although_the_second_is_driven_meanwhile(convoy: Convoy) -> None:
     convoy.vehicles[2].armed, convoy.vehicles[2].driver = True, 255
     convoy.run(1.2)
     left = convoy.now

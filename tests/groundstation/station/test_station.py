@@ -57,7 +57,7 @@ def resting_cockpit() -> Cockpit:
     raise AssertionError("it does not rest")
 
 
-def test_ticks_are_few_unless_a_command_is_under_way_and_it_rests_only_while_no_vehicle_is_armed() -> None:
+def test_ticks_are_few_without_commands_and_while_disarmed() -> None:
     cockpit = resting_cockpit()
     assert cockpit.station.rest_period == REST_PERIOD
     assert cockpit.snapshot.rests
@@ -78,7 +78,7 @@ def test_ticks_are_few_unless_a_command_is_under_way_and_it_rests_only_while_no_
     assert cockpit.station.rest_period == REST_PERIOD
 
 
-def test_a_vehicle_that_somebody_else_arms_ends_the_rest_with_its_report() -> None:
+def test_vehicle_armed_by_another_ends_the_rest_with_its_report() -> None:
     cockpit = resting_cockpit()
     assert cockpit.station.rests
     ended = []
@@ -97,7 +97,7 @@ def test_a_crashed_station_does_not_rest() -> None:
     assert cockpit.core.rest_period is None
 
 
-def test_a_renewal_in_time_extends_the_lease_and_a_late_one_is_an_intent() -> None:
+def test_renewal_in_time_extends_lease_and_a_late_is_an_intent() -> None:
     cockpit = armed_cockpit()
     cockpit.leasing = False
     cockpit.do(RenewLease())

@@ -48,7 +48,7 @@ def test_each_key_is_noted_once_with_the_demand_that_it_makes() -> None:
     assert {note.target_system for _, note in book.notes} == {1}
 
 
-def test_without_key_releases_the_note_tells_when_the_key_no_longer_counts() -> None:
+def test_without_key_releases_the_note_tells_when_the_key_ends() -> None:
     cockpit = armed_cockpit()
     book = Notebook(cockpit)
     begun = cockpit.now
@@ -146,7 +146,7 @@ def test_links_are_noted_when_they_open_fail_and_close() -> None:
     ]
 
 
-def test_texts_of_the_vehicle_are_not_noted_again_and_a_long_text_is_cut() -> None:
+def test_vehicle_texts_are_not_noted_again_and_a_long_one_is_cut() -> None:
     cockpit = armed_cockpit()
     book = Notebook(cockpit)
     cockpit.station.log.add(1.0, "vehicle", "battery low", Severity.WARNING)

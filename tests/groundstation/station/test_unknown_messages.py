@@ -27,7 +27,7 @@ def rows(made: MessageTraffic, now: float = 10.0, text: str = "") -> dict[str, M
     return {row.name: row for row in made.build_page(MessagesRequest(text=text), now, 0.0).rows if row.name}
 
 
-def test_they_stand_under_their_source_with_rate_count_age_and_length() -> None:
+def test_they_are_under_their_source_with_rate_count_and_age() -> None:
     page = traffic().build_page(MessagesRequest(), 10.0, 0.0)
     assert [(row.system, row.name) for row in page.rows] == [
         (1, ""), (1, "HEARTBEAT"), (1, "#51000"), (9, ""), (9, "#60000")
@@ -39,7 +39,7 @@ def test_they_stand_under_their_source_with_rate_count_age_and_length() -> None:
     assert not rows(traffic())["HEARTBEAT"].unknown
 
 
-def test_the_filter_finds_them_by_number_and_rate_and_never_by_field() -> None:
+def test_the_filter_finds_them_by_number_and_rate_not_by_field() -> None:
     assert rows(traffic(), text="#5").keys() == {"#51000"}
     assert rows(traffic(), text=">1Hz").keys() == {"#51000"}
     assert not rows(traffic(), text="field:a").keys() & {"#51000", "#60000"}

@@ -67,7 +67,7 @@ def test_ardupilot_settings_that_let_it_drive_on_are_warned_of() -> None:
 OVERRIDE = "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost; set it to 0.5"
 
 
-def test_settings_that_could_not_be_read_are_named_and_read_later() -> None:
+def test_settings_not_yet_read_are_named_and_read_later() -> None:
     vehicle = FakeArduPilot()
     del vehicle.params["RC_OVERRIDE_TIME"]
     vehicle.params["MAV_GCS_SYSID"] = 255.0

@@ -76,7 +76,7 @@ CENTRE = m.ManualControl(1, 0, INVALID_AXIS, INVALID_AXIS, 0, 0)
 
 
 @pytest.mark.parametrize(("takes_part", "count"), [(True, 1), (False, 0)])
-def test_a_verb_that_looks_keeps_no_armed_vehicle_from_its_failsafe(takes_part: bool, count: int) -> None:
+def test_a_verb_that_looks_keeps_no_vehicle_from_its_failsafe(takes_part: bool, count: int) -> None:
     ashore = Ashore(takes_part=takes_part)
     ashore.run(1.0)
     assert ashore.of(m.Heartbeat) == []
@@ -115,7 +115,7 @@ def test_a_demand_ends_with_neutral_when_the_verb_ends() -> None:
     assert ashore.relay.finished
 
 
-def test_a_demand_of_a_verb_that_stands_still_ends_and_goes_on_no_more() -> None:
+def test_a_demand_of_a_stopped_verb_ends_and_does_not_resume() -> None:
     ashore = Ashore()
     ashore.run(0.5, FULL)
     ashore.alive, at = False, ashore.cockpit.now
@@ -185,7 +185,7 @@ def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:
     assert len(ashore.of(m.ManualControl)) == before
 
 
-def test_arming_by_a_verb_is_control_of_a_vehicle_that_does_not_tell() -> None:
+def test_arming_by_verb_is_control_of_a_vehicle_that_tells_none() -> None:
     cockpit = Cockpit(FakeArduPilot())
     cockpit.run(1.5)
     verb = Verb("groundstation arm", True, lambda _: None, lambda _: None, lambda _: None)
@@ -220,7 +220,7 @@ def test_the_session_is_proven_before_what_may_need_control(takes_part: bool) ->
 PROOF = m.RoverOperatorPresence(1, 1, 5, 6, 99, 1, 0, OperatorFlag.AXES)
 
 
-def test_a_verb_that_follows_keeps_the_session_of_the_verb_before() -> None:
+def test_verb_that_follows_keeps_the_session_of_the_former_verb() -> None:
     ashore = Ashore()
     assert not ashore.relay.may_follow(ashore.cockpit.now)  # the last driver was a screen
     ashore.run(0.5)

@@ -45,7 +45,7 @@ def test_nothing_is_sent_that_no_screen_watches() -> None:
     assert pipe.states == []
 
 
-def test_the_first_view_is_due_at_once_and_an_equal_one_is_not_sent_again() -> None:
+def test_the_first_view_is_due_at_once_and_an_equal_one_never() -> None:
     made, _source, pipe = feed()
     made.watch([LogRequest()])
     for step in range(10):
@@ -53,7 +53,7 @@ def test_the_first_view_is_due_at_once_and_an_equal_one_is_not_sent_again() -> N
     assert pipe.states == [3]
 
 
-def test_changes_are_sent_at_the_rate_of_the_source_and_the_newest_wins() -> None:
+def test_changes_are_sent_at_sources_rate_and_the_newest_wins() -> None:
     made, source, pipe = feed()
     made.watch([LogRequest()])
     for step in range(41):

@@ -35,7 +35,7 @@ def test_each_setting(name: str, good: float, bad: float, words: str) -> None:
     assert check.obeys is None
 
 
-def test_another_ground_station_that_it_obeys_is_no_setting_among_others() -> None:
+def test_obeying_another_ground_station_is_no_ordinary_setting() -> None:
     check = new_check()
     check.receive(value("RC_OVERRIDE_TIME", -1.0), 0.0)
     check.receive(value("MAV_GCS_SYSID", 250.0), 0.0)

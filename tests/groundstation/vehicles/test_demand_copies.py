@@ -25,7 +25,7 @@ def play(stream: DemandStream, demand: Axes, start: float, seconds: float) -> li
 
 
 @pytest.mark.parametrize(("loss", "least"), [(None, 1), (0.0, 1), (0.05, 3), (0.10, 5), (0.20, 5)])
-def test_more_loss_means_more_copies_within_the_time_of_one_period(loss: float | None, least: int) -> None:
+def test_more_loss_means_more_copies_within_one_period(loss: float | None, least: int) -> None:
     stream = DemandStream(DemandCopies())
     stream.adapt(loss, None)
     sent = play(stream, AHEAD, 0.0, DRIVING_PERIOD)

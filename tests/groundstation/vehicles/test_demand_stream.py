@@ -30,7 +30,7 @@ def test_change_goes_out_at_once() -> None:
     assert stream.next_due(NEUTRAL, True, 10.012) == NEUTRAL, "neutral may follow at any distance"
 
 
-def test_changes_closer_than_the_vehicle_takes_wait_and_the_newest_wins() -> None:
+def test_changes_too_close_for_vehicle_wait_and_the_newest_wins() -> None:
     stream = DemandStream()
     stream.next_due(AHEAD, True, 10.0)
     assert stream.next_due(Axes(0.6, 0.1), True, 10.001) is None

@@ -59,7 +59,7 @@ def test_a_flood_of_system_ids_is_bounded() -> None:
     assert len(fleet.system_ids) == MAX_VEHICLES
 
 
-def test_vehicles_without_a_place_are_counted_while_they_are_heard_and_the_first_is_logged() -> None:
+def test_vehicles_without_place_are_counted_and_the_first_logged() -> None:
     systems = range(1, MAX_VEHICLES + 1)
     fleet, log = fleet_of(*systems)
     assert fleet.not_shown == 0
@@ -75,7 +75,7 @@ def test_vehicles_without_a_place_are_counted_while_they_are_heard_and_the_first
     assert fleet.not_shown == 0
 
 
-def test_loss_and_return_are_logged_once_and_start_the_requests_again() -> None:
+def test_loss_and_return_are_logged_once_and_restart_requests() -> None:
     fleet, log = fleet_of(1)
     contact = fleet.get(1)
     assert contact is not None
@@ -105,7 +105,7 @@ def signed_beat(system: int) -> Received:
     return beat(system)._replace(signed=True)
 
 
-def test_a_vehicle_with_a_key_of_ours_takes_the_place_of_one_without() -> None:
+def test_a_vehicle_with_our_key_takes_the_place_of_one_without() -> None:
     fleet, _ = fleet_of(*range(1, MAX_VEHICLES + 1))
     own = fleet.get_or_add(signed_beat(200), 2.0)
     assert own is not None

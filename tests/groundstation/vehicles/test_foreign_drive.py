@@ -73,7 +73,7 @@ def test_px4_tells_its_actuators() -> None:
     assert [output.value for output in drive.outputs(10.0)] == [None], "a pulse whose limits are not known"
 
 
-def test_parameters_that_name_channels_lead_to_those_of_the_channels() -> None:
+def test_parameters_that_name_channels_lead_to_those_of_channels() -> None:
     first = set(drive_params(Autopilot.ARDUPILOT, {}))
     assert {"SERVO1_FUNCTION", "RCMAP_ROLL", "SERVO1_MIN", "SERVO3_TRIM"} <= first
     known = {"SERVO2_FUNCTION": 73.0, "SERVO4_FUNCTION": 74.0, "RCMAP_THROTTLE": 2.0}

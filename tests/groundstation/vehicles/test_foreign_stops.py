@@ -149,7 +149,7 @@ def test_arming_waits_for_neutral_and_shows_why_it_was_refused() -> None:
     assert any(at < first_arm for at, _ in vehicle.all(m.ManualControl)), "neutral went before"
 
 
-def test_a_vehicle_of_another_station_does_not_move_and_a_warning_names_that_station() -> None:
+def test_the_vehicle_of_a_named_other_station_does_not_move() -> None:
     vehicle = FakeArduPilot(station=252)
     vehicle.params["MAV_GCS_SYSID"] = 252.0
     cockpit = Cockpit(vehicle)
@@ -162,7 +162,7 @@ def test_a_vehicle_of_another_station_does_not_move_and_a_warning_names_that_sta
     assert not vehicle.moves
 
 
-def test_parameters_that_the_vehicle_does_not_have_are_requested_three_times() -> None:
+def test_parameters_the_vehicle_lacks_are_requested_three_times() -> None:
     vehicle = FakeArduPilot()
     cockpit = Cockpit(vehicle)
     cockpit.run(10.0)
@@ -208,7 +208,7 @@ def test_only_of_our_own_vehicle_it_is_known_that_it_stops(vehicle: FakeVehicle,
     assert cockpit.view.without_link == words
 
 
-def test_in_an_autonomous_mode_it_is_not_known_whether_a_vehicle_stops() -> None:
+def test_in_an_autonomous_mode_stopping_is_not_known() -> None:
     vehicle = FakeArduPilot(mode=Mode.AUTO)
     vehicle.armed = True
     cockpit = Cockpit(vehicle)

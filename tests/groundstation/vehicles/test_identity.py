@@ -23,7 +23,7 @@ def requests(identity: VehicleIdentity, until: float) -> list[RequestedMessage]:
     return [request for request in asked if request is not None]
 
 
-def test_a_vehicle_without_a_version_is_settled_after_three_tries() -> None:
+def test_vehicle_without_a_version_is_settled_after_three_tries() -> None:
     identity = VehicleIdentity(1)
     assert requests(identity, TRIES * RETRY_AFTER) == [VERSION] * TRIES
     assert not identity.settled
@@ -67,7 +67,7 @@ def test_modes_come_together_and_a_lost_one_is_requested_alone() -> None:
     assert identity.next_request(10.0) is None
 
 
-def test_a_vehicle_that_sends_one_mode_at_a_time_is_asked_without_pauses() -> None:
+def test_a_vehicle_that_sends_one_mode_at_a_time_is_asked_on() -> None:
     identity = VehicleIdentity(1)
     identity.receive(from_vehicle(version()))
     identity.want_modes()

@@ -8,7 +8,7 @@ from groundstation.vehicles.readings.key_to_motor import KeyTimings
 from groundstation.vehicles.readings.latency import LatencyMeter, SentDemand
 
 
-def test_latency_counts_the_first_report_on_a_changed_demand_only() -> None:
+def test_latency_counts_only_first_report_on_a_changed_demand() -> None:
     meter = LatencyMeter(KeyTimings())
     meter.record_sent(7, SentDemand(1.0, 1.0))
     meter.record_applied(6, 1.01, 0.0)

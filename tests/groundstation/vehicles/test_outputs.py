@@ -38,7 +38,7 @@ def test_outputs_are_named_by_their_function(functions: dict[int, int], expected
     assert names(cockpit(functions)[0]) == expected
 
 
-def test_driving_straight_turns_the_throttle_and_not_the_steering() -> None:
+def test_driving_straight_turns_throttle_and_not_the_steering() -> None:
     made, _ = cockpit({1: 26, 3: 70})
     made.do(Arm(held=1.0))
     made.run(1.5)
@@ -50,7 +50,7 @@ def test_driving_straight_turns_the_throttle_and_not_the_steering() -> None:
     }
 
 
-def test_functions_are_read_again_after_a_restart_and_a_vehicle_without_them_is_not_asked_for_ever() -> None:
+def test_functions_are_read_again_after_restart_but_not_for_ever() -> None:
     made, vehicle = cockpit({1: 26, 3: 70})
     made.run(20.0)
     asked = [each.param_id for _, each in vehicle.all(m.ParamRequestRead)]

@@ -21,7 +21,7 @@ def current(seq: int, state: int = ACTIVE, mission: int = 0) -> m.MissionCurrent
     return m.MissionCurrent(seq, 9, state, 1, mission, 0, 0)
 
 
-def test_items_that_were_reached_count_until_the_mission_begins_anew() -> None:
+def test_reached_items_count_until_the_mission_begins_anew() -> None:
     progress = heard(PlanProgress(1), current(0), m.MissionItemReached(0), current(1), m.MissionItemReached(1))
     assert (progress.current, progress.reached) == (1, (0, 1))
     assert heard(progress, current(1, PAUSED), current(1)).reached == (0, 1)

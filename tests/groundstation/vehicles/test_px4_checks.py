@@ -112,7 +112,7 @@ def test_a_rover_with_default_settings_is_read_and_warned_of() -> None:
     assert cockpit.view.without_link == "by its settings it holds a place after 0.5 s, and drives home 5 s later"
 
 
-def test_settings_that_cannot_be_read_are_named_and_asked_for_again() -> None:
+def test_unreadable_settings_are_named_and_requested_again() -> None:
     vehicle = px4(NAV_RCL_ACT=6, NAV_DLL_ACT=1)
     del vehicle.params["COM_RC_LOSS_T"]
     cockpit = Cockpit(vehicle)
@@ -146,7 +146,7 @@ def test_the_frame_selects_the_axes(frame: int) -> None:
     assert contact.choose_axes(NEUTRAL) is PX4_FRAMES.get(frame, AXIS_MAPS[Autopilot.PX4])
 
 
-def test_a_frame_that_is_read_while_driving_turns_the_steering_only_after_a_neutral_demand() -> None:
+def test_frame_read_while_driving_turns_steering_after_a_neutral() -> None:
     vehicle = px4(CA_AIRFRAME=ACKERMANN)
     del vehicle.params["CA_AIRFRAME"]
     cockpit = armed_cockpit(vehicle)

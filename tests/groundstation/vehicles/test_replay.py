@@ -158,7 +158,7 @@ def test_battery_and_gps_are_those_recorded() -> None:
     assert compared > 1000
 
 
-def test_outputs_and_demand_are_the_recorded_pulses_by_the_recorded_parameters() -> None:
+def test_outputs_and_demand_are_the_recorded_pulses() -> None:
     """Its limits are 1000, 1500 and 2000 us. Until they have arrived nothing is claimed."""
     compared = 0
     for moment in replay().moments:

@@ -45,7 +45,7 @@ def test_what_fell_silent_while_armed_is_still_in_doubt() -> None:
     assert senders.find_doubt(61.5) == ""
 
 
-def test_a_vehicle_that_changed_its_address_is_one_by_its_boot_time() -> None:
+def test_vehicle_that_changed_its_address_is_known_by_boot_time() -> None:
     senders = Senders()
     take(senders, beat(HERE, ARMED), booted(HERE, 10_000), now=1.0)
     take(senders, beat(THERE, DISARMED), booted(THERE, 15_200), now=6.0)
@@ -87,7 +87,7 @@ def test_two_unique_ids_show_two_vehicles() -> None:
     assert senders.describe_twins(1.0)
 
 
-def test_two_vehicles_behind_one_bridge_are_told_apart_by_their_numbers() -> None:
+def test_two_vehicles_behind_a_bridge_are_told_apart_by_numbers() -> None:
     senders = Senders()
     take(senders, beat(HERE, DISARMED), now=1.0)
     take(senders, beat(HERE, ARMED, AUTO, numbering=1), beat(HERE, DISARMED, numbering=2), now=2.0)
@@ -95,7 +95,7 @@ def test_two_vehicles_behind_one_bridge_are_told_apart_by_their_numbers() -> Non
     assert senders.describe_twins(2.0)
 
 
-def test_each_component_that_claims_to_be_the_autopilot_must_report_it() -> None:
+def test_each_component_that_claims_the_autopilot_must_report_it() -> None:
     state = VehicleState(1, 1)
     for received in (beat(HERE, DISARMED), beat(HERE, ARMED, AUTO, component=2)):
         state.receive(received, 1.0)

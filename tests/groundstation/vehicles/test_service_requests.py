@@ -41,7 +41,7 @@ def test_plans_go_one_after_the_other() -> None:
     assert plans.plans[MissionType.MISSION] == vehicle.plan == ()
 
 
-def test_an_upload_that_is_cancelled_changes_nothing_and_the_next_request_runs() -> None:
+def test_cancelled_upload_changes_nothing_and_next_request_runs() -> None:
     vehicle, book = mission_vehicle.Vehicle(), RequestBook()
     plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
     pair = Pair(vehicle.server, plans)

@@ -50,7 +50,7 @@ def test_nothing_is_told_before_there_is_anything() -> None:
     assert Heard().hear() is None
 
 
-def test_a_vehicle_that_signs_is_on_and_what_is_refused_beside_it_is_counted_for_a_while() -> None:
+def test_a_signing_vehicle_is_on_and_its_refusals_are_counted() -> None:
     heard = Heard()
     assert heard.hear(beat(NOW)) == SigningView(
         SigningState.ON, f"on: both ends sign; our key is laptop ({DRIVER.fingerprint})"

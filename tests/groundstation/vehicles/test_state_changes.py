@@ -44,7 +44,7 @@ def test_what_others_do_is_logged_too() -> None:
     ]
 
 
-def test_a_vehicle_that_does_not_tell_who_controls_it_says_nothing_of_it() -> None:
+def test_a_vehicle_that_does_not_tell_its_control_says_nothing() -> None:
     cockpit = Cockpit(FakeArduPilot())
     cockpit.run(2.0)
     cockpit.do(RequestControl(), Arm(held=1.0))

@@ -30,7 +30,7 @@ def test_it_is_the_time_to_the_first_report_with_other_outputs() -> None:
     assert view.total.newest == pytest.approx(0.143)
 
 
-def test_outputs_that_still_follow_an_earlier_demand_are_no_answer() -> None:
+def test_outputs_that_still_follow_earlier_demand_do_not_answer() -> None:
     meter, timings = steady(1.0)
     meter.record_outputs(MOVING, 0.02, 1.1)
     meter.record_sent(SentDemand(1.2, 1.2, key=0.0))

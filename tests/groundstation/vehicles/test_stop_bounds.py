@@ -97,7 +97,7 @@ def test_an_ardurover_that_never_stops(changes: dict[str, float], never: list[st
     assert [each.source for each in bounds if each.never] == never
 
 
-def test_an_override_without_end_promises_nothing_without_a_receiver_either() -> None:
+def test_an_endless_override_promises_nothing_without_a_receiver() -> None:
     bounds = foreign(Autopilot.ARDUPILOT, ARDUPILOT | {"RC_OVERRIDE_TIME": -1.0})
     assert [(each.does, each.bound) for each in bounds if each.name == "... no RC"] == [("--", None), ("--", None)]
 

@@ -50,7 +50,7 @@ def test_everything_that_the_drive_screen_needs_is_requested() -> None:
 
 
 @pytest.mark.parametrize("autopilot", [Autopilot.ARDUPILOT, Autopilot.PX4])
-def test_a_foreign_vehicle_gets_requests_at_once_one_message_after_the_other(autopilot: Autopilot) -> None:
+def test_a_foreign_vehicle_gets_requests_at_once_one_by_one(autopilot: Autopilot) -> None:
     vehicle = FakeArduPilot(autopilot=autopilot)
     cockpit = Cockpit(vehicle)
     cockpit.run(2.0)
@@ -73,7 +73,7 @@ def test_our_own_rover_gets_no_requests() -> None:
     assert groups(vehicle) == {}
 
 
-def test_an_unknown_vehicle_gets_requests_for_what_does_not_arrive() -> None:
+def test_an_unknown_vehicle_is_asked_for_what_does_not_arrive() -> None:
     vehicle = FakeVehicle(driver=None)
     cockpit = Cockpit(vehicle)
     cockpit.run(0.1)
@@ -84,7 +84,7 @@ def test_an_unknown_vehicle_gets_requests_for_what_does_not_arrive() -> None:
     assert set(requested_rates(vehicle)) == streams(None) - {m.Attitude.id}
 
 
-def test_a_vehicle_that_does_not_know_the_command_gets_group_requests() -> None:
+def test_a_vehicle_without_the_command_gets_group_requests() -> None:
     vehicle = FakeArduPilot()
     vehicle.answers[INTERVAL] = Result.UNSUPPORTED
     cockpit = Cockpit(vehicle)
@@ -142,7 +142,7 @@ def test_a_clock_that_starts_anew_is_a_reboot() -> None:
     assert requests.next_message(Autopilot.ARDUPILOT, 3.0) is not None
 
 
-def test_a_clock_that_jumps_does_not_restart_all_requests_each_time() -> None:
+def test_a_jumping_clock_does_not_restart_all_requests_each_time() -> None:
     requests = StreamRequests((1, 1), 0.0)
     clocks = [60_000 * (number % 2) for number in range(100)]
     reboots = [

@@ -28,7 +28,7 @@ def test_a_lost_fix_keeps_the_last_place() -> None:
     assert details.place == Place(10.0, 20.0)
 
 
-def test_another_component_is_listed_and_says_nothing_for_the_vehicle() -> None:
+def test_another_component_is_listed_but_not_read_as_the_vehicle() -> None:
     details = VehicleDetails(1)
     receive(details, m.GlobalPositionInt(0, 100_000_000, 200_000_000, 0, 0, 0, 0, 0, 0), component=191)
     receive(details, m.RoverControl(1, 250, 190, 0), component=191)

@@ -29,7 +29,7 @@ def autopilot(component: int = 1) -> Received:
 
 
 @pytest.mark.parametrize("kind", [GIMBAL, CAMERA, ADSB, COMPANION, 31, 34, 36, 37, 42, 49])
-def test_a_part_of_a_vehicle_is_none_even_if_it_names_an_autopilot(kind: int) -> None:
+def test_part_of_a_vehicle_is_none_even_if_it_names_an_autopilot(kind: int) -> None:
     assert kind in NO_VEHICLES
     for name in (Autopilot.GENERIC, Autopilot.ARDUPILOT, Autopilot.PX4):
         assert not is_vehicle(beat(kind, name).message)
@@ -44,7 +44,7 @@ def test_only_the_autopilot_replaces_another_component() -> None:
     assert [replaces(*each) for each in ((1, 191), (1, 1), (191, 1), (2, 191))] == [True, False, False, False]
 
 
-def test_the_autopilot_replaces_a_script_that_claims_to_be_a_rover() -> None:
+def test_autopilot_replaces_a_script_that_claims_to_be_a_rover() -> None:
     log = MessageLog()
     fleet = Fleet(log, 255, 190)
     contact = fleet.get_or_add(beat(ROVER), 1.0)

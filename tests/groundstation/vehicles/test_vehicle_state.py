@@ -66,7 +66,7 @@ def test_alive_until_no_message_arrives() -> None:
     assert not vehicle.build_view(12.6).alive
 
 
-def test_any_component_keeps_the_link_alive_but_only_the_autopilot_sets_the_state() -> None:
+def test_any_component_keeps_link_but_the_autopilot_sets_state() -> None:
     vehicle = state(heartbeat(mode=4))
     vehicle.receive(received(m.Heartbeat(30, 8, 0, 0, 3, 3), component=154), 20.0)
     assert vehicle.build_view(20.0).alive

@@ -29,7 +29,7 @@ def test_a_refused_request(capsys: pytest.CaptureFixture[str]) -> None:
         assert (run.code, "not now" in run.err) == (ExitCode.REFUSED, True)
 
 
-def test_a_vehicle_that_accepts_the_question_for_the_dialect_and_does_not_answer_it(
+def test_vehicle_accepts_the_dialect_question_without_an_answer(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     with foreign_vehicle(autopilot=0) as vehicle:

@@ -36,7 +36,7 @@ def test_a_process_that_a_signal_ends_leaves_no_demand(number: signal.Signals) -
     check_signal(number, *DRIVE)
 
 
-def test_a_process_that_stands_still_leaves_no_demand_and_does_not_drive_on() -> None:
+def test_stopped_process_leaves_no_demand_and_does_not_drive_on() -> None:
     check_standstill(*DRIVE)
 
 

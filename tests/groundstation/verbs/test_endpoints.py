@@ -35,7 +35,7 @@ def test_each_place_wins_over_the_next(recent: RecentFile, tmp_path: Path) -> No
     assert choose_endpoints([A, "field"], str(config), {"MAVHELM_ENDPOINT": C}, recent) == [A, B]
 
 
-def test_a_broken_config_file_does_not_keep_a_verb_from_an_endpoint(recent: RecentFile, tmp_path: Path) -> None:
+def test_a_broken_config_file_does_not_block_a_given_endpoint(recent: RecentFile, tmp_path: Path) -> None:
     (tmp_path / "my.toml").write_text("speed = 9")
     assert choose_endpoints([A], str(tmp_path / "my.toml"), {}, recent) == [A]
 

@@ -32,7 +32,7 @@ def test_two_verbs_at_once_have_two_sessions(tmp_path: Path) -> None:
     assert KeptSession.take(OURS, 10.4, tmp_path).number == first.number
 
 
-def test_a_verb_that_watches_proves_only_while_no_other_verb_does(tmp_path: Path) -> None:
+def test_a_watching_verb_proves_only_while_no_other_verb_does(tmp_path: Path) -> None:
     assert KeptSession.follow(OURS, 1.0, tmp_path) is None
     first = KeptSession.take(OURS, 10.0, tmp_path)
     first.end(11.0)

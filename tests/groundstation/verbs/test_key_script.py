@@ -60,7 +60,7 @@ def test_keys_drive_while_they_are_held() -> None:
     assert requested == []
 
 
-def test_every_other_key_stops_and_the_drive_key_must_be_pressed_again() -> None:
+def test_every_other_key_stops_and_drive_key_is_pressed_again() -> None:
     axes, requested = play("0 press i\n1 press 2\n2 press up\n3 press space\n", 0.5, 1.5, 2.5, 3.5)
     assert [each.throttle for each in axes] == [0.5, 0.0, 0.5, 0.0]
     assert requested == [SetMode(mode="HOLD")]

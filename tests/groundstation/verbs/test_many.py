@@ -48,7 +48,7 @@ def vehicles(tmp_path: Path, capsys: Capture) -> Iterator[Vehicles]:
         yield Vehicles(tmp_path, capsys, stack)
 
 
-def test_all_at_once_with_a_table_of_the_results_and_the_worst_code(vehicles: Vehicles) -> None:
+def test_all_run_at_once_with_a_result_table_and_the_worst_code(vehicles: Vehicles) -> None:
     vehicles.arm()
     vehicles.all[1].answers[DISARM] = (4, "not now")
     run = vehicles.verb("disarm", "--all")

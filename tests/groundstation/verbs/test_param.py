@@ -89,7 +89,7 @@ def test_what_the_type_cannot_hold_is_not_sent(
     assert vehicle.of("PARAM_SET") == []
 
 
-def test_a_name_that_nobody_answers_ends_with_the_number_of_tries(capsys: Capture, vehicle: ForeignVehicle) -> None:
+def test_an_unanswered_name_ends_with_the_number_of_tries(capsys: Capture, vehicle: ForeignVehicle) -> None:
     unknown = param(capsys, vehicle, "get", "NO_SUCH")
     assert (unknown.code, unknown.out) == (ExitCode.NO_ANSWER, "")
     assert unknown.err.endswith("read NO_SUCH: no answer, after 8 tries\n")

@@ -78,7 +78,7 @@ def test_show_and_clear(capsys: Capture, vehicle: ForeignVehicle, plan_file: str
     assert "has no fence" in empty.err
 
 
-def test_the_item_that_is_refused_is_named_and_the_old_plan_stays(
+def test_the_refused_item_is_named_and_the_old_plan_stays(
     capsys: Capture, vehicle: ForeignVehicle, plan_file: str
 ) -> None:
     assert verb(capsys, vehicle, "mission", "set", plan_file).code == 0  # another word for put

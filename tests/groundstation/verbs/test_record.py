@@ -62,9 +62,7 @@ def test_a_full_disk_is_one_line_and_a_code(capsys: Capture) -> None:
 
 
 @pytest.mark.parametrize("name", ["nowhere/out.tlog", "."])
-def test_a_file_that_cannot_be_made_is_named_before_any_link_is_open(
-    capsys: Capture, tmp_path: Path, name: str
-) -> None:
+def test_a_file_that_cannot_be_made_is_named_before_a_link_opens(capsys: Capture, tmp_path: Path, name: str) -> None:
     ended = run_verb(capsys, "record", str(tmp_path / name), "-e", "udpin:127.0.0.1:1")
     assert ended.code == ExitCode.USAGE
     assert len(ended.err.splitlines()) == 1

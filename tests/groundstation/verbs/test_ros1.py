@@ -83,7 +83,7 @@ def running(folder: Path, *options: str) -> Iterator[Verb]:
             verb.node.close()
 
 
-def test_words_and_twists_become_demands_and_telemetry_is_published(tmp_path: Path) -> None:
+def test_words_and_twists_become_demands_and_telemetry_goes_out(tmp_path: Path) -> None:
     with running(tmp_path) as verb:
         verb.begin()
         assert "rover 1 is /mavhelm_1 at http://localhost:11311" in verb.said

@@ -22,11 +22,11 @@ def test_a_process_that_a_signal_ends_leaves_no_demand(number: signal.Signals) -
     check_signal(number, *DRIVE)
 
 
-def test_a_process_that_stands_still_leaves_no_demand_and_does_not_drive_on() -> None:
+def test_stopped_process_leaves_no_demand_and_does_not_drive_on() -> None:
     check_standstill(*DRIVE)
 
 
-def test_a_demand_begins_and_ends_with_neutral_in_the_axes_of_the_vehicle() -> None:
+def test_a_demand_begins_and_ends_neutral_in_the_vehicles_axes() -> None:
     with foreign_vehicle(PX4) as vehicle:
         vehicle.armed = True
         words = ["send", "MANUAL_CONTROL", "z=700", "--rate", "20", "--for", "0.3", "--yes", "-v", "1"]

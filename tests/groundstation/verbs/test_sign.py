@@ -124,7 +124,7 @@ def artefacts(folder: Path) -> Iterator[Path]:
     return (path for path in folder.rglob("*") if path.is_file() and path.name != "keys.toml")
 
 
-def test_a_vehicle_gets_its_first_key_over_a_cable_and_nothing_else_has_it(
+def test_a_vehicle_gets_its_first_key_over_a_cable_and_alone(
     capsys: Capture, tmp_path: Path, cable: SerialCable
 ) -> None:
     state = tmp_path / "state"

@@ -22,7 +22,7 @@ Capture = pytest.CaptureFixture[str]
 PREARM = 0x10000000
 
 
-def test_status_requests_what_the_vehicle_does_not_send_by_itself(capsys: Capture) -> None:
+def test_status_requests_what_the_vehicle_does_not_send(capsys: Capture) -> None:
     with foreign_vehicle() as vehicle:
         vehicle.armed, vehicle.mode = True, 15
         vehicle.telemetry = {

@@ -62,7 +62,7 @@ def test_an_answer_alone_is_no_stop_and_it_is_sent_again(capsys: Capture) -> Non
         assert len(sent(vehicle, DISARM)) >= 2
 
 
-def test_a_stop_that_is_accepted_and_not_done_is_refused_in_the_end(capsys: Capture) -> None:
+def test_an_accepted_stop_that_is_not_done_is_refused_in_the_end(capsys: Capture) -> None:
     with foreign_vehicle() as vehicle:
         vehicle.armed, vehicle.obeys = True, False
         disarmed = verb(capsys, vehicle, "disarm", "--timeout", "1")

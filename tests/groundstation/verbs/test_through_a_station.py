@@ -136,9 +136,7 @@ def test_a_demand_drives_and_a_killed_or_stopped_verb_is_neutral(verb: Run, vehi
             assert "its demand has ended" in said
 
 
-def test_a_screen_that_drives_keeps_demands_of_verbs_out_but_not_stops(
-    verb: Run, vehicle: Vehicle, station: int
-) -> None:
+def test_driving_screen_keeps_out_demands_of_verbs_but_not_stops(verb: Run, vehicle: Vehicle, station: int) -> None:
     process = start_driving(verb, vehicle)
     with Screen.attach(station) as screen:
         _, said = process.communicate(timeout=PATIENCE)

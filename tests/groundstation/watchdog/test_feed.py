@@ -69,7 +69,7 @@ def rig() -> Iterator[Rig]:
         rig.link.close()
 
 
-def test_descriptors_travel_once_and_the_sequence_of_the_newest_demand_each_time(rig: Rig) -> None:
+def test_descriptors_travel_once_and_newest_sequence_each_time(rig: Rig) -> None:
     first, descriptors = rig.report()
     assert not first.keeps_descriptors
     assert rig.reaches_rover(*descriptors)
@@ -106,7 +106,7 @@ def test_a_route_without_a_way_takes_its_descriptor_back(rig: Rig) -> None:
     assert rig.reaches_rover(*descriptors)
 
 
-def test_descriptors_of_a_report_that_was_not_sent_travel_with_the_next_one(rig: Rig) -> None:
+def test_descriptors_of_an_unsent_report_travel_with_the_next(rig: Rig) -> None:
     with contextlib.suppress(BlockingIOError):
         while True:
             rig.ours.send(b"full")

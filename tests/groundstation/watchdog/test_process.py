@@ -59,9 +59,7 @@ def stack() -> Iterator[ExitStack]:
 
 
 @pytest.mark.parametrize("line", LINES)
-def test_a_killed_station_stops_the_rover_at_once_and_the_screen_says_what_is_known(
-    line: str, stack: ExitStack
-) -> None:
+def test_a_killed_station_stops_the_rover_and_the_screen_tells(line: str, stack: ExitStack) -> None:
     drive = Drive(line, stack)
     killed = drive.signal(signal.SIGKILL)
     wait_until(lambda: "neutral is sent to ArduPilot rover 1" in drive.outage())
@@ -77,9 +75,7 @@ def test_a_killed_station_stops_the_rover_at_once_and_the_screen_says_what_is_kn
 
 
 @pytest.mark.parametrize("line", LINES)
-def test_a_stopped_station_stops_the_rover_and_its_held_key_moves_nothing_when_it_goes_on(
-    line: str, stack: ExitStack
-) -> None:
+def test_stopped_stations_held_key_moves_nothing_when_it_goes_on(line: str, stack: ExitStack) -> None:
     drive = Drive(line, stack)
     send = drive.screen.client.send
     stopped = drive.signal(signal.SIGSTOP)
@@ -96,7 +92,7 @@ def test_a_stopped_station_stops_the_rover_and_its_held_key_moves_nothing_when_i
     wait_until(lambda: drive.rover.moves)
 
 
-def test_a_stopped_station_that_is_killed_then_gets_no_second_neutral(stack: ExitStack) -> None:
+def test_stopped_station_that_is_then_killed_gets_no_new_neutral(stack: ExitStack) -> None:
     drive = Drive("udpin", stack)
     drive.stops_within(0.3, drive.signal(signal.SIGSTOP))
     wait_until(lambda: "may still move" in drive.outage())
@@ -124,7 +120,7 @@ def test_a_station_that_drives_nothing_leaves_nothing_behind() -> None:
         assert screen.client.outage.text == "station process ended: nothing is sent"
 
 
-def test_the_report_is_read_behind_intents_that_the_station_has_not_read() -> None:
+def test_the_report_is_read_behind_intents_not_yet_read() -> None:
     with Screen() as screen:
         screen.see(lambda seen: seen.number > 2)
         (watchdog,) = children(screen.client.pid)
@@ -136,7 +132,7 @@ def test_the_report_is_read_behind_intents_that_the_station_has_not_read() -> No
         assert screen.client.outage.text == "station process ended: nothing is sent"
 
 
-def test_a_station_whose_watchdog_is_killed_says_so_and_drives_on(stack: ExitStack) -> None:
+def test_station_whose_watchdog_is_killed_says_so_and_drives_on(stack: ExitStack) -> None:
     drive = Drive("udpin", stack)
     os.kill(drive.watchdog, signal.SIGKILL)
     text = "the watchdog has ended: if this process is killed, nothing sends neutral"
@@ -147,7 +143,7 @@ def test_a_station_whose_watchdog_is_killed_says_so_and_drives_on(stack: ExitSta
     assert sum(line.count for line in drive.screen.snapshot.texts if line.text == text) == 1
 
 
-def test_a_watchdog_that_was_stopped_does_not_take_a_running_station_for_a_stopped_one(stack: ExitStack) -> None:
+def test_stopped_watchdog_does_not_take_the_station_for_stopped(stack: ExitStack) -> None:
     drive = Drive("udpin", stack)
     os.kill(drive.watchdog, signal.SIGSTOP)
     at = time.monotonic()

@@ -121,7 +121,7 @@ def is_neutral(message: m.Message) -> bool:
 
 
 @pytest.mark.parametrize("autopilot", [Autopilot.GENERIC, Autopilot.ARDUPILOT])
-def test_after_a_neutral_of_the_watchdog_nothing_resumes_in_1000_of_1000_tries(autopilot: Autopilot) -> None:
+def test_after_a_neutral_of_the_watchdog_nothing_resumes(autopilot: Autopilot) -> None:
     chance, acted = random.Random(5), 0
     for _ in range(500):  # of two autopilots
         frozen = FrozenStation(chance, autopilot)
@@ -167,7 +167,7 @@ def sent(watchdog: Watchdog, start: float, seconds: float, error: str | None = N
     return frames
 
 
-def test_a_killed_station_means_neutral_at_once_and_a_silent_one_after_the_timeout() -> None:
+def test_a_kill_is_neutral_at_once_and_silence_after_the_timeout() -> None:
     killed, silent = watching(ARDUROVER), watching(ARDUROVER)
     killed.handle_end(100.02)
     assert sent(killed, 100.02, 1.0)[0][0] == 100.02
@@ -216,7 +216,7 @@ def test_it_ends_when_the_vehicle_has_stood_for_a_while() -> None:
     assert watchdog.outage(102.5) == StationOutage("station process ended: ArduPilot rover 2 stands", True)
 
 
-def test_it_ends_when_the_vehicle_is_disarmed_but_not_before_a_second_of_neutral() -> None:
+def test_it_ends_on_disarming_but_not_before_a_second_of_neutral() -> None:
     watchdog = watching(ARDUROVER)
     watchdog.handle_end(100.0)
     sent(watchdog, 100.0, 0.1)
@@ -239,7 +239,7 @@ def test_what_waited_before_the_first_neutral_does_not_end_it() -> None:
     assert watchdog.finished(101.2)
 
 
-def test_a_script_on_board_does_not_say_that_the_vehicle_is_disarmed() -> None:
+def test_a_script_on_board_does_not_report_the_vehicle_disarmed() -> None:
     watchdog = watching(ARDUROVER)
     watchdog.handle_end(100.0)
     sent(watchdog, 100.0, 0.1)
@@ -284,7 +284,7 @@ def test_only_what_is_known_is_said() -> None:
     assert watchdog.outage(107.1) == StationOutage()
 
 
-def test_a_station_that_ends_in_order_or_never_began_needs_nothing() -> None:
+def test_station_that_ends_in_order_or_never_began_needs_nothing() -> None:
     ended = watching(ARDUROVER)
     ended.handle_report(StationReport(ending=True), 100.1)
     starting = Watchdog()
@@ -306,7 +306,7 @@ def test_packet_numbers_follow_those_of_the_station_with_a_gap() -> None:
     assert numbers == [51, 52]
 
 
-def test_a_station_that_rests_may_report_later_until_it_does_not_rest() -> None:
+def test_a_resting_station_may_report_later_until_its_rest_ends() -> None:
     watchdog = Watchdog()
     watchdog.handle_report(StationReport(rests=True), 100.0)
     assert watchdog.timeout(100.0) == pytest.approx(REST_STALL_TIMEOUT, abs=0.01)
@@ -319,7 +319,7 @@ def test_a_station_that_rests_may_report_later_until_it_does_not_rest() -> None:
     assert watchdog.outage(102.31).text
 
 
-def test_a_station_and_its_watchdog_agree_on_how_long_a_rest_may_be() -> None:
+def test_station_and_watchdog_agree_on_the_longest_rest() -> None:
     stall = StallMonitor()
     stall.record_report(100.0, rests=True)
     assert not stall.is_stalled(100.0 + REST_STALL_TIMEOUT - 0.01)

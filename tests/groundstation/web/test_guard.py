@@ -18,7 +18,7 @@ def status(request: WebRequest) -> int | None:
     return None if refusal is None else refusal.status
 
 
-def test_our_own_page_is_admitted_by_its_cookie_and_at_first_by_the_address() -> None:
+def test_our_page_is_admitted_by_its_cookie_and_first_by_address() -> None:
     assert status(PAGE) is None
     assert status(SOCKET) is None
     assert status(replace(PAGE, cookie=None, token="right")) is None
@@ -38,7 +38,7 @@ def test_our_own_page_is_admitted_by_its_cookie_and_at_first_by_the_address() ->
         ("",),
     ],
 )
-def test_a_name_that_was_made_to_point_here_is_refused_also_with_the_token(hosts: tuple[str, ...]) -> None:
+def test_name_made_to_point_here_is_refused_even_with_the_token(hosts: tuple[str, ...]) -> None:
     assert status(replace(PAGE, hosts=hosts, token="right")) == 403
     assert status(replace(SOCKET, hosts=hosts)) == 403
 

@@ -87,7 +87,7 @@ def test_an_unknown_value_is_no_point() -> None:
     assert desk.values(VOLTS) == []
 
 
-def test_nothing_is_recorded_that_nobody_draws_but_what_is_pinned() -> None:
+def test_only_drawn_or_pinned_fields_are_recorded() -> None:
     desk = Desk()
     desk.draw(TYPE)
     desk.cockpit.do(PinSeries((VOLTS,)))

@@ -139,7 +139,7 @@ def test_numbers_of_forgotten_points_make_no_empty_pages() -> None:
     assert read(page, A)[-1] == (59_999.0, 1.0)
 
 
-def test_only_pinned_fields_are_recorded_while_the_screen_is_hidden() -> None:
+def test_a_hidden_screen_records_pinned_fields_only() -> None:
     recorder = SeriesRecorder()
     recorder.pin((B,))
     recorder.build_page(SeriesRequest((A, B)), 0.0, 0.0)
