@@ -6,6 +6,9 @@ of message goes once a second, so that nothing is missing in a table of a hundre
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
+from link.fleet.presence import has_room
 from link.fleet.traffic import TELEMETRY, traffic_class
 from link.protocol.frame import Frame, Header
 
@@ -23,11 +26,15 @@ class BriefTelemetry:
         """Address -> message, system and component -> when it was sent."""
 
     def set(self, address: str, *, is_brief: bool) -> None:
-        """Record what a ground station wants. Without a word it gets everything."""
-        if is_brief:
-            self._sent.setdefault(address, {})
-        else:
+        """Record what a ground station wants. Without a word, or beyond the limits, it gets everything."""
+        if not is_brief:
             self._sent.pop(address, None)
+        elif has_room(address, self._sent):
+            self._sent.setdefault(address, {})
+
+    def keep(self, present: Collection[str]) -> None:
+        """Forget the wishes of all ground stations that are not present: their tokens are not known any more."""
+        self._sent = {address: times for address, times in self._sent.items() if address in present}
 
     def passes(self, frame: Frame | Header, address: str, now: float) -> bool:
         """Return whether to send a frame to an address now."""

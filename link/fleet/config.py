@@ -30,6 +30,9 @@ SEND_BUFFER = 32768
 """Bytes that the kernel buffers, where nothing can overtake."""
 BATCH_SIZE = 8192
 """Bytes of a batch. Zenoh's own 64 KiB are 2 s of telemetry on a slow radio link."""
+MAX_MESSAGE = 65536
+"""Bytes of one message that is put together from its parts; a longer one is dropped as it arrives. A frame has at most
+280, and Zenoh's own limit is 1 GiB: one put of a member would fill the memory of the router and of a vehicle."""
 MAX_WAIT_FOR_ROOM = 200
 """us that a put may hold up the event loop when the queue is full; then the frame is dropped."""
 
@@ -38,6 +41,7 @@ SETTINGS: dict[str, Any] = {
     "transport/link/tx/lease": LEASE,
     "transport/unicast/open_timeout": OPEN_TIMEOUT,
     "transport/link/tx/batch_size": BATCH_SIZE,
+    "transport/link/rx/max_message_size": MAX_MESSAGE,
     "transport/link/tx/queue/congestion_control/drop/wait_before_drop": MAX_WAIT_FOR_ROOM,
     "transport/link/tx/queue/size/real_time": 16,  # batches, of one frame each where frames are express
     "transport/link/tx/queue/size/interactive_high": 16,

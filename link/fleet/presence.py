@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import msgspec
 
 MAX_PRESENT = 256
 """Programs at once; further ones are not told, and are heard all the same."""
+MAX_RUNS = 32
+"""Of them, ground stations of one operator: the tokens of one must not keep the others out."""
 GRACE = 3.0
 """s without its token after which a program has gone. A router that restarts has all tokens back within 1 s, and the
 conversations go on."""
+
+
+def has_room(address: str, others: Collection[str]) -> bool:
+    """Return whether one more program may be remembered beside `others`: MAX_PRESENT, and MAX_RUNS of one operator.
+
+    The address of a ground station is "alice/3f2a", that of a vehicle its name.
+    """
+    owner = address.partition("/")[0]
+    return len(others) < MAX_PRESENT and sum(each.partition("/")[0] == owner for each in others) < MAX_RUNS
 
 
 class Presence(msgspec.Struct):
@@ -25,7 +36,7 @@ class Presence(msgspec.Struct):
     def add(self, address: str) -> bool:
         """Record a token; return whether the program is new."""
         self._missing.pop(address, None)
-        is_new = address not in self.present and len(self.present) < MAX_PRESENT
+        is_new = address not in self.present and has_room(address, self.present)
         if is_new:
             self.present.add(address)
         return is_new

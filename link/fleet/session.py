@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 
 CLOSE_WITHIN = 3.0
 """s for the last frames and the farewell, which take 20 ms on an idle machine, also if the router stands still."""
+MAX_FRAME = 280
+"""Bytes of the longest MAVLink frame: 255 of payload, 12 of MAVLink 2 and a signature of 13."""
+MAX_KEY = 256
+"""Characters of a key that is looked at; ours have up to 160."""
 MAX_KEYS = 4096
 """Keys that are kept parsed: those of 24 programs and all messages that each gets."""
 
@@ -25,6 +29,9 @@ class SessionEvents(Protocol):
 
     def handle_frame(self, key: str, data: bytes) -> None:
         """Take what arrived under a key."""
+
+    def handle_oversized(self) -> None:
+        """Take that something arrived that is no frame, because of its length or that of its key. It was not copied."""
 
     def handle_token(self, key: str, is_there: bool) -> None:
         """Take that a token is there, or has gone."""
@@ -103,11 +110,16 @@ class FleetSession:
         put = self._zenoh.SampleKind.PUT
 
         def take(sample: zenoh.Sample) -> None:
-            events.handle_frame(str(sample.key_expr), bytes(sample.payload))
+            key, payload = str(sample.key_expr), sample.payload
+            if len(payload) > MAX_FRAME or len(key) > MAX_KEY:
+                events.handle_oversized()
+            else:
+                events.handle_frame(key, bytes(payload))
 
         def note(sample: zenoh.Sample) -> None:
-            if self._router.session is session:  # one that is lost says late who has gone
-                events.handle_token(str(sample.key_expr), sample.kind == put)
+            key = str(sample.key_expr)
+            if len(key) <= MAX_KEY and self._router.session is session:  # one that is lost says late who has gone
+                events.handle_token(key, sample.kind == put)
 
         events.handle_connected()
         self._declared = [

@@ -51,6 +51,9 @@ class FleetTransport:
         self.capacity: float | None = None
         self.refused = 0
         """Frames dropped because their key names another message, role or sender."""
+        self._oversized = 0
+        """What was too long for a frame, or had too long a key."""
+        self._oversized_said = 0
         self._refused_key = ""
         """The newest key of such a frame that was not reported yet."""
         self._role, self._name = config.operator_role, config.name
@@ -82,7 +85,7 @@ class FleetTransport:
     @property
     def dropped(self) -> int:
         """Frames that were not sent or not handed over: no room, too old, overtaken, not allowed, under a wrong key."""
-        return self._unsent + self.refused + self._arrivals.dropped + self._inbox.dropped
+        return self._unsent + self.refused + self._oversized + self._arrivals.dropped + self._inbox.dropped
 
     def start(
         self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
@@ -176,6 +179,10 @@ class FleetTransport:
         return Role.WATCH
 
     # ---- from threads of Zenoh ----
+
+    def handle_oversized(self) -> None:
+        """Count what is too long for a frame."""
+        self._oversized += 1
 
     def handle_frame(self, key: str, data: bytes) -> None:
         """Keep a frame for the loop, and wake it if need be."""
@@ -308,6 +315,7 @@ class FleetTransport:
     def _note_problem(self, problem: str | None) -> None:
         self.problem = None if problem is None else f"{self.endpoint.text}: {problem}"
         if problem is not None and self._loop is not None:  # without a session nobody is seen
+            self._brief.keep(self._presence.present)
             for address in self._presence.present:
                 self._presence.remove(address, self._loop.time())
 
@@ -322,6 +330,9 @@ class FleetTransport:
         if self._refused_key:
             self._say("frames were dropped: they are not what their key names", self._refused_key)
             self._refused_key = ""
+        if self._oversized != self._oversized_said:
+            self._say("a member sends what is too long for a frame; dropped", f"{self._oversized} in all")
+            self._oversized_said = self._oversized
         self._timer = loop.call_later(TICK, self._tick, loop)
 
     def _say(self, what: str, about: str) -> None:

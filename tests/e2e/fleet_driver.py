@@ -149,11 +149,14 @@ class Fleet:
         logs = {each: each.log.read_text() for each in self.routers}
         return next(each for each, text in logs.items() if text.count(arrived) > text.count(gone))
 
-    def session(self, name: str) -> zenoh.Session:
-        """Return a session with the certificate of a member, and no manners."""
+    def session(self, name: str, *, waits: bool = False) -> zenoh.Session:
+        """Return a session with the certificate of a member, and no manners. `waits`: its puts wait for room."""
         is_vehicle = "rover" in name
         endpoint = parse_endpoint(f"zenoh:{self.folder}/{name}.json5/farm{f'/{name}' if is_vehicle else ''}")
-        return zenoh.open(load_config(endpoint).zenoh)
+        config = load_config(endpoint).zenoh
+        if waits:
+            config.insert_json5("qos/publication", "[]")
+        return zenoh.open(config)
 
 
 def _accepts(message: m.Message) -> bool:

@@ -5,10 +5,13 @@ Each test first sees the wheels turn.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
+import zenoh
 
 from dialects import messages as m
 from dialects.axes import build_manual_control
@@ -146,6 +149,28 @@ def test_a_watcher_stops_by_hold_and_downloads_a_log_to_its_end(fleet: Fleet) ->
         assert refusal(frame(refused)) == "the certificate of bob may watch only; ask for the role drive"
     wires.transport("bob").send(frame(m.SetMode(1, 1, 4)), "rover1")
     wires.until(vehicle.stands, lambda now: fleet.driver.step(AHEAD))
+
+
+def test_a_put_of_60_mb_by_a_watcher_fills_no_memory(fleet: Fleet) -> None:
+    """It may publish under this key; a MAVLink frame has at most 280 bytes."""
+    wires, vehicle = fleet.wires, fleet.wires.vehicle
+    processes = (fleet.router.process.pid, vehicle.process.pid)
+    before = [peak_memory(pid) for pid in processes]
+    key = "fleet/farm/rover1/down/bob/1/watch/rel/PARAM_REQUEST_LIST"
+    with fleet.session("bob", waits=True) as bob:
+        for size in (1 << 10, 60_000, 60 << 20):
+            bob.put(key, bytes(size), congestion_control=zenoh.CongestionControl.BLOCK)
+            wires.wait(1.0, lambda now: fleet.driver.step(AHEAD))
+    fleet.rest()  # this process drives, too, and was held up by so long a put
+    wires.until(vehicle.at_full, lambda now: fleet.driver.step(AHEAD))
+    for pid, peak in zip(processes, before, strict=True):
+        assert peak_memory(pid) < peak + (20 << 20)
+    assert "too long for a frame" in vehicle.errors.read_text()
+
+
+def peak_memory(pid: int) -> int:
+    """Return the most bytes that a process has had in memory."""
+    return int(re.findall(r"VmHWM:\s+(\d+) kB", Path(f"/proc/{pid}/status").read_text())[0]) << 10
 
 
 def test_many_tokens_at_once_do_not_hold_up_the_router(fleet: Fleet) -> None:

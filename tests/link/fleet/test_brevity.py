@@ -52,3 +52,20 @@ def test_invented_kinds_fill_no_memory() -> None:
     for number in range(2 * MAX_KINDS + 3):
         brief.passes((60000 + number, 1, 1, 0, b""), "alice/1", 0.0)
     assert len(brief._sent["alice/1"]) <= MAX_KINDS
+
+
+def test_the_wishes_of_one_operator_fill_no_memory() -> None:
+    brief = BriefTelemetry()
+    for number in range(6000):
+        brief.set(f"bob/{number}", is_brief=True)
+    assert len(brief._sent) == 32
+    brief.set("alice/1", is_brief=True)
+    assert not all(brief.passes(ATTITUDE, "alice/1", 0.0) for _ in range(3)), "others are still served"
+
+
+def test_without_a_session_only_the_wishes_of_who_is_present_stay() -> None:
+    brief = BriefTelemetry()
+    for address in ("bob/1", "bob/2", "alice/1"):
+        brief.set(address, is_brief=True)
+    brief.keep({"alice/1"})
+    assert list(brief._sent) == ["alice/1"]

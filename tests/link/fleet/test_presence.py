@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from link.fleet.presence import GRACE, MAX_PRESENT, Presence
+from link.fleet.presence import GRACE, Presence
 
 
 def test_a_restart_of_the_router_ends_no_conversation() -> None:
@@ -26,8 +26,11 @@ def test_who_is_away_for_longer_has_gone() -> None:
 
 def test_nobody_fills_the_memory_with_tokens() -> None:
     presence = Presence()
-    assert [presence.add(f"alice/{number}") for number in range(MAX_PRESENT + 9)].count(True) == MAX_PRESENT
-    assert len(presence.present) == MAX_PRESENT
+    assert [presence.add(f"alice/{number}") for number in range(6000)].count(True) == 32
+    assert presence.add("bob/1"), "the tokens of one operator keep no other out"
+    for number in range(6000):
+        presence.add(f"o{number // 30}/{number}")
+    assert len(presence.present) == 256
     assert not presence.add("alice/0")
 
 
