@@ -1,9 +1,11 @@
-"""The short suite: its tables name what exists, and it and the rest are all tests, each once."""
+"""The short suite: its tables name what exists, and it and the rest are all tests, each once. Test names are short."""
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -39,6 +41,36 @@ def test_short_and_rest_are_all_tests_each_once(request: pytest.FixtureRequest) 
 )  # fmt: skip
 def test_files_without_a_short_test_are_not_imported(path: str, is_long: bool) -> None:
     assert suite.is_long_file(suite.TESTS / path) == is_long
+
+
+MAX_NAME = 60
+"""Characters in the name of a test: one line of pytest's report, one short sentence."""
+
+
+def defined_tests(path: Path) -> list[str]:
+    """Return the names of the tests that a file defines, with their class: `Class.test_name`."""
+    bodies: list[tuple[str, ast.AST]] = [("", ast.parse(path.read_text()))]
+    names = []
+    for prefix, body in bodies:
+        for node in ast.iter_child_nodes(body):
+            if isinstance(node, ast.ClassDef):
+                bodies.append((f"{prefix}{node.name}.", node))
+            elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.name.startswith("test_"):
+                names.append(prefix + node.name)
+    return names
+
+
+def test_no_name_of_a_test_is_long_or_given_twice_in_a_module() -> None:
+    files = [path for path in suite.TESTS.rglob("*.py") if "def test_" in path.read_text()]
+    assert len(files) > 500
+    wrong = []
+    for path in files:
+        for name, count in Counter(defined_tests(path)).items():
+            if count > 1:
+                wrong.append(f"{path}: {name} is defined {count} times, and only the last one runs")
+            if len(name.rpartition(".")[2]) > MAX_NAME:
+                wrong.append(f"{path}: {name} is longer than {MAX_NAME} characters")
+    assert not wrong, "\n".join(wrong)
 
 
 CONFTEST = """

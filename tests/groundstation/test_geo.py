@@ -50,7 +50,7 @@ def test_the_date_line() -> None:
     assert frame.to_place((0.0, 50.0)).longitude < 0
 
 
-def test_the_pole_has_finite_places_and_nothing_beyond_it_is_on_earth() -> None:
+def test_the_pole_has_finite_places_and_nothing_is_beyond_it() -> None:
     beyond = LocalFrame(Place(90.0, 0.0)).to_place((100.0, 100.0))
     assert all(map(math.isfinite, beyond))
     assert not is_on_earth(*beyond)

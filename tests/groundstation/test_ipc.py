@@ -24,5 +24,5 @@ def version_after(code: str) -> str:
 @pytest.mark.parametrize("first", [*(EVERY_MODULE.format(package=each) for each in ("intents", "views")),
                                    "import groundstation.ui.app.app", "import groundstation.verbs.table"],
                          ids=["intents", "views", "screen", "verbs"])  # fmt: skip
-def test_the_version_does_not_depend_on_what_else_a_program_has_loaded(first: str) -> None:
+def test_the_version_does_not_depend_on_other_loaded_modules(first: str) -> None:
     assert version_after(first) == version_after("")

@@ -52,7 +52,7 @@ def run_tool(name: str, log: Path) -> str:
     return ended.stdout
 
 
-def test_a_kill_loses_less_than_a_fifth_of_a_second_and_pymavlinks_tools_read_the_log(tmp_path: Path) -> None:
+def test_kill_loses_less_than_0_2_s_and_pymavlink_reads_the_log(tmp_path: Path) -> None:
     options = RecordOptions(tmp_path, 100, 2000)
     with Screen(sitl=True, record=options) as screen:
         screen.hold_forward()
@@ -96,7 +96,7 @@ def file_size_limit(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_a_disk_that_takes_no_more_is_said_once_and_driving_goes_on(tmp_path: Path) -> None:
+def test_a_failing_disk_is_told_once_and_driving_goes_on(tmp_path: Path) -> None:
     log_file = tmp_path / "station.log"
     options = RecordOptions(tmp_path / "logs", 100, 2000)
     with file_size_limit(6000):
@@ -130,7 +130,7 @@ def small_disk(folder: Path) -> Iterator[Path]:
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts disks")
-def test_a_full_disk_is_said_once_and_recording_goes_on_when_there_is_room(tmp_path: Path) -> None:
+def test_full_disk_is_told_once_and_recording_resumes_with_room(tmp_path: Path) -> None:
     log_file = tmp_path / "station.log"
     with small_disk(tmp_path / "disk") as disk:
         old = [disk / f"2020-01-0{day}_00-00-00.tlog" for day in (1, 2, 3)]

@@ -45,7 +45,7 @@ NOBODY = 65534
 """User id of `nobody`."""
 
 
-def test_the_socket_is_for_this_user_only_and_goes_with_its_station() -> None:
+def test_the_socket_is_for_this_user_and_goes_with_its_station() -> None:
     with Screen() as screen:
         path = socket_path(folder_path(), screen.client.pid)
         wait_until(path.exists)
@@ -61,7 +61,7 @@ def test_the_socket_is_for_this_user_only_and_goes_with_its_station() -> None:
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
-def test_another_user_is_refused_even_where_the_folder_lets_him_in() -> None:
+def test_another_user_is_refused_even_where_the_folder_allows_it() -> None:
     with Screen() as screen:
         path = socket_path(folder_path(), screen.client.pid)
         wait_until(path.exists)
@@ -87,7 +87,7 @@ print(sock.recv(4096))
 """
 
 
-def test_the_second_screen_watches_stops_and_drives_once_the_first_gives_the_keys() -> None:
+def test_second_screen_watches_stops_and_drives_when_given_keys() -> None:
     with Screen() as first, on_line(FakeVehicle(), endpoint=first.endpoint) as vehicle:
         first.drive(vehicle)
         wait_until(lambda: first.client.pid in running_stations())
@@ -116,7 +116,7 @@ def test_the_second_screen_watches_stops_and_drives_once_the_first_gives_the_key
         first.see(lambda seen: seen.lease.driver == "no screen")
 
 
-def test_a_kept_station_goes_neutral_when_its_screen_is_killed_and_takes_the_next_one() -> None:
+def test_kept_station_is_neutral_after_a_kill_and_takes_the_next() -> None:
     with killed_screen(0.3, "--keep") as (vehicle, station, killed):
         assert_said_neutral(vehicle, killed)
         assert running(station)
@@ -128,7 +128,7 @@ def test_a_kept_station_goes_neutral_when_its_screen_is_killed_and_takes_the_nex
             assert not vehicle.armed
 
 
-def test_a_station_without_a_screen_is_silent_and_outlives_its_screens() -> None:
+def test_a_station_without_screens_is_silent_and_outlives_them() -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "groundstation", "serve", "--headless", endpoint]
     station = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=ROOT)
@@ -157,7 +157,7 @@ def test_a_station_without_a_screen_is_silent_and_outlives_its_screens() -> None
         station.stderr.close()
 
 
-def test_the_version_is_that_of_the_packets_and_not_of_what_else_is_loaded() -> None:
+def test_version_is_of_the_packets_not_of_other_loaded_modules() -> None:
     code = "import groundstation.ipc; print(groundstation.ipc.protocol_version())"
     alone = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
     assert msgspec.inspect.type_info(int)  # loads structs of msgspec

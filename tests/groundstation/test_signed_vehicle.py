@@ -19,7 +19,7 @@ def warned(snapshot: Snapshot) -> bool:
     return snapshot.vehicle is not None and SIGNING in snapshot.vehicle.warnings
 
 
-def test_signed_frames_are_named_first_and_only_while_they_are_signed() -> None:
+def test_signed_frames_are_named_first_and_only_while_signed() -> None:
     vehicle, wire = FakeVehicle(autopilot=Autopilot.ARDUPILOT), PymavlinkWire(key=bytes(range(32)), timestamp=10**12)
     vehicle.deaf, vehicle.beat_period = True, 0.1  # it answers nothing, as if we had the wrong key
     with Screen() as screen, on_line(vehicle, endpoint=screen.endpoint, wire=wire):

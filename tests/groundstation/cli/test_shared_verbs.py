@@ -73,7 +73,7 @@ def test_serve_says_what_it_cannot_open() -> None:
     assert done.stderr.count("\n") == 1
 
 
-def test_serve_in_a_browser_names_a_port_in_use_and_a_missing_package(
+def test_serve_in_browser_names_port_in_use_or_a_missing_package(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:

@@ -70,7 +70,7 @@ def test_empty_variables_say_nothing(file: ConfigFile) -> None:
     assert merge(file, {"MAVHELM_ENDPOINT": " ", "NO_COLOR": ""}, {}) == merge(file, {}, {})
 
 
-def test_a_key_map_of_the_command_line_is_not_changed_by_the_file(file: ConfigFile) -> None:
+def test_a_key_map_of_the_command_line_wins_over_the_file(file: ConfigFile) -> None:
     assert build_keymap(merge(file, {}, {}).settings).get_keys("app.log") == ("f2",)
     assert build_keymap(merge(file, {}, {"keymap": "teleop"}).settings).bindings == KEYMAPS["teleop"]
 

@@ -18,7 +18,7 @@ def test_unchanged_it_sets_nothing(tmp_path: Path) -> None:
     assert merge(read_config(tmp_path / "my.toml"), {}, {}).settings == Settings()
 
 
-def test_with_every_line_set_it_has_all_settings_and_their_defaults(tmp_path: Path) -> None:
+def test_with_every_line_set_it_has_all_settings_and_defaults(tmp_path: Path) -> None:
     text = re.sub(r"^#(\S)", r"\1", build_template(), flags=re.MULTILINE)
     (tmp_path / "my.toml").write_text(text)
     values = read_config(tmp_path / "my.toml").values

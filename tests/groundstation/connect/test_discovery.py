@@ -36,7 +36,7 @@ def find(screen: Screen, wanted: Callable[[list[HeardRow]], object]) -> list[Hea
     raise AssertionError("it was not found")
 
 
-def test_a_vehicle_that_announces_itself_is_found_and_connected_to() -> None:
+def test_an_announced_vehicle_is_found_and_connected_to() -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     vehicle = subprocess.Popen(
         [sys.executable, "-m", "vehicle", "--sim", "--announce", "--system", str(SYSTEM), endpoint]

@@ -66,7 +66,7 @@ def index_of(screen: Screen, name: str) -> int:
     raise AssertionError(f"no link {name}")
 
 
-def test_a_driver_notices_nothing_of_a_link_that_is_added_and_closed() -> None:
+def test_a_driver_notices_nothing_of_a_link_added_and_closed() -> None:
     with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         waits, begun = Waits(screen.client.pid), time.monotonic()
@@ -129,7 +129,7 @@ def test_a_link_that_only_watches_never_sends_a_byte() -> None:
             assert [link.watch_only for link in screen.snapshot.links] == [False, True]
 
 
-def test_a_port_of_another_program_is_tried_again_until_it_is_free() -> None:
+def test_a_port_of_another_program_is_retried_until_it_is_free() -> None:
     with Screen() as screen, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         port = free_port()
         other.bind(("127.0.0.1", port))
@@ -154,7 +154,7 @@ def test_what_cannot_be_opened_is_refused_with_the_reason() -> None:
         assert screen.snapshot.endpoints[0] == first
 
 
-def test_a_station_without_any_link_starts_a_simulator_on_one_of_its_own() -> None:
+def test_a_station_without_a_link_starts_a_simulator_on_its_own() -> None:
     with Screen(none=True) as screen:
         screen.see(lambda seen: seen.endpoints == () and seen.waiting is not None)
         screen.client.send(StartSimulator(kind="three"))

@@ -32,7 +32,7 @@ def test_without_keys_nothing_is_signed(keys: Path) -> None:
     assert open_signing(0.0) is None
 
 
-def test_the_named_key_signs_and_a_name_that_is_not_there_is_told(keys: Path) -> None:
+def test_the_named_key_signs_and_a_missing_name_is_told(keys: Path) -> None:
     for name in ("first", "second"):
         make_key(keys, name, Role.SET_UP)
     for asked, signs in ((None, "first"), ("second", "second")):
@@ -67,7 +67,7 @@ def taken(station: StationSigning, now: float) -> str:
     return text
 
 
-def test_a_station_that_runs_takes_over_keys_that_are_made_chosen_and_forgotten(keys: Path) -> None:
+def test_a_running_station_adopts_keys_made_chosen_and_forgotten(keys: Path) -> None:
     station = StationSigning(0.0)
     assert station.keeper.guard(0) is None, "without keys nothing is computed"
     first = make_key(keys, "first", Role.SET_UP)
@@ -94,7 +94,7 @@ def break_file(keys: Path) -> None:
     broken.replace(keys)
 
 
-def test_a_chosen_key_that_is_gone_and_a_file_that_is_broken_are_told(keys: Path) -> None:
+def test_a_chosen_key_that_is_gone_and_a_broken_file_are_told(keys: Path) -> None:
     for name in ("first", "second"):
         make_key(keys, name, Role.SET_UP)
     station = StationSigning(0.0, key="second", required=True)
@@ -121,7 +121,7 @@ def test_another_process_reads_changed_keys_at_once(keys: Path) -> None:
 
 
 @pytest.mark.parametrize("required", [False, True])
-def test_a_vehicle_that_has_signed_is_believed_only_while_it_signs(keys: Path, required: bool) -> None:
+def test_vehicle_that_has_signed_is_trusted_only_while_it_signs(keys: Path, required: bool) -> None:
     key = make_key(keys, "laptop", Role.SET_UP)
     opened = open_signing(0.0, required=required)
     assert opened is not None

@@ -22,7 +22,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return made
 
 
-def test_files_of_the_configuration_folder_are_for_their_autopilot(folder: Path) -> None:
+def test_files_of_the_configuration_folder_fit_their_autopilot(folder: Path) -> None:
     assert load_texts().files == ()
     (folder / "parameters.json").write_bytes(PX4)
     (folder / "apm.pdef.json").write_bytes(APM)

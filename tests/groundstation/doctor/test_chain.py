@@ -205,7 +205,7 @@ def test_a_row_judges(name: str, known: DoctorFacts, health: Health, words: str)
     assert found.advice or health not in (WARNING, FAULT) or name == "link", "a fault says what to do"
 
 
-def test_every_row_has_cases_and_all_that_needs_a_vehicle_waits_for_it() -> None:
+def test_every_row_has_cases_and_waits_if_it_needs_a_vehicle() -> None:
     assert {each.id for each in CHAIN} == {case[0] for case in CASES}
     waiting = {each.id: each.health for each in examine(NOBODY)}
     assert [name for name, health in waiting.items() if health is FAULT] == ["link"]

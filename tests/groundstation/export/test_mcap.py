@@ -126,7 +126,7 @@ def test_a_fix_that_is_none_has_no_numbers(tmp_path: Path) -> None:
     assert all(math.isnan(each.latitude) and math.isnan(each.altitude) for each in fixes)
 
 
-def test_a_height_above_the_sea_is_not_taken_for_one_above_the_ellipsoid(tmp_path: Path) -> None:
+def test_a_height_above_the_sea_is_not_one_above_the_ellipsoid(tmp_path: Path) -> None:
     path = exported(tmp_path, BEAT + sent(1, gps(-353_629_380, 1_491_650_850, ellipsoid=0)))
     assert math.isnan(of(path, "/fix")[0].altitude)
 
@@ -232,7 +232,7 @@ def test_a_second_vehicle_has_topics_of_its_own(tmp_path: Path) -> None:
     assert {"/battery_state", "/sys2/battery_state"} <= topics
 
 
-def test_every_message_of_the_dialect_has_a_definition_that_rosbags_parses() -> None:
+def test_every_message_has_a_definition_that_rosbags_parses() -> None:
     from rosbags.typesys import get_types_from_msg
 
     names = set()

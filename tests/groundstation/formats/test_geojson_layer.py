@@ -101,7 +101,7 @@ def test_collections_do_not_nest_without_end() -> None:
         parse_layer(json.dumps(inner), "a")
 
 
-def test_ten_thousand_positions_are_thinned_and_keep_their_outline() -> None:
+def test_10000_positions_are_thinned_and_keep_their_outline() -> None:
     circle = tuple(
         Place(47 + 0.01 * math.cos(step / 5000 * math.pi), 8 + 0.01 * math.sin(step / 5000 * math.pi))
         for step in range(10_000)

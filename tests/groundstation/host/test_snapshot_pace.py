@@ -39,7 +39,7 @@ def test_every_fifth_call_is_due_at_rest() -> None:
     assert max(later - earlier for earlier, later in pairwise(sent)) < REST_PERIOD + SLOT
 
 
-def test_calls_are_few_at_rest_once_nothing_has_happened_for_a_while() -> None:
+def test_calls_are_few_at_rest_once_nothing_happened_for_a_while() -> None:
     clock = Clock()
     clock.run(0.5, rests=True)
     assert clock.pace.call_period(clock.now, rests=True) == SLOT
@@ -69,7 +69,7 @@ def test_what_a_screen_has_done_ends_the_rest_for_a_while() -> None:
     assert len(clock.run(3.0, rests=True)) <= 6
 
 
-def test_a_new_line_of_the_log_shows_in_the_next_call_and_ends_the_rest() -> None:
+def test_a_new_log_line_is_in_the_next_call_and_ends_the_rest() -> None:
     clock = Clock()
     clock.run(2.5, rests=True, decisive=4)
     (first, *_) = clock.run(0.3, rests=True, decisive=5)

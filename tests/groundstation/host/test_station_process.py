@@ -38,7 +38,7 @@ def test_a_held_key_drives_and_its_release_is_neutral_at_once() -> None:
         assert not moving(vehicle, neutral(vehicle, released)[0])
 
 
-def test_the_log_is_sent_while_it_is_watched_and_lasting_alerts_are_in_the_log_file_once(tmp_path: Path) -> None:
+def test_log_is_sent_while_watched_and_lasting_alerts_filed_once(tmp_path: Path) -> None:
     file = tmp_path / "station.log"
     with Screen(log_file=file) as screen, on_line(FakeArduPilot(), endpoint=screen.endpoint):
         warned = screen.see(lambda seen: seen.vehicle is not None and len(seen.vehicle.warnings) > 0)
@@ -113,7 +113,7 @@ def test_killed_screen_is_neutral_and_the_station_ends() -> None:
         assert_said_neutral(vehicle, killed)
 
 
-def test_frozen_screen_is_neutral_within_half_a_second_and_control_is_given_up() -> None:
+def test_a_frozen_screen_is_neutral_and_control_is_given_up() -> None:
     with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.drive(vehicle)
         waits = Waits(screen.client.pid)
@@ -154,7 +154,7 @@ def late(snapshot: Snapshot) -> int:
     return sum(line.count for line in snapshot.texts if "DriveKeyDown arrived" in line.text)
 
 
-def test_intents_that_waited_in_the_pipe_of_a_frozen_station_are_dropped() -> None:
+def test_intents_in_the_pipe_of_a_frozen_station_are_dropped() -> None:
     with Screen() as screen, on_line(FakeVehicle(), endpoint=screen.endpoint) as vehicle:
         screen.see(lambda snapshot: snapshot.vehicle is not None)
         old = IntentBatch(

@@ -71,7 +71,7 @@ def test_every_keyboard_confirms_soon_and_then_does_nothing_more(delay: float, g
 
 
 @given(delays, gaps)
-def test_a_held_key_does_not_disarm_when_the_heartbeat_reports_armed_later(delay: float, gap: float) -> None:
+def test_a_held_key_does_not_disarm_when_armed_is_reported_later(delay: float, gap: float) -> None:
     keyboard = Keyboard(arms=False)
     for at in event_times(6.0, delay, gap):
         keyboard.armed = at > 2.5

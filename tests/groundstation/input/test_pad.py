@@ -68,7 +68,7 @@ def test_without_the_dead_man_button_it_is_neutral() -> None:
     assert pad.read(STEP, lefty=1.0, rightx=-1.0).throttle == 0.0, "at once"
 
 
-def test_sticks_that_are_held_when_the_button_goes_down_must_be_centred_first() -> None:
+def test_sticks_held_when_the_button_goes_down_must_be_centred() -> None:
     pad = Reader()
     frame = pad.read(0.2, RB, lefty=1.0)
     assert frame.held
@@ -78,7 +78,7 @@ def test_sticks_that_are_held_when_the_button_goes_down_must_be_centred_first() 
     assert pad.read(STEP, RB, lefty=1.0).throttle == 1.0
 
 
-def test_a_button_that_is_down_when_its_gamepad_is_chosen_must_be_released_first() -> None:
+def test_button_down_when_its_gamepad_is_chosen_must_be_released() -> None:
     pad = Reader()
     pad.read(0.1, RB)
     assert pad.read(0.1, RB, lefty=1.0).throttle == 1.0
@@ -88,7 +88,7 @@ def test_a_button_that_is_down_when_its_gamepad_is_chosen_must_be_released_first
     assert pad.read(STEP, RB).held
 
 
-def test_frames_come_at_once_after_a_change_and_else_at_their_rate() -> None:
+def test_frames_come_at_once_after_change_and_else_at_their_rate() -> None:
     pad = Reader()
     pad.frames.clear()
     pad.read(2.0)

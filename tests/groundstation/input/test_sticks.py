@@ -46,7 +46,7 @@ def exact(style: Style = Style.HOLD, limit: float = 1.0) -> Sticks:
 # ---- after the key gate was closed ----
 
 
-def test_any_drive_key_delays_the_others_until_none_was_seen_for_the_longest_repeat_delay() -> None:
+def test_a_drive_key_delays_others_for_the_longest_repeat_delay() -> None:
     sticks = Sticks(limit=1.0)
     sticks.reject(I, 1.0)
     sticks.require_quiet()
@@ -71,7 +71,7 @@ def test_a_key_long_after_the_last_one_drives_at_once() -> None:
     assert sticks.axes(1.77) == Axes(1.0, 0.0)
 
 
-def test_with_reported_releases_a_new_press_drives_at_once_and_a_repeat_does_not() -> None:
+def test_with_releases_new_press_drives_at_once_and_a_repeat_not() -> None:
     sticks = exact()
     sticks.press(I, 1.0)
     sticks.block(1.1)
@@ -137,7 +137,7 @@ def false_stops(sticks: Sticks, start: float, delay: float, gap: float) -> int:
     return stops
 
 
-def test_the_longest_repeat_delay_stops_the_first_hold_once_and_no_later_one() -> None:
+def test_the_longest_repeat_delay_stops_the_first_hold_only() -> None:
     sticks = Sticks(limit=1.0)
     assert [false_stops(sticks, 5.0 * number, 1.0, 0.033) for number in range(4)] == [1, 0, 0, 0]
     assert sticks.stop_bound == pytest.approx(1.1)
@@ -191,7 +191,7 @@ def test_a_blocked_key_that_goes_on_repeating_does_not_drive() -> None:
     assert sticks.axes(last + 2.51) == Axes(1.0, 0.0)
 
 
-def test_a_key_pressed_while_driving_was_not_allowed_must_be_let_go_first() -> None:
+def test_a_key_pressed_while_driving_was_barred_must_be_let_go() -> None:
     sticks = Sticks(limit=1.0)
     sticks.reject(I, 0.0)
     sticks.press(I, 0.66)
@@ -236,7 +236,7 @@ def test_a_release_proves_exactness_and_so_does_a_repeat() -> None:
     assert repeated.reports_releases
 
 
-def test_a_key_pressed_before_exactness_was_proved_still_ends_by_its_timer() -> None:
+def test_a_key_pressed_before_exactness_was_proved_ends_by_timer() -> None:
     sticks = Sticks(limit=1.0)
     sticks.press(I, 0.0)
     sticks.set_reports_releases()
@@ -277,7 +277,7 @@ def test_latch_drives_until_the_next_key() -> None:
     assert sticks.axes(200.0) == NEUTRAL
 
 
-def test_step_adds_ten_percent_a_press_and_a_held_key_is_one_press() -> None:
+def test_step_adds_10_percent_press_and_a_held_key_is_one_press() -> None:
     sticks = Sticks(Style.STEP, 1.0)
     hold(sticks, I, 0.0, 2.0, delay=0.1, gap=0.04)
     assert sticks.axes(3.0) == Axes(0.1, 0.0)
@@ -351,7 +351,7 @@ _EVENTS = st.lists(st.tuples(_KEYS, st.floats(0.0, 1.5)), max_size=60)
     [(I, 0.0), (I, 0.5), (J, 0.0), (I, 0.0)]
 )  # the last one teaches a shorter window while `j` is held by the longer
 @settings(max_examples=300)
-def test_timer_drive_never_outlives_its_last_event_by_more_than_the_bound(
+def test_timer_drive_ends_within_the_bound_of_its_last_event(
     events: list[tuple[DriveKeyDown, float]],
 ) -> None:
     sticks, now = Sticks(limit=1.0), 0.0

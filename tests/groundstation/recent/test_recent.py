@@ -42,13 +42,13 @@ def test_a_name_stays_until_another_one_is_heard() -> None:
     assert recent.add(ENDPOINTS[0], 3.0, "Rover 2").entries[0].vehicle == "Rover 2"
 
 
-def test_a_name_from_the_wire_is_cut_and_has_no_control_characters() -> None:
+def test_name_from_wire_is_cut_and_without_control_characters() -> None:
     name = RecentEndpoints().add(ENDPOINTS[0], 1.0, "\x1b[31mRover\n" + "x" * 999).entries[0].vehicle
     assert name.startswith("[31mRoverx")
     assert len(name) == MAX_TEXT
 
 
-def test_beyond_the_limit_the_oldest_is_forgotten_but_no_pinned_one() -> None:
+def test_beyond_the_limit_the_oldest_not_pinned_is_forgotten() -> None:
     recent = used(*ENDPOINTS[:LIMIT]).pin(ENDPOINTS[0])
     recent = recent.add(ENDPOINTS[LIMIT], 5000.0)
     assert len(recent.entries) == LIMIT
@@ -65,7 +65,7 @@ def test_if_all_are_pinned_a_new_one_pushes_the_oldest_out() -> None:
     assert names(recent) == [ENDPOINTS[LIMIT], *reversed(ENDPOINTS[1:LIMIT])]
 
 
-def test_pinned_ones_are_listed_first_and_can_be_unpinned_and_forgotten() -> None:
+def test_pinned_ones_come_first_and_can_be_unpinned() -> None:
     a, b, c = ENDPOINTS[:3]
     recent = used(a, b, c).pin(a)
     assert [each.endpoint for each in recent.listed] == [a, c, b]

@@ -31,7 +31,7 @@ def test_no_file_is_an_empty_list_without_a_warning(file: RecentFile) -> None:
     assert file.warning is None
 
 
-def test_a_change_is_there_for_the_next_program_and_for_nobody_else(file: RecentFile) -> None:
+def test_a_change_is_there_for_the_next_program_and_nobody_else(file: RecentFile) -> None:
     file.update(lambda recent: recent.add(A, 1.0, "Rover 1"))
     file.update(lambda recent: recent.add(B, 2.0))
     assert [each.endpoint for each in RecentFile(file.path).load().entries] == [B, A]

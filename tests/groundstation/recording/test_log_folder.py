@@ -44,7 +44,7 @@ def sizes(path: Path) -> list[int]:
     return [(path / name).stat().st_size for name in sorted(os.listdir(path))]
 
 
-def test_a_file_is_named_by_its_time_and_readable_by_its_user_only(tmp_path: Path) -> None:
+def test_a_file_is_named_by_its_time_and_for_its_user_only(tmp_path: Path) -> None:
     logs = folder(tmp_path / "state" / "logs")
     log = logs.open()
     assert logs.current is not None
@@ -92,7 +92,7 @@ def test_a_second_file_of_a_second_is_the_younger_one(tmp_path: Path) -> None:
     assert not (tmp_path / "2026-11-21_12-00-00-2.tlog").exists()
 
 
-def test_a_full_file_is_followed_by_the_next_and_the_session_never_exceeds_the_folder(tmp_path: Path) -> None:
+def test_a_full_file_has_a_successor_and_the_folder_its_limit(tmp_path: Path) -> None:
     clock = Clock()
     logs = folder(tmp_path, file=100, limit=300, clock=clock)
     log = logs.open()

@@ -67,7 +67,7 @@ def test_without_a_vehicle_there_is_no_file(session: Session) -> None:
     assert session.session.view(session.now) is None
 
 
-def test_the_file_has_what_came_shortly_before_the_vehicle_and_each_frame_soon(session: Session) -> None:
+def test_the_file_begins_shortly_before_the_vehicle_and_keeps_up(session: Session) -> None:
     session.step([demand(1)], vehicle=False)
     session.step([demand(2)])
     session.step([demand(3)])
@@ -80,7 +80,7 @@ def test_the_file_has_what_came_shortly_before_the_vehicle_and_each_frame_soon(s
     session.session.close()
 
 
-def test_a_full_disk_is_said_once_and_recording_goes_on_when_there_is_space(session: Session) -> None:
+def test_full_disk_is_told_once_and_recording_resumes_with_space(session: Session) -> None:
     session.run(1.0)
     session.free = 0
     session.session._folder._log._synced -= 10.0  # type: ignore[union-attr]  # the check is due
@@ -104,7 +104,7 @@ def test_a_full_disk_is_said_once_and_recording_goes_on_when_there_is_space(sess
     session.session.close()
 
 
-def test_a_disk_that_fails_again_and_again_is_said_once_and_tried_ever_more_seldom(session: Session) -> None:
+def test_a_disk_that_keeps_failing_is_told_once_and_tried_rarely(session: Session) -> None:
     tries: list[float] = []
     folder = session.session._folder
 

@@ -244,7 +244,7 @@ def views_of(desk: ReplayDesk, now: float) -> list[View]:
     return sent
 
 
-def test_the_view_has_the_timeline_and_the_events_around_the_position(desk: ReplayDesk) -> None:
+def test_view_has_the_timeline_and_the_events_near_the_position(desk: ReplayDesk) -> None:
     press(desk, r.ReplayGoTo("35"), Watch((ReplayRequest(60, 3),)))
     (view,) = (each for each in views_of(desk, 1.0) if isinstance(each, ReplayView))
     assert [(span.text, round(span.start), round(span.end)) for span in view.timeline.modes] == [
@@ -281,7 +281,7 @@ def test_charts_show_the_time_before_a_seek(desk: ReplayDesk) -> None:
 # ---- damage ----
 
 
-def test_every_byte_cut_and_flipped_never_raises_and_losses_are_named() -> None:
+def test_cut_and_flipped_bytes_never_raise_and_losses_are_named() -> None:
     log = LogWriter()
     for tenth in range(8):
         log.time = tenth / 10

@@ -46,7 +46,7 @@ def test_times_messages_and_events_of_a_drive() -> None:
 
 
 @pytest.mark.usefixtures("small_intervals")
-def test_intervals_cover_the_log_and_their_frames_have_their_times() -> None:
+def test_intervals_cover_the_log_and_frames_have_their_times() -> None:
     data = bytes(drive_log().data)
     index = indexed(data)
     assert len(index.starts) > 10
@@ -177,7 +177,7 @@ def test_invented_sources_do_not_grow_the_index() -> None:
     assert len(indexed(bytes(log.data)).places) <= log_index.MAX_KEYS
 
 
-def test_a_camera_that_goes_on_beating_does_not_hide_a_silent_vehicle() -> None:
+def test_a_camera_that_beats_on_does_not_hide_a_silent_vehicle() -> None:
     log = drive_log(5)
     for second in range(5, 20):
         log.time = second

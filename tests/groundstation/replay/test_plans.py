@@ -178,7 +178,7 @@ def test_uploads_and_clears_are_events() -> None:
     ]
 
 
-def test_items_in_any_order_and_of_two_ground_stations_are_told_apart() -> None:
+def test_items_in_any_order_of_two_stations_are_told_apart() -> None:
     log = PlanLog()
     log.pause(5)
     for station in (255, 254):

@@ -8,7 +8,7 @@ from dialects.axes import NEUTRAL, Axes
 from groundstation.ros.demand import WORDS, RefusedDemandError, Scale
 
 
-def test_a_twist_is_scaled_by_full_speed_and_full_turn_and_a_positive_turn_is_left() -> None:
+def test_twist_scales_with_full_speed_and_turns_left_if_positive() -> None:
     scale = Scale(speed=2.0, turn=4.0)
     assert scale.of_twist(1.0, 1.0) == Axes(0.5, -0.25)
     assert scale.of_twist(-0.5, -4.0) == Axes(-0.25, 1.0)

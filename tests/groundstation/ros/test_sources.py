@@ -21,14 +21,14 @@ def test_each_message_of_the_driver_extends_and_replaces() -> None:
     assert sources.axes(0.8) == TURN
 
 
-def test_a_second_publisher_is_ignored_while_the_first_moves_the_vehicle() -> None:
+def test_a_second_publisher_is_ignored_while_the_first_drives() -> None:
     sources = DemandSources()
     sources.push("a", GO, 0.5, 0.0)
     assert not sources.push("b", TURN, 0.5, 0.1)
     assert sources.axes(0.2) == GO
 
 
-def test_an_ignored_publisher_does_not_drive_on_when_the_first_ends() -> None:
+def test_an_ignored_publisher_does_not_drive_on_after_the_first() -> None:
     sources = DemandSources()
     sources.push("a", GO, 0.5, 0.0)
     sources.push("b", TURN, 0.5, 0.1)
@@ -48,7 +48,7 @@ def test_an_idle_publisher_that_repeats_stop_does_not_disturb() -> None:
     assert sources.axes(0.3) == GO
 
 
-def test_a_new_stop_of_another_publisher_stops_until_the_driver_shows_neutral() -> None:
+def test_anothers_new_stop_holds_until_the_driver_shows_neutral() -> None:
     sources = DemandSources()
     sources.push("a", GO, 0.5, 0.0)
     sources.push("b", NEUTRAL, 0.5, 0.1)

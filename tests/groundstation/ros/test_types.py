@@ -44,7 +44,7 @@ def test_every_service_has_a_published_hash() -> None:
     assert SERVICES.keys() <= PUBLISHED_HASHES.keys()
 
 
-def test_the_example_of_rmw_zenohs_design_and_a_service_without_a_request(types: RosTypes) -> None:
+def test_the_rmw_zenoh_example_and_a_service_without_a_request(types: RosTypes) -> None:
     add_two_ints = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
     assert types.hash("example_interfaces/srv/AddTwoInts") == add_two_ints
     trigger = "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f"

@@ -13,7 +13,7 @@ from groundstation.ros1.process import NODE
 from tests.waits import PATIENCE
 
 
-def test_it_is_of_python_3_8_and_imports_neither_this_project_nor_packages_at_its_head() -> None:
+def test_it_is_python_3_8_and_its_head_imports_no_package() -> None:
     tree = ast.parse(NODE.read_text(), feature_version=(3, 8))
     heads = [each for each in tree.body if isinstance(each, ast.Import | ast.ImportFrom)]
     names = {each.module if isinstance(each, ast.ImportFrom) else each.names[0].name for each in heads}

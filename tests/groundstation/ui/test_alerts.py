@@ -262,7 +262,7 @@ def test_another_screen_has_a_hint_of_its_own() -> None:
     assert hint(DisplayState(snapshot(), STANDARD, screen=info)) == "live"
 
 
-def test_a_vehicle_that_is_only_watched_is_named_and_one_with_another_link_is_not() -> None:
+def test_watched_vehicle_is_named_and_one_with_another_link_not() -> None:
     watched = LinkView(name="udpin:127.0.0.1:14550", systems=(1,), watch_only=True)
     other = LinkView(name="serial:/dev/ttyUSB0:57600", systems=(1, 7))
 

@@ -38,7 +38,7 @@ async def test_the_lease_is_renewed_by_the_loop_and_not_without_it() -> None:
         await until(lambda: len(screen.station.of(RenewLease)) > before)
 
 
-async def test_while_the_station_rests_it_is_renewed_less_often_and_at_once_when_that_ends() -> None:
+async def test_a_resting_station_is_renewed_rarely_until_its_rest_ends() -> None:
     async with console(picture=snapshot(vehicle=vehicle(armed=False), rests=True)) as screen:
         ticks = screen.app._ticks
         await until(lambda: ticks.period == REST_PERIOD)
@@ -98,7 +98,7 @@ STORMS = {
 
 
 @pytest.mark.parametrize("storm", STORMS.values(), ids=STORMS)
-async def test_a_storm_of_broken_answers_piles_up_nothing_and_keeps_no_stop_waiting(
+async def test_storm_of_broken_answers_piles_up_nothing_and_stops_pass(
     storm: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with console() as screen:
@@ -177,7 +177,7 @@ async def test_a_dead_station_is_said() -> None:
         assert screen.station.of(SetKeyGate)[-1].reason == "the station has ended"
 
 
-async def test_a_station_that_does_not_respond_closes_the_gate_until_it_does() -> None:
+async def test_station_that_does_not_respond_closes_the_gate_meanwhile() -> None:
     text = "station not responding: neutral is sent to Rover 1"
     async with console(picture=snapshot()) as screen:
         await until(lambda: screen.app.gate.closure is None)
@@ -204,7 +204,7 @@ LEAVES = snapshot(left_armed=("Rover 1 is left ARMED in MANUAL",))
 
 
 @pytest.mark.parametrize("key", ["ctrl+q", "ctrl+c"])
-async def test_quitting_armed_disarms_first_and_a_second_key_leaves_it_armed(key: str) -> None:
+async def test_quitting_disarms_first_and_a_second_key_leaves_it_armed(key: str) -> None:
     async with console(picture=LEAVES) as screen:
         await screen.press(key)
         assert screen.app.return_value is None

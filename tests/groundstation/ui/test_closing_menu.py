@@ -42,7 +42,7 @@ async def test_a_digit_behind_the_choice_of_the_menu_is_no_mode(below: str, read
 
 
 @pytest.mark.parametrize("read", ["\x1b[18~", "\x1bOP\x1b[18~", "\x1b[18~1"], ids=["F7", "F1 F7", "F7 1"])
-async def test_the_key_of_a_screen_while_the_menu_closes_opens_that_screen(read: str) -> None:
+async def test_a_screens_key_while_the_menu_closes_opens_that_screen(read: str) -> None:
     async with console() as screen:
         await screen.show(ARMED)
         screen.station.intents.clear()

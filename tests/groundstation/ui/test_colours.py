@@ -48,7 +48,7 @@ def test_dark_text_on_a_badge_is_not_bold() -> None:
     assert not badge(Role.KEY).bold
 
 
-def test_with_16_colours_all_text_on_the_selected_row_has_one_colour() -> None:
+def test_with_16_colours_text_on_the_selected_row_has_one_colour() -> None:
     """Red on grey and grey on grey cannot be read: key caps vanished in an xterm without TERM=xterm-256color."""
     use_theme(ThemeName.DARK, sixteen=True)
     assert {style(role, Role.SELECTED).color for role in (Role.DIM, Role.TEXT, Role.BAD)} == {Color.parse("#ffffff")}

@@ -67,7 +67,7 @@ def line() -> Iterator[Line]:
     station.close()
 
 
-def test_the_keys_do_drive_and_change_modes_when_they_arrive_whole(line: Line) -> None:
+def test_whole_keys_drive_and_change_modes(line: Line) -> None:
     assert line.send(["\x1b[A"], 0.2) == [DriveKeyDown(key="up", throttle=1, steering=0)]
     line.gate.update(armed=True, driving=False)
     assert line.send(["1"], 0.2) == [SetMode(mode="MANUAL")]
@@ -148,7 +148,7 @@ def test_a_split_release_still_releases(line: Line) -> None:
         assert DriveKeyUp(key="w") in line.send([RELEASE_W[:cut], RELEASE_W[cut:]], 0.2), cut
 
 
-def test_a_lone_escape_is_the_key_after_the_usual_delay_and_again_at_once() -> None:
+def test_a_lone_escape_is_the_key_after_the_usual_delay() -> None:
     sink, clock = Sink(), Clock()
     parser = KeyEventParser(sink, clock=clock)
     for _ in range(2):

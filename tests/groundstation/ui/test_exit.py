@@ -36,7 +36,7 @@ def test_a_closed_terminal_is_the_end(program: Program) -> None:
     assert program.report.read_text().endswith("SetKeyGate\nStop\n")
 
 
-def test_a_terminal_that_takes_nothing_does_not_keep_it_from_ending(program: Program) -> None:
+def test_a_terminal_that_takes_nothing_does_not_prevent_the_end(program: Program) -> None:
     """As behind an ssh whose network is gone: the screen's writer waits for ever, and so does who waits for it."""
     program.read_until(b"you drive")
     termios.tcflow(program.slave, termios.TCOOFF)

@@ -89,7 +89,7 @@ async def test_files_exports_the_log_under_the_cursor(log: Path) -> None:
         await until(lambda: "name it name.mcap" in screen.text)
 
 
-async def test_the_end_of_the_program_ends_an_export_and_leaves_no_half_file(log: Path) -> None:
+async def test_end_of_the_program_ends_an_export_without_half_a_file(log: Path) -> None:
     exports = Exports()
     exports.start(1, ExportRequest(log, log.with_name("a.mcap"), "mcap"))
     await until(lambda: exports._processes)

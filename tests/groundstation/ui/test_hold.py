@@ -81,7 +81,7 @@ async def test_typing_and_pasting_in_the_real_console_does_not_arm() -> None:
 
 @pytest.mark.parametrize("gap", [0.0, 0.002, 0.02, 0.05, 0.12, 0.3])
 @pytest.mark.parametrize("size", [1, 2, 7, 100])
-def test_the_documents_and_the_source_typed_at_any_speed_arm_nothing(gap: float, size: int) -> None:
+def test_documents_and_source_typed_at_any_speed_arm_nothing(gap: float, size: int) -> None:
     """In virtual time, through the key parser and the key gate."""
     station, clock = Recorder(), Clock()
     try:

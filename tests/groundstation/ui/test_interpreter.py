@@ -75,7 +75,7 @@ def test_a_key_does_not_wait_until_something_is_drawn() -> None:
     assert min(waits_for_a_busy_thread(60)) < 0.5 * PYTHONS_OWN  # the least: other programs take time, too
 
 
-def test_a_screen_that_does_not_drive_draws_without_interruptions() -> None:
+def test_a_screen_that_does_not_drive_draws_uninterrupted() -> None:
     favour_input(True)
     favour_input(False)
     assert sys.getswitchinterval() == pytest.approx(PYTHONS_OWN)

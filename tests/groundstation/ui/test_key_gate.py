@@ -121,7 +121,7 @@ def test_keys_of_another_screen_stop_nothing(gate: KeyGate, station: Recorder) -
 
 @pytest.mark.parametrize("opener", ["f6", "ctrl+g", "question_mark", "left_square_bracket", "ctrl+p"])
 @pytest.mark.parametrize("together", [True, False])
-def test_a_key_that_opens_a_screen_closes_at_once_for_the_keys_behind_it(
+def test_a_key_that_opens_a_screen_closes_the_gate_at_once(
     gate: KeyGate, station: Recorder, opener: str, together: bool
 ) -> None:
     """The event loop has had no turn yet: 1 is a digit of the go-to menu, not MANUAL."""
@@ -135,7 +135,7 @@ def test_a_key_that_opens_a_screen_closes_at_once_for_the_keys_behind_it(
     assert station.of(EmergencyStop)
 
 
-def test_the_gate_opens_again_when_the_screen_was_open_and_also_if_none_ever_opens(station: Recorder) -> None:
+def test_the_gate_opens_again_whether_or_not_a_screen_opened(station: Recorder) -> None:
     clock = Clock()
     gate = KeyGate(station, STANDARD, clock)
     gate.set_closure(None)

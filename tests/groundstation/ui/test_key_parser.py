@@ -54,7 +54,7 @@ def test_one_read_is_one_batch(data: str, keys: list[KeyEvent]) -> None:
 
 
 @pytest.mark.parametrize("character", string.ascii_letters + string.digits)
-def test_a_plain_character_is_the_key_that_the_stock_parser_makes_of_it(character: str) -> None:
+def test_a_plain_character_is_the_key_of_the_stock_parser(character: str) -> None:
     (stock,) = XTermParser().feed(character)
     _, (key,) = feed(character)
     assert isinstance(stock, events.Key)
@@ -74,7 +74,7 @@ def test_the_release_of_a_key_has_the_name_of_its_press() -> None:
     assert sink.batches == [[KeyEvent("W")], [KeyEvent("W", release=True)]]
 
 
-def test_a_key_of_a_cyrillic_layout_drives_by_its_place_and_still_types_its_letter() -> None:
+def test_a_cyrillic_key_drives_by_its_place_and_types_its_letter() -> None:
     sink, found = feed("\x1b[1096::105;1:1;1096u", "\x1b[1096::105;1:3u")
     assert sink.batches == [[KeyEvent("i")], [KeyEvent("i", release=True)]]
     assert isinstance(found[0], events.Key)
@@ -120,12 +120,12 @@ def test_lost_focus_shuts_in_the_same_read() -> None:
     assert isinstance(found[-1], events.AppBlur)
 
 
-def test_a_paste_is_a_stop_from_its_first_moment_on_and_its_text_is_no_keys() -> None:
+def test_a_paste_is_a_stop_from_its_start_and_its_text_no_keys() -> None:
     sink, _ = feed("\x1b[200", "~ryi", "i" * 5000, "\x1b[20", "1~", "k")
     assert sink.batches == [[KeyEvent("paste")], [KeyEvent("paste")], [KeyEvent("k")]]
 
 
-def test_a_paste_whose_end_never_comes_does_not_keep_the_keys_for_ever() -> None:
+def test_an_endless_paste_does_not_keep_the_keys_for_ever() -> None:
     sink, clock = Sink(), Clock()
     parser = KeyEventParser(sink, clock=clock)
     parser.feed("\x1b[200~ryi")

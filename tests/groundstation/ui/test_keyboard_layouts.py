@@ -71,7 +71,7 @@ async def test_caps_lock_does_not_matter_where_the_terminal_reports_it() -> None
         ("\x1b[1094;1:1;1094u", "ц is not bound: switch to a Latin keyboard layout"),
     ],
 )
-async def test_a_letter_that_does_nothing_is_explained_until_the_next_key(typed: str, hint: str) -> None:
+async def test_a_letter_without_effect_is_explained_until_the_next_key(typed: str, hint: str) -> None:
     async with app_on_a_pty() as (app, station, terminal):
         station.offer(snapshot())
         await type_until_shown(app, terminal, typed, hint)

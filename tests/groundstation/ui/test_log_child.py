@@ -36,7 +36,7 @@ def test_a_log_is_refused_while_a_vehicle_is_armed_from_here(name: str) -> None:
     assert find_refusal(now, file) == expected
 
 
-def test_the_command_has_the_settings_of_this_run_and_the_verb_takes_it() -> None:
+def test_command_has_this_runs_settings_and_the_verb_takes_it() -> None:
     settings = Settings(theme=ThemeName.LIGHT, ascii=False, reduce_motion=True, folder="/logs", keymap="teleop")
     command = replay_command(Path("/logs/-odd.tlog"), "12:04:10", option_words(settings, REPLAY_SETTINGS))
     assert command[:4] == [sys.executable, "-m", "groundstation", "replay"]

@@ -86,13 +86,13 @@ def test_reports_between_keys_leave_the_keys_as_they_are(cuts: list[int]) -> Non
 
 @pytest.mark.parametrize(("key", "name"), [("!", "exclamation_mark"), (" ", "space"), ("\x0b", "ctrl+k")])
 @pytest.mark.parametrize("cut", ["\x1b[<", "\x1b[<64", "\x1b[<64;11;1"])
-def test_a_stop_key_behind_a_report_without_its_end_counts_at_once(cut: str, key: str, name: str) -> None:
+def test_a_stop_key_behind_an_unfinished_report_counts_at_once(cut: str, key: str, name: str) -> None:
     assert keys_of([cut + key], 0.0) == [name]
     assert keys_of([cut, key], 0.0) == [name]
 
 
 @pytest.mark.parametrize("cut", ["\x1b[<64;1", "\x1b[M", "\x1b[M`"])
-def test_a_report_whose_end_never_comes_does_not_keep_the_keys_for_ever(cut: str) -> None:
+def test_an_endless_report_does_not_keep_the_keys_for_ever(cut: str) -> None:
     assert keys_of([cut, "1"], OPEN_TIME + 0.1) == ["1"]
 
 
@@ -191,7 +191,7 @@ def test_a_crash_releases_the_mouse(tmp_path: Path) -> None:
         assert program.drawn.rfind(RELEASE_MOUSE.encode()) > program.drawn.rfind(CAPTURE_MOUSE.encode())
 
 
-def test_a_suspended_program_releases_the_mouse_and_captures_it_again(program: Program) -> None:
+def test_suspended_program_releases_the_mouse_and_recaptures_it(program: Program) -> None:
     program.read_until(b"MANUAL")
     program.read_until(CAPTURE_MOUSE.encode())
     os.write(program.master, b"\x1a")  # ctrl+z

@@ -57,7 +57,7 @@ async def test_escape_on_drive_closes_nothing() -> None:
 
 
 @pytest.mark.parametrize("key", ["escape", "f1"])
-async def test_a_screen_without_keys_of_its_own_is_left_by_escape_and_by_the_key_of_drive(key: str) -> None:
+async def test_a_screen_without_keys_is_left_by_escape_or_drives_key(key: str) -> None:
     async with console() as screen:
         open_extra(screen)
         await screen.pilot.pause()
@@ -152,7 +152,7 @@ async def test_the_key_of_the_menu_and_a_digit_in_one_read() -> None:
         assert not screen.station.of(SetMode)
 
 
-async def test_the_key_of_the_menu_twice_in_one_read_opens_the_screen_before() -> None:
+async def test_the_menu_key_twice_in_one_read_opens_the_screen_before() -> None:
     async with console() as screen:
         await screen.press("f6", "f1")
         type_in(screen, "\x07\x07")
@@ -160,7 +160,7 @@ async def test_the_key_of_the_menu_twice_in_one_read_opens_the_screen_before() -
 
 
 @pytest.mark.parametrize("data", ["\x07x3", "\x1b\x073i", "3\x07\x1b[A"], ids=repr)
-async def test_other_keys_in_one_read_with_the_key_of_the_menu_command_nothing(data: str) -> None:
+async def test_other_keys_in_one_read_with_the_menu_key_do_nothing(data: str) -> None:
     async with console() as screen:
         screen.station.intents.clear()
         type_in(screen, data)
@@ -214,7 +214,7 @@ async def test_stops_work_in_the_menu() -> None:
         assert screen.station.of(EmergencyStop)
 
 
-async def test_drive_keys_drive_on_drive_only_and_stops_stop_everywhere() -> None:
+async def test_drive_keys_work_on_drive_only_and_stops_everywhere() -> None:
     async with console() as screen:
         open_extra(screen)
         await screen.pilot.pause()

@@ -46,7 +46,7 @@ def pad() -> Iterator[Pad]:
     recorder.close()
 
 
-def test_the_sticks_go_to_the_station_while_the_button_is_held_and_its_release_once(pad: Pad) -> None:
+def test_sticks_are_sent_while_the_button_is_held_and_once_after(pad: Pad) -> None:
     pad.take()
     pad.take(held=True, throttle=0.5)
     pad.take(held=True, throttle=0.5)
@@ -63,7 +63,7 @@ def test_the_end_of_the_reader_is_a_release(pad: Pad) -> None:
     assert pad.input.state(pad.clock()).lost
 
 
-def test_arming_wants_the_button_held_and_a_tap_of_another_acts_once(pad: Pad) -> None:
+def test_arming_needs_button_held_and_a_tap_of_another_acts_once(pad: Pad) -> None:
     for _ in range(10):
         pad.take("dpup")
     pad.take()

@@ -34,7 +34,7 @@ def requests_are(screen: Console, expected: tuple[ViewRequest, ...]) -> bool:
     return watched(screen) == expected
 
 
-async def test_the_key_shows_the_next_pane_and_each_requests_what_it_needs() -> None:
+async def test_the_key_shows_the_next_pane_and_each_requests_its_needs() -> None:
     async with console() as screen:
         shown = []
         for _ in range(len(PANES) + 1):

@@ -17,7 +17,7 @@ def test_where_the_room_is_small_what_is_well_shares_lines(room: int) -> None:
     assert all(row.health is Health.OK for line in lines if len(line.rows) > 1 for row in line.rows)
 
 
-def test_the_cursor_begins_at_the_first_fault_and_stays_at_the_row_that_was_chosen() -> None:
+def test_cursor_begins_at_the_first_fault_and_stays_where_put() -> None:
     model = SetupModel()
     assert model.selected is None
     model.show(doctor_view())

@@ -37,7 +37,7 @@ async def test_a_stop_in_the_same_read_wins() -> None:
         assert station.wishes[before:] == [Stop()]
 
 
-async def test_keys_that_come_together_leave_the_help_once_and_the_drive_screen_where_it_is() -> None:
+async def test_keys_in_one_read_leave_the_help_once_and_no_screen() -> None:
     async with app_on_a_pty() as (app, station, terminal):
         terminal.type("?")
         await until(lambda: app.screen is not app.drive)
@@ -73,7 +73,7 @@ async def test_lost_focus_closes_the_gate_and_stops() -> None:
         await until(lambda: app.gate.closure is None)
 
 
-async def test_a_terminal_that_stops_answering_closes_the_gate_until_it_answers_again() -> None:
+async def test_terminal_without_answers_closes_gate_until_it_answers() -> None:
     async with app_on_a_pty() as (app, station, terminal):
         await until(lambda: app.gate.ping.round_trip is not None)
         terminal.answers = False

@@ -61,7 +61,7 @@ async def test_keys_behind_the_end_of_a_text_are_keys_of_the_screen() -> None:
         await until(lambda: isinstance(screen.app.screen, MessagesScreen))
 
 
-async def test_a_field_that_is_closed_and_opened_again_takes_the_keys_behind(tmp_path: Path) -> None:
+async def test_a_field_closed_and_reopened_takes_the_keys_behind(tmp_path: Path) -> None:
     (tmp_path / "a.tlog").write_bytes(log(HEARTBEATS, 3.0))
     async with console(folder=tmp_path) as screen:
         page = await open_screen(screen, "9")
@@ -84,9 +84,7 @@ async def test_lines_that_follow_each_other_on_the_command_line() -> None:
 @pytest.mark.parametrize(
     ("keys", "shown"), [(F1 * 4, DriveScreen), (f"{F1}{F6}", LogScreen), (f"{F6}{F1}{F1}", DriveScreen)]
 )
-async def test_function_keys_on_the_command_line_close_it_and_nothing_else(
-    keys: str, shown: type[ConsoleScreen]
-) -> None:
+async def test_function_keys_on_the_command_line_close_it_and_no_more(keys: str, shown: type[ConsoleScreen]) -> None:
     async with console() as screen:
         type_in(screen, ":")
         await until(lambda: isinstance(screen.app.screen, CommandLine))
@@ -96,7 +94,7 @@ async def test_function_keys_on_the_command_line_close_it_and_nothing_else(
         assert screen.app.drive in screen.app.screen_stack
 
 
-async def test_text_pasted_behind_the_end_of_the_command_line_closes_nothing() -> None:
+async def test_text_pasted_behind_the_command_line_closes_nothing() -> None:
     async with console() as screen:
         type_in(screen, ":")
         await until(lambda: isinstance(screen.app.screen, CommandLine))

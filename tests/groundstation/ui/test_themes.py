@@ -56,7 +56,7 @@ async def show(screen: Console, name: str) -> None:
     await screen.show(picture)
 
 
-def test_every_theme_has_every_role_and_no_variable_of_textual_is_lost() -> None:
+def test_each_theme_has_all_roles_and_keeps_textuals_variables() -> None:
     own = {role.variable for role in Role} - {"background", "panel"}
     textual = BUILTIN_THEMES["textual-dark"].to_color_system().generate()
     assert not own & set(textual)
@@ -65,7 +65,7 @@ def test_every_theme_has_every_role_and_no_variable_of_textual_is_lost() -> None
         assert set(choose_colours(name, sixteen=sixteen)) == set(Role)
 
 
-async def test_all_text_can_be_read_in_every_theme_with_all_256_and_16_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_all_text_is_readable_in_each_theme_and_colour_depth(monkeypatch: pytest.MonkeyPatch) -> None:
     pairs: set[tuple[Role, Role]] = set()
     with monkeypatch.context() as patch:
         patch.setitem(THEMES, ThemeName.DARK, ColourTheme("", PROBE))
@@ -122,7 +122,7 @@ def looks(screen: Console, text: str) -> set[tuple[bool, bool, bool]]:
 @pytest.mark.parametrize(
     "name", ["drive_80x24", "log_140x45", "params_80x24", "links_80x24", "messages_80x24", "goto_80x24"]
 )
-async def test_without_colours_the_text_is_the_same_and_nothing_has_a_colour(name: str) -> None:
+async def test_without_colours_the_text_is_the_same_and_colourless(name: str) -> None:
     async with console(*FRAMES[name][:2], look=Look(theme=ThemeName.NO_COLOUR)) as screen:
         await show(screen, name)
         if "params" not in name and "messages" not in name:
@@ -132,7 +132,7 @@ async def test_without_colours_the_text_is_the_same_and_nothing_has_a_colour(nam
     assert {(look.bold, look.reverse) for look in cells} > {(True, False), (True, True)}
 
 
-async def test_without_colours_armed_disarmed_and_emergency_stop_look_different() -> None:
+async def test_without_colours_armed_disarmed_and_estop_look_different() -> None:
     seen = []
     for picture, text in ((snapshot(), "ARMED"), (STANDING, "DISARMED"), (STOPPED, "EMERGENCY STOP")):
         async with console(SMALL, picture, look=Look(theme=ThemeName.NO_COLOUR)) as screen:

@@ -72,7 +72,7 @@ def test_an_exception_ends_it_and_is_handed_over() -> None:
     assert [str(error) for error in run.errors] == ["broken"]
 
 
-def test_a_shorter_period_counts_at_once_and_a_longer_one_from_the_next_tick_on() -> None:
+def test_shorter_period_counts_at_once_and_longer_one_next_tick() -> None:
     run = Run()
 
     def call() -> None:

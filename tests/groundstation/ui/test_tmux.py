@@ -49,7 +49,7 @@ def test_control_is_released_once_after_a_few_seconds() -> None:
     assert session.away == 10.0
 
 
-def test_a_client_that_comes_back_soon_finds_control_where_it_was() -> None:
+def test_client_that_comes_back_soon_finds_control_where_it_was() -> None:
     session = TmuxSession("%0")
     session.update(1, 99.0)
     session.update(0, 100.0)

@@ -27,7 +27,7 @@ def opened(*, blocks: bool = False) -> Iterator[tuple[int, TerminalFile]]:
         os.close(slave)
 
 
-def test_a_terminal_that_takes_nothing_is_stuck_until_it_is_given_up() -> None:
+def test_a_terminal_that_takes_nothing_is_stuck_until_given_up() -> None:
     with opened() as (_, file):
         file.write("x" * 1_000_000)
         writer = Thread(target=file.flush, daemon=True)
@@ -58,7 +58,7 @@ def test_a_terminal_that_accepts_a_frame_gets_it_at_once() -> None:
         assert os.read(master, 100) == b"frame"
 
 
-def test_one_that_accepts_a_part_gets_the_rest_in_order_from_the_thread() -> None:
+def test_one_that_accepts_a_part_gets_the_rest_in_order() -> None:
     receiving, sending = os.pipe()
     os.set_blocking(sending, False)
     file = TerminalFile(sending, sending)

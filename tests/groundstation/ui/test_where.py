@@ -20,7 +20,7 @@ from tests.groundstation.ui.link_examples import BYTES, FLEET, SIX, VIEWS, vehic
 from tests.groundstation.ui.pilots import console
 
 
-def test_vehicles_are_around_the_chosen_one_and_it_is_away_from_its_home() -> None:
+def test_vehicles_are_placed_by_chosen_one_and_it_by_its_home() -> None:
     view = VehiclesView(
         (
             vehicle_row(distance=10.0, bearing=90.0),
@@ -36,7 +36,7 @@ def test_vehicles_are_around_the_chosen_one_and_it_is_away_from_its_home() -> No
     assert mark.point == pytest.approx((-5.0, 0.0))
 
 
-def test_without_a_position_of_the_chosen_vehicle_there_is_no_map() -> None:
+def test_without_position_of_the_chosen_vehicle_there_is_no_map() -> None:
     lost = msgspec.structs.replace(SIX.rows[0], has_position=False)
     for view, selected in ((None, 1), (SIX, None), (VehiclesView((lost,)), 1)):
         assert build_where(view, selected, None).note == "no position of the chosen vehicle"
@@ -50,7 +50,7 @@ def test_the_same_message_of_several_vehicles_is_one_line() -> None:
     assert "1320 B/s" in lines[0]
 
 
-def test_the_bars_compare_the_bytes_of_messages_and_silent_ones_are_left_out() -> None:
+def test_bars_compare_the_bytes_of_messages_without_silent_ones() -> None:
     lines = texts(MessageBytes(BYTES).draw(60, 9))
     bars = [line.count("━") for line in lines]
     assert lines[0].startswith(" MANUAL_CONTROL >")

@@ -93,7 +93,7 @@ HOLD = frame(m.SetMode(1, 1, 4))
 MODE_0 = frame(m.SetMode(1, 1, 0))
 
 
-def test_a_hold_may_come_under_watch_where_its_meaning_is_checked() -> None:
+def test_a_hold_may_come_under_watch_where_its_use_is_checked() -> None:
     for role, conditional in (("drive", False), ("watch", True)):
         found = TO_ROVER.read(f"{BASE}/{role}/cmd/SET_MODE", HOLD)
         assert found is not None

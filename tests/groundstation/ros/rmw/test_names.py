@@ -57,7 +57,7 @@ def test_names_are_resolved_as_in_ros(namespace: str, name: str, whole: str) -> 
     assert Node(0, SESSION, namespace, "talker").resolve(name) == whole
 
 
-def test_the_tokens_of_a_topics_publishers_have_as_many_parts_as_one() -> None:
+def test_tokens_of_all_publishers_have_as_many_parts_as_one() -> None:
     token = endpoint(TALKER, Kind.PUBLISHER, "/chatter").token
     pattern = publisher_tokens(2, "/chatter")
     assert all(part in ("*", each) for part, each in zip(pattern.split("/"), token.split("/"), strict=True))

@@ -114,7 +114,7 @@ def test_the_cursor_stays_in_the_picture(tmp_path: Path) -> None:
         assert axis.column(axis.cursor) is not None
 
 
-def test_a_field_goes_where_its_unit_fits_or_where_the_number_says(tmp_path: Path) -> None:
+def test_a_field_goes_where_its_unit_fits_or_the_number_says(tmp_path: Path) -> None:
     made = model(tmp_path)
     made.add(VOLTS, "V")
     assert labels(made)[3] == ["SYS_STATUS.voltage_battery"]
@@ -162,7 +162,7 @@ def test_the_last_line_takes_its_chart_along(tmp_path: Path) -> None:
     assert (made.remove(), made.charts.charts, requests(made)[0].fields) == (None, [], ())
 
 
-def test_pins_are_requested_whatever_is_drawn_and_end_with_their_line(tmp_path: Path) -> None:
+def test_pins_are_always_requested_and_end_with_their_line(tmp_path: Path) -> None:
     made = model(tmp_path)
     assert made.toggle_pin() == PinSeries((SPEED,))
     made.next_view()
@@ -217,7 +217,7 @@ def test_a_broken_file_of_views_is_named_and_nothing_is_lost(tmp_path: Path, tex
     assert "\n" not in problem
 
 
-def test_a_folder_that_cannot_be_written_keeps_the_view_in_memory(tmp_path: Path) -> None:
+def test_an_unwritable_folder_keeps_the_view_in_memory(tmp_path: Path) -> None:
     made = model(tmp_path / "missing")
     assert "kept until the program ends" in made.save_view("mine")
     assert made.views[-1].name == "mine"

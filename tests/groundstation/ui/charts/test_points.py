@@ -118,7 +118,7 @@ def test_columns_have_the_extremes_however_the_points_arrive(steps: list[tuple[f
 
 
 @given(st.lists(st.floats(0.0, 99.0), min_size=1, max_size=8))
-def test_what_is_shown_is_the_same_wherever_the_picture_was_before(begins: list[float]) -> None:
+def test_the_picture_does_not_depend_on_where_it_was_before(begins: list[float]) -> None:
     points_of_a_line, moving = filled([at * 0.7 for at in range(150)]), Columns(0.5)
     for begin in begins:
         left = int(begin // 0.5)
@@ -128,7 +128,7 @@ def test_what_is_shown_is_the_same_wherever_the_picture_was_before(begins: list[
         assert moving.between(left, left + 40) == whole.between(left, left + 40)
 
 
-def test_columns_outside_the_window_cost_nothing_but_the_one_before_it() -> None:
+def test_columns_outside_the_window_cost_only_the_one_before_it() -> None:
     made = Columns(1.0)
     made.update(filled([float(at) for at in range(100)]))
     assert [column.number for column in made.between(50, 52)] == [49, 50, 51, 52]

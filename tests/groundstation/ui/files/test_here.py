@@ -21,7 +21,7 @@ def notes(model: FilesModel) -> list[str]:
     return [cell.text for cell in here_value(model).notes]
 
 
-def test_the_file_of_this_session_is_marked_with_its_length_and_size_of_now(tmp_path: Path) -> None:
+def test_file_of_this_session_is_marked_with_its_present_size(tmp_path: Path) -> None:
     model = FilesModel(count(1).__next__, tmp_path)
     (tmp_path / "old.tlog").write_bytes(b"x")
     model.disk.scan()

@@ -38,7 +38,7 @@ REFUSAL = LogGroup(MODE, REFUSED, (REASON,))
 
 
 @pytest.mark.parametrize("line", [MODE, REFUSED, REASON])
-def test_a_request_its_answer_and_what_the_vehicle_said_are_joined_from_each_of_them(line: LogLine) -> None:
+def test_a_request_its_answer_and_the_vehicles_words_are_joined(line: LogLine) -> None:
     assert find_group(LINES, line) == REFUSAL
     assert REFUSAL.numbers == {MODE.number, REFUSED.number, REASON.number}
 
@@ -52,7 +52,7 @@ def test_an_accepted_command_is_joined_too() -> None:
     assert find_group(LINES, ARM) == LogGroup(ARM, ARMED, (THROTTLE,))
 
 
-def test_a_text_more_than_1_s_away_and_a_request_long_before_do_not_belong_to_an_answer() -> None:
+def test_an_answer_excludes_distant_texts_and_old_requests() -> None:
     late = replace(REASON, time=REFUSED.time + 1.1)
     assert find_group((MODE, REFUSED, late), REFUSED) == LogGroup(MODE, REFUSED)
     early = replace(MODE, time=REFUSED.time - 15.1)
@@ -124,7 +124,7 @@ def compare(name: str, shown: str) -> None:
     assert shown == file.read_text("utf-8")
 
 
-async def test_the_detail_of_a_small_terminal_opens_with_enter_and_escape_goes_back_step_by_step() -> None:
+async def test_the_small_detail_opens_with_enter_and_escape_goes_back() -> None:
     async with console(SMALL) as screen:
         await open_refusal(screen)
         assert "FAILED (4)" not in screen.text

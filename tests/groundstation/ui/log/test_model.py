@@ -64,7 +64,7 @@ def test_the_cursor_follows_the_newest_line_until_it_is_moved() -> None:
     assert (marked(made), texts(made)[-1]) == (23, "line 23")
 
 
-def test_all_rows_of_the_marked_line_are_in_the_window_also_after_a_change_of_width() -> None:
+def test_the_marked_line_stays_whole_after_a_change_of_width() -> None:
     made = model(20)
     made.add(LogPage((line(21, "a b c d e f g h i j k l"), line(22)), 22, after=20))
     made.move(-(10**6))
@@ -74,7 +74,7 @@ def test_all_rows_of_the_marked_line_are_in_the_window_also_after_a_change_of_wi
     assert marked(made) == 21
 
 
-def test_the_lines_around_a_moment_are_shown_and_then_what_was_shown_before() -> None:
+def test_lines_around_a_moment_are_shown_and_then_those_before() -> None:
     made = LogModel()
     made.set_width(40)
     times = (1.0, 6.0, 10.0, 14.9, 15.1)
@@ -94,7 +94,7 @@ def test_the_lines_around_a_moment_are_shown_and_then_what_was_shown_before() ->
     assert len(made.shown) == 5, "another filter ends it"
 
 
-def test_a_scrolled_window_stays_on_its_lines_when_old_ones_are_dropped() -> None:
+def test_a_scrolled_window_stays_on_its_lines_when_old_ones_drop() -> None:
     made = model(KEPT)
     made.move(-(10**6))
     made.move(500)
@@ -113,7 +113,7 @@ def test_a_repeated_line_takes_the_place_of_the_last_one() -> None:
     assert made.request == LogRequest(5)
 
 
-def test_a_page_that_comes_twice_or_answers_another_request_changes_nothing() -> None:
+def test_a_repeated_or_foreign_page_changes_nothing() -> None:
     made = model(3)
     made.add(LogPage(tuple(map(line, range(1, 4))), 3))
     made.add(LogPage((line(9),), 9, after=8))
@@ -151,7 +151,7 @@ def test_filters(chosen: LogFilter, numbers: list[int]) -> None:
     assert [row.line.number for row in made.window(HEIGHT).rows] == numbers
 
 
-def test_a_severity_that_does_not_exist_is_named_with_those_that_do() -> None:
+def test_an_unknown_severity_is_named_with_the_known_ones() -> None:
     assert LogFilter("compass >=warn").problem == ""
     assert LogFilter("compass >=loud").problem.startswith("no severity “loud”: emergency, alert, critical, error,")
 
@@ -168,7 +168,7 @@ def test_control_characters_do_not_get_through() -> None:
     assert wrap("a\x1b[2Jb\x07\n", 40) == ["a�[2Jb��"]
 
 
-def test_long_lines_are_wrapped_whole_and_again_for_another_width() -> None:
+def test_long_lines_are_wrapped_whole_for_each_width() -> None:
     made = LogModel()
     made.set_width(20)
     made.add(LogPage((line(1, "PreArm: Compass 1 is not healthy at all"),), 1))

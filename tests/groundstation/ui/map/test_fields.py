@@ -58,7 +58,7 @@ def test_values_as_text_and_back() -> None:
     assert changed(task(31_999), "param5", "12").x == 12
 
 
-def test_the_target_of_a_jump_has_the_number_that_the_vehicle_gives_it() -> None:
+def test_a_jumps_target_has_the_number_that_the_vehicle_gives() -> None:
     jump = task(177, 3.0, 2.0)
     assert value_of(jump, field(jump, "number"), first=1) == "4"
     assert changed(jump, "number", "4", first=1).params[0] == 3.0

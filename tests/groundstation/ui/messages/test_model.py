@@ -32,7 +32,7 @@ def test_the_first_page_puts_the_cursor_on_its_first_row() -> None:
     assert shown(model) == ["", *(f"M{number}" for number in range(1, 10))]
 
 
-def test_the_cursor_moves_within_the_window_and_then_takes_it_along() -> None:
+def test_the_cursor_moves_within_the_window_and_then_moves_it() -> None:
     model = MessagesModel()
     model.add(page(), HEIGHT)
     model.move(9, HEIGHT)
@@ -43,7 +43,7 @@ def test_the_cursor_moves_within_the_window_and_then_takes_it_along() -> None:
     assert shown(model)[0] == ""
 
 
-def test_at_the_end_the_missing_rows_are_requested_and_then_selected() -> None:
+def test_at_the_end_missing_rows_are_requested_and_then_selected() -> None:
     model = MessagesModel()
     model.add(page(), HEIGHT)
     model.move(10**6, HEIGHT)
@@ -67,7 +67,7 @@ def test_the_cursor_stays_on_its_row_when_rows_come_before_it() -> None:
     assert (model.cursor, model.cursor - model.top) == (21, place)
 
 
-def test_a_row_that_has_gone_gives_the_cursor_to_the_one_in_its_place() -> None:
+def test_a_vanished_row_gives_the_cursor_to_the_one_in_its_place() -> None:
     model = MessagesModel()
     model.add(page(total=5), HEIGHT)
     model.move(4, HEIGHT)
@@ -78,7 +78,7 @@ def test_a_row_that_has_gone_gives_the_cursor_to_the_one_in_its_place() -> None:
     assert (model.cursor, shown(model)) == (0, [])
 
 
-def test_another_filter_or_order_starts_anew_and_ignores_pages_for_the_old_one() -> None:
+def test_a_new_filter_or_order_starts_anew_and_ignores_old_pages() -> None:
     model = MessagesModel()
     model.add(page(), HEIGHT)
     model.move(30, HEIGHT)
@@ -93,7 +93,7 @@ def test_another_filter_or_order_starts_anew_and_ignores_pages_for_the_old_one()
     assert model.selected is not None
 
 
-def test_a_source_is_closed_from_one_of_its_messages_and_opened_again() -> None:
+def test_source_is_closed_from_one_of_its_messages_and_reopened() -> None:
     model = MessagesModel()
     model.add(page(), HEIGHT)
     model.move(3, HEIGHT)

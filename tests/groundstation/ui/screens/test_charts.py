@@ -106,7 +106,7 @@ async def test_a_vanished_field_is_a_gap_and_not_a_line() -> None:
         assert not set("".join(newest_half_minute)) - set(" ⠁⡀⠂⠄")  # the grid, and no line
 
 
-async def test_a_field_is_added_by_a_part_of_its_name_also_when_typed_in_one_read() -> None:
+async def test_a_field_is_added_by_part_of_its_name_also_in_one_read() -> None:
     async with console(size=(140, 45)) as screen:
         await open_charts(screen)
         type_in(screen, "avolt\r")
@@ -121,7 +121,7 @@ async def test_a_field_is_added_by_a_part_of_its_name_also_when_typed_in_one_rea
         assert isinstance(screen.app.screen, ChartsScreen)
 
 
-async def test_a_pin_is_sent_and_marked_and_kept_while_the_screen_is_closed() -> None:
+async def test_pin_is_sent_marked_and_kept_while_the_screen_is_closed() -> None:
     async with console(size=(140, 45)) as screen:
         await open_charts(screen, "p")
         assert screen.station.of(PinSeries) == [PinSeries((SPEED,))]
@@ -132,7 +132,7 @@ async def test_a_pin_is_sent_and_marked_and_kept_while_the_screen_is_closed() ->
         assert screen.station.of(PinSeries)[-1] == PinSeries(())
 
 
-async def test_in_a_small_terminal_the_other_charts_are_reached_by_the_arrows_and_the_list_by_tab() -> None:
+async def test_in_small_terminal_arrows_and_tab_reach_charts_and_list() -> None:
     async with console() as screen:
         await open_charts(screen)
         assert "2 throttle" in screen.text

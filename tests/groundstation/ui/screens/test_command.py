@@ -67,7 +67,7 @@ async def test_it_is_neutral_and_letters_are_text_but_stop_keys_stop() -> None:
         await until(lambda: screen.app.gate.closure is None)
 
 
-async def test_a_line_goes_to_the_station_with_the_vehicle_and_its_end_is_shown() -> None:
+async def test_a_line_goes_to_the_station_and_its_end_is_shown() -> None:
     async with console() as screen:
         await screen.press("f6")
         await enter(screen, "mode HOLD")

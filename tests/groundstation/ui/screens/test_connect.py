@@ -56,7 +56,7 @@ def attempt(add: AddLink, state: str, problem: str = "") -> LinkAttempt:
     return LinkAttempt(add.request, add.endpoint, state, problem)
 
 
-async def test_nothing_is_sent_before_enter_and_enter_connects_to_the_marked_vehicle() -> None:
+async def test_only_enter_connects_and_to_the_marked_vehicle() -> None:
     async with console(picture=UNCONNECTED) as screen:
         await open_connect(screen)
         await screen.press("down", "tab", "tab", "tab", "tab", "p", "i", "w", "r")
@@ -74,7 +74,7 @@ async def test_nothing_is_sent_before_enter_and_enter_connects_to_the_marked_veh
     assert (entry.endpoint, entry.vehicle) == ("udpin:127.0.0.1:14551", "Rover 3")
 
 
-async def test_enter_with_nothing_heard_starts_a_simulator_and_keys_start_the_others() -> None:
+async def test_enter_with_nothing_heard_starts_simulator_or_key_others() -> None:
     async with console(picture=UNCONNECTED) as screen:
         await open_connect(screen, NOTHING)
         await screen.press("enter")
@@ -151,7 +151,7 @@ async def test_recent_endpoints_are_pinned_and_forgotten() -> None:
         assert RecentFile().load().find("tcpout:10.0.0.7:5760") is None
 
 
-async def test_a_serial_port_is_opened_with_the_chosen_baud_rate_and_an_open_one_drives() -> None:
+async def test_a_serial_port_opens_at_the_chosen_baud_rate_and_drives() -> None:
     async with console(picture=UNCONNECTED) as screen:
         await open_connect(screen, FAILED)
         await screen.press("tab", "tab", "b", "enter")
@@ -186,14 +186,14 @@ async def test_a_log_that_is_here_leads_to_the_files_screen(tmp_path: Path) -> N
         assert any(line.startswith("│› 2-00003.bin") for line in screen.text.splitlines())
 
 
-async def test_where_there_is_no_room_for_the_logs_the_arrows_do_not_go_there(tmp_path: Path) -> None:
+async def test_arrows_skip_the_logs_where_there_is_no_room(tmp_path: Path) -> None:
     async with console((80, 24), UNCONNECTED, folder=fill_folder(tmp_path)) as screen:
         await open_connect(screen)
         await screen.press("shift+tab")
         assert "ENTER starts a simulator" in screen.text
 
 
-async def test_d_asks_the_network_and_enter_connects_to_what_announces_itself() -> None:
+async def test_d_asks_network_and_enter_connects_to_an_announcement() -> None:
     announced = HeardRow(
         endpoint="udpout:10.0.0.7:14550",
         system=7,

@@ -103,7 +103,7 @@ async def test_a_small_terminal_arms_nothing_and_shows_the_state() -> None:
 
 
 @pytest.mark.parametrize("size", [(40, 10), (60, 15), (79, 23)])
-async def test_on_the_strip_keys_drive_and_arm_and_what_a_driver_must_see_is_there(size: tuple[int, int]) -> None:
+async def test_on_strip_keys_drive_and_the_driver_sees_what_matters(size: tuple[int, int]) -> None:
     async with console(size=size) as screen:
         assert screen.app.gate.closure is None
         await screen.press("i")
@@ -119,7 +119,7 @@ async def test_on_the_strip_keys_drive_and_arm_and_what_a_driver_must_see_is_the
 
 
 @pytest.mark.parametrize("size", [(40, 10), (60, 15)])
-async def test_the_strip_shows_the_first_alert_and_arming_whatever_else_there_is(size: tuple[int, int]) -> None:
+async def test_the_strip_shows_the_first_alert_and_arming_in_any_case(size: tuple[int, int]) -> None:
     bad = vehicle(
         name="ArduPilot rover 111", armed=True, emergency_stop=True, emergency_progress=EmergencyProgress.UNANSWERED,
         warnings=tuple(f"SETTING_{number} 0: never stops when the link is lost" for number in range(9)),

@@ -45,7 +45,7 @@ async def open_files(screen: Console, view: FilesView = FILES, tasks: RequestsVi
     await offer(screen, view, tasks)
 
 
-async def test_it_lists_the_logs_and_the_top_folder_of_each_vehicle_once() -> None:
+async def test_it_lists_the_logs_and_top_folder_of_each_vehicle_once() -> None:
     async with console(WIDE) as screen:
         await open_files(screen)
         assert screen.station.of(Watch)[-1] == Watch((FilesRequest(("/",)), RequestsRequest()))
@@ -61,7 +61,7 @@ async def test_it_lists_the_logs_and_the_top_folder_of_each_vehicle_once() -> No
         assert len(screen.station.of(ListLogs)) == 3
 
 
-async def test_a_log_is_downloaded_and_one_that_is_here_only_after_the_word(tmp_path: Path) -> None:
+async def test_log_is_downloaded_and_a_present_one_only_after_the_word(tmp_path: Path) -> None:
     async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
         await open_files(screen)
         await screen.press("D")
@@ -111,7 +111,7 @@ async def test_nothing_is_deleted_or_erased_before_a_word_is_typed() -> None:
         assert [each.path for each in screen.station.of(ListFolder)[before:]] == ["/"]
 
 
-async def test_a_file_is_uploaded_into_the_folder_under_the_cursor_after_a_question(tmp_path: Path) -> None:
+async def test_file_is_uploaded_to_the_marked_folder_after_a_question(tmp_path: Path) -> None:
     async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
         await open_files(screen)
         await screen.press("tab", "down", "enter", "U", "enter")
@@ -140,7 +140,7 @@ async def test_tasks_are_stopped_here_and_on_the_log_screen() -> None:
         assert "tasks" not in screen.text
 
 
-async def test_control_characters_of_a_vehicle_do_not_reach_the_terminal() -> None:
+async def test_control_characters_of_vehicle_do_not_reach_the_terminal() -> None:
     bad = FolderRow("/", (FileRow("a\x1b[2Jb", 3),))
     async with console(WIDE) as screen:
         await open_files(screen, msgspec.structs.replace(FILES, folders=(bad, *FOLDERS[1:])))
@@ -149,7 +149,7 @@ async def test_control_characters_of_a_vehicle_do_not_reach_the_terminal() -> No
         assert "delete /a�[2Jb" in screen.text
 
 
-def test_the_speed_and_the_time_left_are_those_of_the_last_seconds() -> None:
+def test_speed_and_time_left_are_those_of_the_last_seconds() -> None:
     tasks = TaskList()
     for second in range(8):
         line = RequestLine(1, "running", "download log 1", done=1000 * (second + 1), total=20_000, service="files")
@@ -161,7 +161,7 @@ def test_the_speed_and_the_time_left_are_those_of_the_last_seconds() -> None:
     assert tasks.speed(line) is None
 
 
-async def test_a_file_here_is_deleted_after_the_word_and_not_while_it_arrives(tmp_path: Path) -> None:
+async def test_a_file_here_is_deleted_after_the_word_unless_it_arrives(tmp_path: Path) -> None:
     async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
         arriving = RequestLine(3, "running", "download log 13", total=14_200, service="files", system=1)
         await open_files(screen, tasks=RequestsView((arriving,), ()))

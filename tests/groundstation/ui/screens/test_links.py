@@ -122,7 +122,7 @@ async def test_digits_are_a_system_id_and_keys_move(keys: tuple[str, ...], syste
         await until(lambda: row_of(screen, f"Rover {system}").startswith("│›"))
 
 
-async def test_more_vehicles_than_rows_keep_the_cursor_in_sight_and_count_the_rest() -> None:
+async def test_more_vehicles_than_rows_keep_cursor_visible_and_a_count() -> None:
     async with console(picture=fleet(20)) as screen:
         await open_links(screen, fleet(20), (many(16, 4), LINKS, CONTROL))
         assert "16 of 20 heard" in screen.text
@@ -133,7 +133,7 @@ async def test_more_vehicles_than_rows_keep_the_cursor_in_sight_and_count_the_re
             await until(partial(cursor_is_on, screen, f"Rover {system}"))
 
 
-async def test_a_vehicle_that_is_gone_leaves_the_cursor_on_the_selected_one() -> None:
+async def test_vanished_vehicle_leaves_the_cursor_on_the_selected_one() -> None:
     async with console(picture=FLEET) as screen:
         await open_links(screen)
         await screen.press("end")
@@ -175,7 +175,7 @@ async def test_tab_gives_each_panel_the_room_in_turn() -> None:
         await until(lambda: "Rover 9" in screen.text)
 
 
-async def test_enter_chooses_nothing_while_another_panel_has_the_arrows() -> None:
+async def test_enter_chooses_nothing_while_another_panel_has_arrows() -> None:
     async with console(picture=FLEET) as screen:
         await open_links(screen)
         await screen.press("down", "tab", "enter")
@@ -248,7 +248,7 @@ async def test_a_request_of_another_station_stands_in_sight() -> None:
 HERE = [action for action in ACTIONS.values() if action.group != "app"]  # the others open screens, or quit
 
 
-async def test_of_all_actions_only_stops_and_those_of_control_reach_the_station() -> None:
+async def test_only_stops_and_control_actions_reach_the_station() -> None:
     """Keys that drive reach it while its gate is closed: it must know that they are held."""
     async with console(picture=FLEET) as screen:
         for action in HERE:

@@ -36,7 +36,7 @@ async def open_log(screen: Console, page: LogPage = MANY) -> LogScreen:
     return top
 
 
-async def test_it_requests_lines_while_it_is_open_and_says_which_it_has() -> None:
+async def test_it_requests_lines_while_open_and_says_which_it_has() -> None:
     async with console() as screen:
         await open_log(screen)
         await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100), RequestsRequest())))
@@ -83,7 +83,7 @@ async def test_arrows_and_pages_scroll(size: tuple[int, int]) -> None:
         await until(lambda: "line 100." in screen.text and "live, newest below" in screen.text)
 
 
-async def test_all_alerts_are_listed_whole_and_can_be_scrolled_where_they_are_many() -> None:
+async def test_all_alerts_are_listed_whole_and_scroll_where_many() -> None:
     async with console(picture=WARNED) as screen:
         assert "+12 F6" in screen.text
         await open_log(screen)
@@ -120,7 +120,7 @@ async def test_warnings_and_all() -> None:
         await until(lambda: "arm accepted" in screen.text)
 
 
-async def test_a_text_filters_while_it_is_typed_enter_keeps_it_and_escape_clears_it() -> None:
+async def test_typing_filters_enter_keeps_text_and_escape_clears_it() -> None:
     async with console() as screen:
         top = await open_log(screen, LOG_PAGE)
         await screen.press("slash", *"k", "backspace", *"regain")

@@ -202,7 +202,7 @@ async def test_transfers_are_shown_and_cancelled() -> None:
         assert screen.station.of(CancelRequest) == [CancelRequest(1)]
 
 
-async def test_another_vehicle_does_not_get_what_was_asked_for_the_first() -> None:
+async def test_another_vehicle_does_not_get_the_request_of_the_first() -> None:
     async with console() as screen:
         await open_map(screen)
         await screen.press("G")
@@ -274,7 +274,7 @@ async def test_a_geojson_file_is_a_layer_behind_the_plans(tmp_path: Path) -> Non
         ], "the map is as before"
 
 
-async def test_a_damaged_layer_is_one_line_and_one_far_away_is_named_and_not_fitted(tmp_path: Path) -> None:
+async def test_a_damaged_layer_is_one_line_and_a_far_one_is_not_fitted(tmp_path: Path) -> None:
     (tmp_path / "bad.geojson").write_text('{"type": "Point", "coordinates": [8.0, NaN]}')
     write_layer(tmp_path / "far.geojson", ("Point", [2.35, 48.85], "Paris"))
     async with console((140, 45), folder=tmp_path) as screen:
@@ -311,7 +311,7 @@ async def test_the_place_of_the_cursor_is_copied() -> None:
         assert f"copied {text}" in screen.text
 
 
-async def test_the_table_is_filtered_and_its_arrows_stay_in_what_is_shown() -> None:
+async def test_the_table_is_filtered_and_its_arrows_stay_in_it() -> None:
     async with console((140, 45)) as screen:
         model = await open_map(screen)
         await screen.press("slash", *"loiter", "enter")

@@ -53,7 +53,7 @@ def page_request(screen: Console) -> MessagesRequest:
     return request
 
 
-async def test_it_requests_rows_and_the_selected_message_while_it_is_open() -> None:
+async def test_it_requests_rows_and_the_selected_message_while_open() -> None:
     async with console() as screen:
         await open_messages(screen)
         assert len(newest(screen)) == 1
@@ -82,7 +82,7 @@ async def test_the_fields_of_another_message_are_not_shown() -> None:
         assert "41.2 %" not in screen.text
 
 
-async def test_the_filter_is_requested_while_it_is_typed_enter_keeps_it_and_escape_clears_it() -> None:
+async def test_typing_requests_filter_enter_keeps_and_escape_clears() -> None:
     async with console() as screen:
         top = await open_messages(screen)
         await screen.press("slash", *"src:1", "space", *"beat")
@@ -143,7 +143,7 @@ async def test_fields_scroll_behind_tab() -> None:
         await until(lambda: "choose a message" in screen.text)
 
 
-async def test_texts_of_a_vehicle_reach_the_terminal_without_control_characters() -> None:
+async def test_vehicle_texts_reach_terminal_without_control_characters() -> None:
     field = MessageField("text", "\x1b[2Jboo\x07", "\x1b", "", ("a\x1bb",))
     async with console() as screen:
         await open_messages(screen)
@@ -202,7 +202,7 @@ async def open_sys_status(screen: Console, *keys: str) -> None:
     await screen.press(*keys)
 
 
-async def test_the_first_number_is_plotted_and_tab_chooses_another_field() -> None:
+async def test_first_number_is_plotted_and_tab_chooses_another_field() -> None:
     async with console() as screen:
         await open_sys_status(screen)
         await until(lambda: msgspec.structs.replace(SYS_STATUS, field="load") in newest(screen))
@@ -263,7 +263,7 @@ async def test_a_wrong_rate_and_a_message_of_ours_are_not_requested() -> None:
         assert screen.station.of(RequestMessage) == []
 
 
-async def test_each_message_is_written_to_a_file_until_s_or_the_end_of_the_screen(tmp_path: Path) -> None:
+async def test_each_message_is_written_to_a_file_until_s_or_the_end(tmp_path: Path) -> None:
     async with console(folder=tmp_path) as screen:
         await open_sys_status(screen, "S")
         await until(lambda: CaptureRequest(1, 1, False, "SYS_STATUS") in newest(screen))

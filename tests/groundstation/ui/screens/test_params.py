@@ -86,7 +86,7 @@ async def test_a_vehicle_whose_parameters_are_known_is_not_asked_again() -> None
         assert screen.station.of(FetchParams) == []
 
 
-async def test_parameters_that_the_station_has_forgotten_are_read_again() -> None:
+async def test_parameters_the_station_has_forgotten_are_read_again() -> None:
     async with console() as screen:
         await open_params(screen)
         await offer(screen, EMPTY)
@@ -131,7 +131,7 @@ async def test_a_change_is_sent_after_the_question_only() -> None:
         assert len(screen.station.of(WriteParams)) == 1, "one write at a time"
 
 
-async def test_what_was_written_can_be_undone_and_what_was_refused_stays() -> None:
+async def test_a_written_value_can_be_undone_and_a_refused_one_stays() -> None:
     async with console() as screen:
         await open_params(screen)
         await change(screen, "0")

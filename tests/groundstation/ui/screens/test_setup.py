@@ -48,7 +48,7 @@ async def offer(screen: Console, view: DoctorView, picture: Snapshot = STANDS) -
     await screen.show(picture)
 
 
-async def test_it_watches_the_chain_and_names_the_fault_under_the_cursor() -> None:
+async def test_it_watches_the_chain_and_names_the_fault_at_the_cursor() -> None:
     async with console() as screen:
         await open_setup(screen)
         (request,) = screen.station.of(Watch)[-1].requests

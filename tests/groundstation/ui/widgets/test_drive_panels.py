@@ -137,7 +137,7 @@ UNKNOWN = (OutputView(name="servo 1", value=None),)
         ({"command_age": None}, "no demand is in use"),
     ],
 )
-def test_the_motors_obey_only_while_they_turn_by_a_demand_that_counts(changes: dict[str, object], note: str) -> None:
+def test_motors_obey_only_while_they_turn_by_a_valid_demand(changes: dict[str, object], note: str) -> None:
     assert texts(way(**changes).draw(40, 7))[6] == note
 
 

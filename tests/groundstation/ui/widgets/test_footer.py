@@ -43,7 +43,7 @@ KEYS = (ScreenKey("slash", "Filter", ""), ScreenKey("S", "Save", ""))
     ],
     ids=["keys", "text"],
 )
-def test_another_screen_has_the_stops_that_work_there_and_its_own_keys(screen: ScreenInfo, words: str) -> None:
+def test_another_screen_shows_its_stops_and_its_own_keys(screen: ScreenInfo, words: str) -> None:
     line = KeyFooter(FooterValue(STANDARD, screen=screen)).draw(100, 1)[0].text
     assert words in line
     assert "Disarm" not in line

@@ -16,7 +16,7 @@ def test_level_is_half_ground() -> None:
     assert [ground_fraction(level, 0, row, 4) for row in range(4)] == [0.0, 0.0, 1.0, 1.0]
 
 
-def test_nose_up_shows_sky_and_right_side_down_lifts_the_horizon_at_the_right() -> None:
+def test_nose_up_shows_sky_and_right_down_lifts_right_horizon() -> None:
     up, right = HorizonValue(0.0, 0.2), HorizonValue(0.3, 0.0)
     assert ground_fraction(up, 0, 2, 4) < 1.0
     assert ground_fraction(right, 8, 1, 4) > ground_fraction(right, -8, 1, 4)

@@ -7,7 +7,7 @@ from groundstation.ui.log.panel import LogPanel
 from tests.groundstation.ui.frames import texts
 
 
-def test_control_characters_from_the_wire_do_not_reach_the_terminal() -> None:
+def test_control_characters_of_wire_do_not_reach_the_terminal() -> None:
     nasty = LogLine(time=0.0, severity=6, label="vehicle", text="a\x1b[2Jb\x07\n", count=1)
     assert "\x1b" not in "".join(texts(LogPanel((nasty,)).draw(80, 1)))
 

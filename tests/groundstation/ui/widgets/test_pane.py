@@ -55,7 +55,7 @@ def test_a_line_goes_from_point_to_point_and_not_over_a_gap() -> None:
     assert " " not in gap[:9] + gap[21:]
 
 
-def test_slow_points_are_joined_and_a_line_that_came_from_the_left_edge_is_drawn_to_it() -> None:
+def test_slow_points_are_joined_also_across_the_left_edge() -> None:
     assert " " not in row(line([float(at) for at in range(0, DOTS + 10, 10)]))
     columns = Columns(1.0)
     made = Points()
@@ -114,7 +114,7 @@ def test_scales_that_people_read(low: float, high: float, wanted: tuple[float, f
     assert nice_scale(low, high) == pytest.approx(wanted)
 
 
-def test_the_timeline_draws_modes_then_events_then_keys_where_there_is_room() -> None:
+def test_the_timeline_draws_modes_events_and_keys_by_room() -> None:
     value = ChartTimelineValue(
         60, (TimelineMode(0, 30, "HOLD"), TimelineMode(30, 60, "MANUAL")),
         (TimelineMark(30, "armed", "armed"), TimelineMark(33, "key", "i"), TimelineMark(50, "link", "link lost")),

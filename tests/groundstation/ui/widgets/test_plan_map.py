@@ -52,7 +52,7 @@ def test_what_is_far_outside_costs_nothing_and_is_cut() -> None:
     assert not any("9" in line for line in lines)
 
 
-def test_a_badge_has_its_ground_on_both_sides_of_the_number_and_not_beyond() -> None:
+def test_a_badge_has_its_ground_on_both_sides_of_the_number_only() -> None:
     value = PlanMapValue(note="", window=MapWindow(), marks=(MapMark((0.0, 0.0), "7", "now"),))
     [(text, style)] = [
         (segment.text, segment.style)

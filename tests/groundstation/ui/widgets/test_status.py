@@ -33,7 +33,7 @@ def test_the_state_of_signing_is_always_in_the_header(state: SigningState) -> No
         assert "batt" in lines
 
 
-def test_what_is_refused_of_a_vehicle_that_signs_is_in_the_header() -> None:
+def test_the_header_counts_refused_frames_of_a_signing_vehicle() -> None:
     picture = snapshot(signing=SigningView(SigningState.ON, "on", "3 wrong key"))
     lines = " ".join(texts(StatusBar(StatusBarValue(picture, STANDARD)).draw(80, 2)))
     assert "sign on, refused 3 wrong key" in lines
@@ -43,21 +43,21 @@ def first_line(width: int = 80, **changes: Any) -> str:
     return StatusBar(StatusBarValue(snapshot(vehicle=vehicle(**changes)), STANDARD)).draw(width, 2)[0].text
 
 
-def test_a_disarmed_vehicle_in_emergency_stop_is_not_shown_as_armed() -> None:
+def test_a_disarmed_vehicle_in_emergency_stop_is_not_shown_armed() -> None:
     line = first_line(emergency_stop=True, armed=False)
     assert "EMERGENCY STOP" in line
     assert "ARMED" not in line
 
 
 @pytest.mark.parametrize("progress", [None, *EmergencyProgress])
-def test_a_vehicle_that_reports_armed_is_shown_as_armed_in_emergency_stop(progress: EmergencyProgress | None) -> None:
+def test_a_vehicle_reporting_armed_in_estop_is_shown_armed(progress: EmergencyProgress | None) -> None:
     line = first_line(emergency_stop=True, armed=True, emergency_progress=progress)
     assert " ARMED " in line
     assert "E-STOP SENT" in line
     assert "EMERGENCY STOP" not in line
 
 
-def test_an_unanswered_emergency_stop_of_a_disarmed_vehicle_is_only_sent() -> None:
+def test_an_unanswered_estop_of_a_disarmed_vehicle_is_only_sent() -> None:
     line = first_line(emergency_stop=True, armed=False, emergency_progress=EmergencyProgress.UNANSWERED)
     assert "DISARMED" in line
     assert "E-STOP SENT" in line
@@ -82,7 +82,7 @@ def away(**changes: Any) -> str:
     return StatusBar(StatusBarValue.from_state(state)).draw(80, 1)[0].text
 
 
-def test_away_from_the_drive_screen_the_vehicle_is_neutral_and_the_way_back_is_named() -> None:
+def test_away_from_drive_vehicle_is_neutral_and_the_way_named() -> None:
     assert "neutral · F1 drives" in away()
     assert "neutral" not in away(mode="AUTO")
     assert "neutral" not in away(armed=False)
@@ -90,7 +90,7 @@ def test_away_from_the_drive_screen_the_vehicle_is_neutral_and_the_way_back_is_n
     assert "link lost for 4 s" in away(alive=False, silence=4.0)
 
 
-def test_a_vehicle_that_obeys_another_station_is_not_driven_by_us() -> None:
+def test_vehicle_that_obeys_another_station_is_not_driven_by_us() -> None:
     line = first_line(obeys="obeys ground station 250 only")
     assert "you drive" not in line
     assert "obeys another GCS" in line
@@ -128,7 +128,7 @@ RECORDING = RecordingView(path="/logs/2026-11-22_14-05-09.tlog", seconds=31.0, s
 
 
 @pytest.mark.parametrize(("width", "height"), [(80, 2), (80, 1), (119, 1), (140, 1)])
-def test_a_dot_at_the_end_of_the_first_line_shows_that_the_session_is_recorded(width: int, height: int) -> None:
+def test_a_dot_ends_the_first_line_while_the_session_is_recorded(width: int, height: int) -> None:
     value = StatusBarValue(snapshot(operator=helm(), recording=RECORDING), STANDARD, 0.004)
     line = StatusBar(value).draw(width, height)[0].text.rstrip()
     assert line.endswith((" ●", " ● rec"))

@@ -27,7 +27,7 @@ def test_a_bar_grows_from_the_middle(percent: int, full: int, where: int | None)
     assert where is None or cells.index("█") == where
 
 
-def test_outputs_have_the_names_that_the_station_gives_and_unknown_ones_are_hidden() -> None:
+def test_outputs_have_stations_names_and_unknown_ones_are_hidden() -> None:
     assert [bar.label for bar in build_bars(snapshot())] == ["throttle", "steering", "left wheel", "right wheel"]
     assert len(build_bars(snapshot(vehicle=vehicle(outputs=())))) == 2
 

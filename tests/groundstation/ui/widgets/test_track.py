@@ -39,7 +39,7 @@ def test_north_is_up_and_east_is_right() -> None:
     assert east[0] > x
 
 
-def test_zooming_in_shows_less_around_the_vehicle_and_out_shows_more() -> None:
+def test_zooming_in_shows_less_around_vehicle_and_out_shows_more() -> None:
     track = tuple((float(step), 0.0) for step in range(100))
     canvas = Canvas(36, 14)
 
