@@ -160,6 +160,19 @@ class _Target:
         self.problem = f"no router at {self.locator} ({why.lower()})"
 
 
+def ask_quic(address: tuple[str, int], timeout: float) -> bool:
+    """Return whether a QUIC server answers within `timeout` s; blocks until then. Raises OSError."""
+    kind = socket.SOCK_DGRAM
+    family, _, _, _, where = socket.getaddrinfo(*address, type=kind)[0]
+    with socket.socket(family, kind) as probe:
+        probe.settimeout(timeout)
+        probe.connect(where)
+        probe.send(_quic_packet())
+        with contextlib.suppress(TimeoutError):
+            return _is_version_list(probe.recv(2048))
+    return False
+
+
 def _leave_half_open(probe: socket.socket) -> None:
     """Let the connection end before it is complete: Linux keeps the last packet of the handshake back for 0.2 s."""
     probe.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import logging
+import os
 import signal
 import socket
 import sys
@@ -23,6 +24,7 @@ from link.bridge.fleet.fleet_file import (
     read_fleet_file,
 )
 from link.bridge.fleet.members import read_encoded
+from link.bridge.fleet.self_probe import SelfProbe, raise_descriptor_limit
 from link.fleet.config import SETTINGS, apply_settings, load_zenoh
 from link.fleet.router_session import direct
 from link.runtime.command_line import CommandLineParser
@@ -37,15 +39,22 @@ ROUTER_SETTINGS: dict[str, Any] = {
     "connect/exit_on_failure": False,
     "connect/retry": {"period_init_ms": 200, "period_max_ms": 500, "period_increase_factor": 1.5},  # Zenoh's go to 4 s
     "transport/unicast/max_sessions": 10_000,  # Zenoh's own limit is 1000
+    "transport/unicast/accept_timeout": 2_000,  # ms from TLS to a session; Zenoh's own are 10 s
     "transport/unicast/accept_pending": 1_000,  # after a restart all come at once
     "transport/link/protocols": ["tls", "quic"],
 }
+NOT_ANSWERED = 1
+"""Exit code of a router that lets nobody new in (self_probe.py)."""
+ENOUGH_DESCRIPTORS = 4096
+"""Below that a few strangers with 20 connections each fill them."""
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 HELP = """\
 FILE is made by `bridge fleet new`. Whoever it does not name is refused, whatever its certificate.
 A restart takes a second; vehicles and ground stations reconnect by themselves, and rovers stop meanwhile.
 
-exit codes: 0 stopped by a signal (SIGTERM, Ctrl-C, SIGHUP), 2 usage error.
+It asks its own port every 10 s, and ends when three probes in a row are not answered: let a supervisor start it again.
+
+exit codes: 0 stopped by a signal (SIGTERM, Ctrl-C, SIGHUP), 1 its port let nobody in, 2 usage error.
 """
 
 
@@ -64,6 +73,7 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _run(fleet: FleetFile, folder: Path, links: Sequence[str]) -> None:
+    descriptors = raise_descriptor_limit()
     before = signal.pthread_sigmask(
         signal.SIG_BLOCK, SIGNALS
     )  # Zenoh's threads inherit it, so that sigwait() gets them
@@ -72,12 +82,24 @@ def _run(fleet: FleetFile, folder: Path, links: Sequence[str]) -> None:
         watching = session.info.declare_link_events_listener(direct(_log_link(fleet)), history=True)
         members = f"{len(fleet.vehicles)} vehicles, {len(fleet.operators)} operators"
         log.info("ready, fleet %s, %s, %s", fleet.fleet, " + ".join(fleet.listen), members)
+        if descriptors < ENOUGH_DESCRIPTORS:
+            log.warning("may open %d files only: set LimitNOFILE in its unit (docs/fleet.md)", descriptors)
+        probe = SelfProbe(fleet.listen, folder, _end_process)
+        probe.start()
         signal.sigwait(SIGNALS)
+        probe.close()
         watching.undeclare()
         session.close()
         log.info("stopped")
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _end_process(why: str) -> None:
+    """End at once, whatever Zenoh does: its threads may wait for a descriptor for ever."""
+    log.error("%s; ending, so that it is started again: limit connections as docs/fleet.md says", why)
+    logging.shutdown()
+    os._exit(NOT_ANSWERED)
 
 
 def _open(fleet: FleetFile, folder: Path, links: Sequence[str]) -> Any:
