@@ -24,6 +24,7 @@ MARKED = ("e2e", "interop")
 
 LONG = (
     "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "recipes", "soak", "test_examples.py",
+    "test_release.py::test_a_signature",
     "test_keys_to_motion.py::test_every_key_and_chord", "test_missions.py", "test_roaming.py",
     "test_secure_by_default.py::test_no_data_becomes_code",
     "dialects/extra", "dialects/test_build.py", "dialects/test_fingerprint.py::test_pytest_stops",

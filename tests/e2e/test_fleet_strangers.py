@@ -70,7 +70,7 @@ def gets_in(fleet: Path) -> bool:
 
 
 @pytest.mark.parametrize(("count", "files"), [(300, 4096), (1150, 1024)])
-def test_after_silent_strangers_newcomers_get_in_or_the_router_ends(tmp_path: Path, count: int, files: int) -> None:
+def test_after_strangers_newcomers_get_in_or_the_router_ends(tmp_path: Path, count: int, files: int) -> None:
     fleet = make_fleet(tmp_path, alice="drive")
     with ExitStack() as stack:
         router = RouterProcess(fleet, stack, within=("prlimit", f"--nofile=256:{files}"))

@@ -63,7 +63,7 @@ def test_the_wishes_of_one_operator_fill_no_memory() -> None:
     assert not all(brief.passes(ATTITUDE, "alice/1", 0.0) for _ in range(3)), "others are still served"
 
 
-def test_without_a_session_only_the_wishes_of_who_is_present_stay() -> None:
+def test_without_a_session_only_wishes_of_the_present_stay() -> None:
     brief = BriefTelemetry()
     for address in ("bob/1", "bob/2", "alice/1"):
         brief.set(address, is_brief=True)

@@ -77,7 +77,7 @@ def test_a_port_that_is_closed_does_not_answer(tmp_path: Path) -> None:
     assert "(connection refused)" in (probe.check() or "")
 
 
-def test_a_certificate_that_cannot_connect_is_an_answer_all_the_same(router: RouterProcess, tmp_path: Path) -> None:
+def test_a_certificate_that_cannot_connect_is_an_answer_too(router: RouterProcess, tmp_path: Path) -> None:
     """A fleet made by an older version has such a router's certificate; it must not end itself for that."""
     other = make_fleet(tmp_path)
     assert (other / ROUTER).exists()
