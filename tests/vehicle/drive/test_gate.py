@@ -1,4 +1,4 @@
-"""The last gate: it rejects everything that is not cleared."""
+"""The last gate: it rejects everything that is not cleared, to the edges of its rules."""
 
 from __future__ import annotations
 
@@ -9,11 +9,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.drive.gate import MOTOR_TEST_THROTTLE_MAX, MOTOR_TEST_TIME_MAX, Clearance, Gate, MotorTest, Outputs, Permit
+from vehicle.drive.gate import (
+    RAMP_TOLERANCE,
+    Clearance,
+    Gate,
+    MotorTest,
+    Outputs,
+    Permit,
+)
 
 CLEARED = Clearance(armed=True, late=False, held=False, neutral_seen=True, demand_age=0.1, timeout=0.45)
 FALL_TIME = 0.4
 ZERO = Outputs((0.0, 0.0), enabled=False)
+TRIAL = MotorTest(1, 0, 0.2)
 
 
 def judge(
@@ -35,13 +43,17 @@ def test_all_facts_together_permit_driving() -> None:
         ({"held": True}, Permit.RAMP_DOWN),
         ({"neutral_seen": False}, Permit.RAMP_DOWN),
         ({"demand_age": None}, Permit.RAMP_DOWN),
+        ({"demand_age": 0.0}, Permit.DRIVE),
+        ({"demand_age": 0.45}, Permit.DRIVE),  # to the last moment
+        ({"demand_age": math.nextafter(0.45, 1.0)}, Permit.RAMP_DOWN),
         ({"demand_age": 0.451}, Permit.RAMP_DOWN),
+        ({"demand_age": -1e-9}, Permit.RAMP_DOWN),
         ({"demand_age": -0.001}, Permit.RAMP_DOWN),
         ({"demand_age": math.nan}, Permit.RAMP_DOWN),
         ({"timeout": math.nan}, Permit.RAMP_DOWN),
     ],
 )
-def test_each_fact_alone_revokes_the_permit(change: dict[str, float], permit: Permit) -> None:
+def test_each_fact_alone_decides_on_the_permit(change: dict[str, float], permit: Permit) -> None:
     assert CLEARED._replace(**change).permit is permit  # type: ignore[arg-type]
 
 
@@ -146,97 +158,6 @@ def test_a_minimum_output_steps_to_zero_in_time() -> None:
     assert gate.refused == 0
 
 
-TRIAL = MotorTest(1, 0, 0.2)
-
-
-def test_a_motor_test_is_permitted_while_disarmed_and_on_time() -> None:
-    asked = Clearance(motor_test=TRIAL)
-    assert asked.permit is Permit.TEST
-    assert asked._replace(late=True).permit is Permit.NONE
-    assert asked._replace(armed=True).permit is Permit.RAMP_DOWN
-    assert CLEARED._replace(motor_test=TRIAL).permit is Permit.DRIVE
-
-
-def test_a_motor_test_passes_one_motor_for_3_s_and_no_longer() -> None:
-    gate = Gate(2)
-    for cycle in range(150):
-        assert judge(gate, (-0.3, 0.0), Permit.TEST, FALL_TIME, 10 + cycle * 0.02, TRIAL) == Outputs((-0.3, 0.0), True)
-    for cycle in range(150, 400):
-        assert judge(gate, (-0.3, 0.0), Permit.TEST, FALL_TIME, 10 + cycle * 0.02, TRIAL) == ZERO
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [(0.301, 0.0), (-0.301, 0.0), (0.2, 0.2), (0.0, 0.2), (0.2, -1e-9), (math.nan, 0.0), (0.2, math.nan), (0.2,)],
-)
-def test_an_invalid_motor_test_is_rejected(wrong: tuple[float, ...]) -> None:
-    gate = Gate(2)
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL).enabled
-    assert judge(gate, wrong, Permit.TEST, FALL_TIME, 0.02, TRIAL) == ZERO
-
-
-def test_without_a_request_there_is_no_motor_test() -> None:
-    assert judge(Gate(2), (0.2, 0.0), Permit.TEST, FALL_TIME, 0.0) == ZERO
-
-
-@pytest.mark.parametrize("between", [Permit.NONE, Permit.RAMP_DOWN, Permit.DRIVE])
-def test_interrupted_motor_test_is_over_and_new_one_has_its_time(between: Permit) -> None:
-    gate = Gate(2)
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL).enabled
-    judge(gate, (0.0, 0.0), between, FALL_TIME, 0.02, TRIAL)
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.04, TRIAL) == ZERO
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.06, MotorTest(2, 0, 0.2)).enabled
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.08, TRIAL) == ZERO  # an older one does not come back
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.10, MotorTest(2, 0, 0.2)) == ZERO
-
-
-def test_a_renewed_motor_test_continues() -> None:
-    gate = Gate(2)
-    for number in range(1, 11):
-        for now in (float(number), number + 0.9):
-            assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, now, MotorTest(number, 0, 0.2)).enabled
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 13.5, MotorTest(10, 0, 0.2)) == ZERO
-
-
-def test_no_ramp_follows_a_motor_test() -> None:
-    gate = Gate(2)
-    judge(gate, (0.3, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL)
-    assert judge(gate, (0.2, 0.0), Permit.RAMP_DOWN, FALL_TIME, 0.02) == ZERO
-
-
-def test_a_clock_that_goes_back_ends_a_motor_test() -> None:
-    gate = Gate(2)
-    judge(gate, (0.3, 0.0), Permit.TEST, FALL_TIME, 5.0, TRIAL)
-    assert judge(gate, (0.3, 0.0), Permit.TEST, FALL_TIME, 4.0, TRIAL) == ZERO
-
-
-@given(
-    st.lists(
-        st.tuples(
-            st.one_of(st.none(), st.integers(1, 4)),
-            st.lists(st.sampled_from([0.0, 0.1, 0.3, -0.3, 0.31, math.nan]), min_size=2, max_size=2).map(tuple),
-            st.floats(0.001, 1.0),
-        )
-    )
-)
-def test_no_request_turns_a_motor_longer_or_faster_than_allowed(
-    moves: list[tuple[int | None, tuple[float, ...], float]],
-) -> None:
-    gate, now, first = Gate(2), 0.0, dict[int, float]()
-    for number, values, dt in moves:
-        now += dt
-        trial = None if number is None else MotorTest(number, 0, 0.2)
-        outputs = judge(gate, values, Permit.NONE if trial is None else Permit.TEST, FALL_TIME, now, trial)
-        if number is None:
-            assert outputs == ZERO
-            continue
-        first.setdefault(number, now)
-        if any(outputs.throttles):
-            assert abs(outputs.throttles[0]) <= MOTOR_TEST_THROTTLE_MAX
-            assert outputs.throttles[1] == 0
-            assert now - first[number] < MOTOR_TEST_TIME_MAX
-
-
 @given(
     st.lists(
         st.tuples(
@@ -262,3 +183,103 @@ def test_every_output_is_valid_and_permitted(
             assert all(abs(new) <= abs(old) for new, old in zip(outputs.throttles, before, strict=True))
             assert now - drove <= FALL_TIME + 0.05 + 0.3
         before = outputs.throttles
+
+
+class TestClearance:
+    @pytest.mark.parametrize("fact", ["held", "neutral_seen", "demand_age", "timeout"])
+    def test_a_fact_that_is_not_filled_in_permits_no_driving(self, fact: str) -> None:
+        facts = {"held": False, "neutral_seen": True, "demand_age": 0.5, "timeout": 1.0}
+        assert Clearance(armed=True, **facts).permit is Permit.DRIVE  # type: ignore[arg-type]
+        del facts[fact]
+        assert Clearance(armed=True, **facts).permit is Permit.RAMP_DOWN  # type: ignore[arg-type]
+
+    def test_by_default_a_cycle_is_on_time_without_a_motor_test(self) -> None:
+        assert Clearance(motor_test=TRIAL).permit is Permit.TEST
+        assert Clearance(motor_test=TRIAL, late=True).permit is Permit.NONE
+        assert Clearance().motor_test is None
+
+
+class TestGate:
+    def test_a_new_one_stands_and_has_refused_nothing(self) -> None:
+        gate = Gate(3)
+        assert gate.refused == 0
+        assert gate.wheels == (0.0, 0.0, 0.0)
+        assert gate.filter((0.1,) * 3, (0.1,) * 3, Permit.RAMP_DOWN, FALL_TIME, 0.0) == Outputs(
+            (0.0,) * 3, enabled=False
+        )
+
+    def test_it_counts_what_it_refuses_in_a_row(self) -> None:
+        gate = Gate(2)
+        for count in (1, 2, 3):
+            assert gate.filter((2.0, 0.0), (0.0, 0.0), Permit.DRIVE, FALL_TIME, count * 0.02) == ZERO
+            assert gate.refused == count
+        gate.filter((2.0, 0.0), (0.0, 0.0), Permit.NONE, FALL_TIME, 1.0)
+        assert gate.refused == 3  # nothing was judged
+        gate.filter((1.0, -1.0), (1.0, -1.0), Permit.DRIVE, FALL_TIME, 1.02)
+        assert gate.refused == 0
+
+    @pytest.mark.parametrize("permit", [Permit.DRIVE, Permit.RAMP_DOWN, Permit.TEST])
+    def test_full_either_way_is_sound_and_more_is_not(self, permit: Permit) -> None:
+        for value in (1.0, -1.0):
+            gate = Gate(2)
+            gate.filter((value, 0.0), (value, 0.0), permit, FALL_TIME, 0.0, TRIAL)
+            assert gate.refused == 0
+            gate.filter((value * 1.000001, 0.0), (0.0, 0.0), permit, FALL_TIME, 0.0, TRIAL)
+            assert gate.refused == 1
+            gate.filter((value, 0.0), (value * 1.000001, 0.0), permit, FALL_TIME, 0.0, TRIAL)
+            assert gate.refused == 2
+
+    def test_each_driven_motor_has_to_stand_with_its_wheel(self) -> None:
+        for index in (0, 1):
+            motors = [0.0, 0.0, 0.1]
+            gate = Gate(3, driven=2)
+            assert gate.filter((0.0, 0.0, 0.0), motors, Permit.DRIVE, FALL_TIME, 0.0).enabled
+            motors[index] = -0.1
+            assert not gate.filter((0.0, 0.0, 0.0), motors, Permit.DRIVE, FALL_TIME, 0.02).enabled
+            assert gate.refused == 1
+
+    @pytest.mark.parametrize(("wheels", "motors"), [((0.1,), (0.1, 0.1)), ((0.1, 0.1), (0.1,)), ((0.1,), (0.1,))])
+    def test_a_missing_value_is_refused(self, wheels: tuple[float, ...], motors: tuple[float, ...]) -> None:
+        gate = Gate(2)
+        assert gate.filter(wheels, motors, Permit.DRIVE, FALL_TIME, 0.0) == ZERO
+        assert gate.refused == 1
+
+    def test_a_ramp_is_timed_from_its_begin_each_time(self) -> None:
+        assert RAMP_TOLERANCE == 0.05
+        gate = Gate(1)
+        half = ((0.5,), (0.5,))
+        assert gate.filter(*half, Permit.DRIVE, 1.0, 100.0).enabled
+        for now in (100.5, 101.0, 101.55):
+            assert gate.filter(*half, Permit.RAMP_DOWN, 1.0, now).enabled
+        assert not gate.filter(*half, Permit.RAMP_DOWN, 1.0, 101.56).enabled
+        assert gate.filter(*half, Permit.DRIVE, 1.0, 102.0).enabled
+        assert gate.filter(*half, Permit.RAMP_DOWN, 1.0, 102.5).enabled
+        assert gate.filter(*half, Permit.RAMP_DOWN, 1.0, 103.5).enabled
+
+    def test_a_ramp_may_end_at_its_last_moment_and_no_wheel_later(self) -> None:
+        gate = Gate(2)
+        gate.filter((0.5, 0.0), (0.5, 0.0), Permit.DRIVE, 0.45, 0.98)
+        assert gate.filter((0.5, 0.0), (0.5, 0.0), Permit.RAMP_DOWN, 0.45, 1.0).enabled
+        assert gate.filter((0.5, 0.0), (0.5, 0.0), Permit.RAMP_DOWN, 0.45, 1.5).enabled
+        assert gate.filter((0.5, 0.0), (0.5, 0.0), Permit.RAMP_DOWN, 0.45, 1.52) == ZERO
+
+    def test_after_the_ramp_zero_still_passes(self) -> None:
+        gate = Gate(2, driven=1)
+        gate.filter((0.5, 0.0), (0.5, 0.0), Permit.DRIVE, FALL_TIME, 0.0)
+        gate.filter((0.5, 0.0), (0.5, 0.0), Permit.RAMP_DOWN, FALL_TIME, 0.02)
+        gate.filter((0.0, 0.0), (0.0, 0.1), Permit.RAMP_DOWN, FALL_TIME, 9.0)
+        assert gate.refused == 0
+        assert gate.wheels == (0.0, 0.0)
+
+    def test_the_request_means_nothing_to_the_other_permits(self) -> None:
+        gate = Gate(2)
+        assert gate.filter((0.5, 0.5), (0.5, 0.5), Permit.DRIVE, FALL_TIME, 0.0, TRIAL).enabled
+        assert gate.filter((0.2, 0.0), (0.2, 0.0), Permit.TEST, FALL_TIME, 0.02, TRIAL).enabled
+
+    def test_of_a_motor_test_the_motor_gets_what_was_made_of_it(self) -> None:
+        gate = Gate(2)
+        outputs = gate.filter((0.2, 0.0), (0.6, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL)
+        assert outputs == Outputs((0.6, 0.0), enabled=True)
+        assert gate.wheels == (0.2, 0.0)
+        still = gate.filter((0.0, 0.0), (0.0, 0.0), Permit.TEST, FALL_TIME, 0.02, TRIAL)
+        assert still == Outputs((0.0, 0.0), enabled=True)

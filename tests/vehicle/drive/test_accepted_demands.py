@@ -1,4 +1,4 @@
-"""Control without a rover: what counts as a demand, and when neutral has to come first."""
+"""Demands that Control accepts, without a rover: their axes, their age, and when neutral comes first."""
 
 from __future__ import annotations
 
