@@ -18,6 +18,7 @@ from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.relay import (
     BATCH,
     MAX_RELAYED,
+    Alive,
     DemandRefused,
     Heard,
     HeardMessage,
@@ -80,9 +81,12 @@ class VerbPort:
                 break
             self._relay.hear(self._verb, now)
             try:
-                for number, payload in decode_from_verb(packet).messages:
+                messages = decode_from_verb(packet).messages
+                for number, payload in messages:
                     if number in MESSAGES:
                         self._relay.handle(self._verb, codec.decode(number, payload), now)
+                if not messages:
+                    self._send(Alive())
             except msgspec.DecodeError:
                 log.exception("invalid packet from a verb")
         self._flush()

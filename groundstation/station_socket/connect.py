@@ -28,14 +28,18 @@ def peer_credentials(sock: socket.socket) -> tuple[int, int]:
     return pid, user
 
 
-def running_stations() -> list[int]:
+def running_stations(within: float = HELLO_WITHIN) -> list[int]:
     """Return the process ids of the stations that run; sockets that a killed one has left are removed.
 
-    Raises FolderError.
+    One that hangs and takes no more connections counts after `within` s. Raises FolderError.
     """
     found = []
     for pid, path in list_sockets():
-        sock = _open(path)
+        try:
+            sock = _open(path, within)
+        except TimeoutError:
+            found.append(pid)
+            continue
         if sock is not None:
             sock.close()
             found.append(pid)
@@ -48,7 +52,10 @@ def connect(pid: int, hello: Hello, within: float = HELLO_WITHIN) -> socket.sock
     The socket gives up after `within` s, here and when it is read.
     """
     paths = dict(list_sockets())
-    sock = _open(paths[pid], within) if pid in paths else None
+    try:
+        sock = _open(paths[pid], within) if pid in paths else None
+    except TimeoutError:
+        raise NoStationError(f"station {pid} takes no more programs: it may hang") from None
     if sock is None:
         raise NoStationError(f"no station with process id {pid} runs here")
     if peer_credentials(sock)[1] != os.getuid():
@@ -59,13 +66,19 @@ def connect(pid: int, hello: Hello, within: float = HELLO_WITHIN) -> socket.sock
 
 
 def _open(path: Path, within: float = HELLO_WITHIN) -> socket.socket | None:
-    """Return a connection; None where nobody listens any more, and then the socket is removed."""
+    """Return a connection; None where nobody listens any more, and then the socket is removed.
+
+    Raises TimeoutError if the queue of those who connect stays full.
+    """
     sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
     sock.settimeout(within)
     try:
         with socket_address(path) as address:
             sock.connect(address)
+    except TimeoutError:
+        sock.close()
+        raise
     except OSError as error:
         sock.close()
         if error.errno == errno.ECONNREFUSED:

@@ -11,7 +11,7 @@ import msgspec
 from groundstation.station_socket.hello import StationFailed
 from link.core import LinkReport
 
-VERSION = 3
+VERSION = 4
 """Of the packets below."""
 
 MAX_RELAYED = 1 << 16
@@ -90,13 +90,17 @@ class MessageRefused(msgspec.Struct, frozen=True, tag=True):
     """One line for the user."""
 
 
+class Alive(msgspec.Struct, frozen=True, tag=True):
+    """From the station: the answer to a packet without messages. A station that hangs does not send it."""
+
+
 class ToSend(msgspec.Struct, frozen=True):
-    """From the verb: messages to send, ids and payloads. Without any it says that the verb runs."""
+    """From the verb: messages to send, ids and payloads. Without any it says that the verb runs, and asks for Alive."""
 
     messages: tuple[tuple[int, bytes], ...] = ()
 
 
-FromStation = VerbReady | Heard | LinksReport | DemandRefused | MessageRefused | StationFailed
+FromStation = VerbReady | Heard | LinksReport | DemandRefused | MessageRefused | Alive | StationFailed
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(FromStation).decode

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import logging
+import math
 import os
 import signal
 import sys
@@ -30,6 +31,7 @@ from groundstation.verbs.session.identity import choose_identity
 from groundstation.verbs.session.kept_session import KeptSession
 from groundstation.verbs.session.session import VerbSession, run_session
 from groundstation.verbs.session.station_link import AUTO, StationLink, find_station, station_choice
+from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
 from groundstation.verbs.table import VERBS
 from link.endpoint import EndpointError
@@ -44,9 +46,6 @@ if TYPE_CHECKING:
     from link.signing_keeper import SigningKeeper
 
 many = LaterModule("many")
-
-STOP_WITHIN = 0.5
-"""s for a station to answer before a stop goes without it: it may hang."""
 
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
@@ -114,12 +113,28 @@ async def _run_offline(action: VerbAction, options: argparse.Namespace, output: 
 async def _run(
     action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int], group: VehicleGroup | None
 ) -> int:
-    """Run the action, for all vehicles of a group if there is one.
+    """Run the action, for all vehicles of a group if there is one; a stop past a station that hangs.
 
     A signal cancels it, so that it ends in order, and is noted in `caught`.
     """
     _cancel_on_signals(caught)
-    station, endpoints = _find_way(action, options, output)
+    if not action.stops or options.through != AUTO:
+        return await _run_once(action, options, output, group, options.through)
+    system, named = options.system, options.endpoints  # those of a station take their place
+    until = asyncio.get_running_loop().time() + (options.timeout or STOP_WAIT)
+
+    async def attempt(through: str, endpoints: Sequence[str]) -> int:
+        options.system, options.endpoints = system, list(endpoints) or named
+        return await _run_once(action, options, output, group, through)
+
+    return await stop_by_any_way(attempt, output.note, until)
+
+
+async def _run_once(
+    action: VerbAction, options: argparse.Namespace, output: Output, group: VehicleGroup | None, through: str
+) -> int:
+    """Do so once, by a station or by links of its own."""
+    station, endpoints = _find_way(action, options, output, through)
     ids, kept = choose_identity(action, options, station)
     tap = action.tap(options, ids)
     own = station is None and not action.station and not getattr(options, "unsigned", False)
@@ -157,6 +172,7 @@ async def _run(
                 station=station,
                 log_tap=tap,
                 signing=signing,
+                patience=STOP_WITHIN if action.stops and through == AUTO else math.inf,
             )
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
@@ -190,7 +206,7 @@ async def _run_for_group(
 
 
 def _find_way(
-    action: VerbAction, options: argparse.Namespace, output: Output
+    action: VerbAction, options: argparse.Namespace, output: Output, through: str
 ) -> tuple[StationLink | None, Sequence[str]]:
     """Return the station that the verb goes through, or None, and the endpoints. Raises VerbError, EndpointError."""
 
@@ -199,14 +215,8 @@ def _find_way(
 
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
     hello = Hello(VERB, VERSION, f"groundstation {output.verb}", takes_part=not action.watches, follows=action.follows)
-    try:
-        within = STOP_WITHIN if action.stops else HELLO_WITHIN
-        station = find_station(options.through, endpoints, hello, output.note, within)
-    except VerbError as error:
-        if not action.stops or options.through != AUTO:
-            raise
-        output.note(f"{error}; this stop opens links of its own")
-        station = None
+    within = STOP_WITHIN if action.stops and through == AUTO else HELLO_WITHIN
+    station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
         return station, station.ready.endpoints
     return None, endpoints or choose()

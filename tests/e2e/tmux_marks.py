@@ -7,11 +7,8 @@ import shutil
 
 import pytest
 
-IN_TMUX = [
-    pytest.mark.e2e,
-    pytest.mark.tmux,
-    pytest.mark.skipif(
-        shutil.which("tmux") is None and "MAVHELM_CI" not in os.environ,
-        reason="tmux is not installed: `sudo apt install tmux` to run this test",
-    ),
-]
+NEEDS_TMUX = pytest.mark.skipif(
+    shutil.which("tmux") is None and "MAVHELM_CI" not in os.environ,
+    reason="tmux is not installed: `sudo apt install tmux` to run this test",
+)
+IN_TMUX = [pytest.mark.e2e, pytest.mark.tmux, NEEDS_TMUX]

@@ -96,7 +96,8 @@ class FakeArduPilot(FakeVehicle):
 
     def _allow_arming(self) -> None:
         if self._throttle:
-            self.answers[Command.COMPONENT_ARM_DISARM] = Result.FAILED, "Arm: Throttle (RC3) is not neutral"
+            refused = Result.FAILED, "Arm: Throttle (RC3) is not neutral"
+            self.answers[Command.COMPONENT_ARM_DISARM] = lambda command: refused if command.param1 else None
         else:
             self.answers.pop(Command.COMPONENT_ARM_DISARM, None)
 

@@ -61,10 +61,10 @@ class ArmSequence(msgspec.Struct):
         """Take the next step when it is due."""
         if self.step is ArmStep.NEUTRAL and now >= self.due:
             self._mode_or_arm(client, now)
-        elif self.step is ArmStep.CONFIRM and self.vehicle.armed:
+        elif self.step is ArmStep.CONFIRM and not (doubt := find_arming_doubt(self.vehicle, now)):
             self.step = ArmStep.DONE
         elif self.step is ArmStep.CONFIRM and now >= self.due:
-            self.step, self.failure = ArmStep.DONE, "arming acknowledged, but the heartbeat reports disarmed"
+            self.step, self.failure = ArmStep.DONE, f"arming acknowledged, but {doubt}"
 
     def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, now: float) -> None:
         """Take the next step after the acknowledgement of a command, or end the sequence."""
@@ -95,6 +95,14 @@ class ArmSequence(msgspec.Struct):
             target_component=self.vehicle.component,
             now=now,
         )
+
+
+def find_arming_doubt(vehicle: VehicleState, now: float) -> str:
+    """Return which sender of its id does not report armed, in words; "" if the last report of each does.
+
+    A script on board that claims to be the autopilot does not arm.
+    """
+    return vehicle.senders.find_doubt(now, lambda sender: sender.armed or sender.component != vehicle.component)
 
 
 def _needs_manual(vehicle: VehicleState) -> bool:

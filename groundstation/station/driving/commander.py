@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import msgspec
 
 from dialects.enums import Command, Result, Severity
@@ -15,8 +17,17 @@ from groundstation.station.driving.command_results import CommandResults
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.station.driving.stop_questions import FALLS, StopQuestions
 from groundstation.vehicles.demand.blind_stop import BlindStop
-from groundstation.vehicles.demand.stop_commands import DANGEROUS, DISARM, StopKind, hold_command, send_stop
+from groundstation.vehicles.demand.stop_commands import (
+    DANGEROUS,
+    DISARM,
+    StopCommand,
+    StopKind,
+    hold_command,
+    send_stop,
+    shows_hold,
+)
 from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.senders import Sender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -24,18 +35,25 @@ from link.services.command.client import CommandClient, CommandOutcome
 QUERY_COMMANDS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
 """Commands that the station sends on its own: their results are not logged."""
 
-DISARM_RETRY, DISARM_TIMEOUT = 1.5, 6.0
-"""s after which disarm is repeated while the heartbeat reports armed, and after which that is reported as a failure."""
+STOP_RETRY, STOP_TIMEOUT = 0.5, 6.0
+"""s after which disarm and HOLD are repeated while a heartbeat reports that it is not so, as the emergency stop is, and
+after which that is reported as a failure."""
 
 
 BLIND_FOR = 30.0
 """s for which a blind stop is repeated, as one of a verb: a radio link may be cut for some seconds."""
 
 
-class _Disarm(msgspec.Struct):
+class _Stop(msgspec.Struct):
+    """A disarm or HOLD that is repeated."""
+
     vehicle: VehicleState
+    label: str
+    stop: StopCommand
+    is_done: Callable[[Sender], bool]
     due: float
     until: float
+    tries: int = 1
 
 
 class Commander:
@@ -46,7 +64,8 @@ class Commander:
         self._results = CommandResults(log)
         self._client = CommandClient(system, component)
         self._arming: ArmSequence | None = None
-        self._disarms: dict[int, _Disarm] = {}
+        self._stops: dict[tuple[int, int], _Stop] = {}
+        """System id and command -> what is repeated."""
         self._locks: dict[int, EmergencyLock] = {}
         self._claims = Claims()
         self._stop_questions = StopQuestions()
@@ -75,7 +94,8 @@ class Commander:
         if vehicle.system in self._locks or vehicle.emergency_stop:
             self._results.add_refusal(vehicle.system, "arm: emergency stop active, clear it first", now)
             return
-        self._disarms.pop(vehicle.system, None)
+        self._stops.pop((vehicle.system, Command.COMPONENT_ARM_DISARM), None)
+        self._stops.pop((vehicle.system, Command.DO_SET_MODE), None)
         self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {MANUAL}")
         self._vehicles[vehicle.system] = vehicle
         self._arming = ArmSequence.start(vehicle, now)
@@ -83,9 +103,7 @@ class Commander:
     def disarm(self, vehicle: VehicleState, now: float) -> None:
         """Disarm, and repeat until the heartbeat agrees: the vehicle may still act on an earlier arm command."""
         self._arming = None
-        self._disarms[vehicle.system] = _Disarm(vehicle, now + DISARM_RETRY, now + DISARM_TIMEOUT)
-        self._vehicles[vehicle.system] = vehicle
-        send_stop(self._client, vehicle, DISARM, now)
+        self._stop(vehicle, "disarm", DISARM, lambda sender: not sender.armed, now)
 
     def release_control(self, vehicle: VehicleState, now: float, *, station: int = 0) -> None:
         """Release control: at once as far as we are concerned, and with a command for a vehicle that manages it.
@@ -96,10 +114,14 @@ class Commander:
         self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL, 0, 0, 0, station, now=now)
 
     def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
-        """Change the mode to the one of this name (dialects/kinds.py); refused if its kind has no such mode."""
+        """Change the mode to the one of this name (dialects/kinds.py); refused if its kind has no such mode.
+
+        HOLD is repeated until each sender of its id reports it, or another mode is chosen.
+        """
         hold = hold_command(vehicle) if name == HOLD else None
+        self._stops.pop((vehicle.system, Command.DO_SET_MODE), None)
         if hold is not None:
-            send_stop(self._client, vehicle, hold, now)
+            self._stop(vehicle, f"mode {HOLD}", hold, lambda sender: shows_hold(vehicle, sender), now)
         if hold is not None or send_mode(self._client, vehicle, name, now):
             self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {name}")
             return
@@ -188,7 +210,7 @@ class Commander:
     @property
     def busy(self) -> bool:
         """Whether a command is under way or is to be repeated."""
-        stopping = self._disarms or self._locks or self._blind
+        stopping = self._stops or self._locks or self._blind
         return self._arming is not None or bool(stopping) or self._client.busy
 
     def is_pending(self, command: Command, vehicle: VehicleState) -> bool:
@@ -243,8 +265,8 @@ class Commander:
         if self._arming is not None:
             self._arming.tick(self._client, now)
             self._end_arming(self._arming, now)
-        for disarm in list(self._disarms.values()):
-            self._retry_disarm(disarm, now)
+        for stop in list(self._stops.values()):
+            self._retry(stop, now)
         self._client.tick(now)
         self._handle_outcomes(now)
 
@@ -260,17 +282,26 @@ class Commander:
         self._vehicles[system] = vehicle
         self._client.send(command, *params, target_system=system, target_component=component, now=now)
 
-    def _retry_disarm(self, disarm: _Disarm, now: float) -> None:
-        vehicle = disarm.vehicle
-        doubt = vehicle.senders.find_doubt(now)
+    def _stop(
+        self, vehicle: VehicleState, label: str, stop: StopCommand, is_done: Callable[[Sender], bool], now: float
+    ) -> None:
+        key = vehicle.system, stop.command
+        self._stops[key] = _Stop(vehicle, label, stop, is_done, now + STOP_RETRY, now + STOP_TIMEOUT)
+        self._vehicles[vehicle.system] = vehicle
+        send_stop(self._client, vehicle, stop, now)
+
+    def _retry(self, stop: _Stop, now: float) -> None:
+        vehicle, command = stop.vehicle, stop.stop.command
+        doubt = vehicle.senders.find_doubt(now, stop.is_done)
         if not doubt:
-            del self._disarms[vehicle.system]
-        elif now >= disarm.until:
-            del self._disarms[vehicle.system]
-            self._results.add_refusal(vehicle.system, f"disarm: {vehicle.name}: {doubt}", now)
-        elif now >= disarm.due and not self.is_pending(Command.COMPONENT_ARM_DISARM, vehicle):
-            disarm.due = now + DISARM_RETRY
-            send_stop(self._client, vehicle, DISARM, now)
+            del self._stops[vehicle.system, command]
+        elif now >= stop.until:
+            del self._stops[vehicle.system, command]
+            self._results.add_refusal(vehicle.system, f"{stop.label}: {vehicle.name}: {doubt}", now)
+        elif now >= stop.due and not self.is_pending(command, vehicle):
+            stop.due = now + STOP_RETRY
+            send_stop(self._client, vehicle, stop.stop, now, attempt=stop.tries)
+            stop.tries += 1
 
     def _send_blind_stop(self, now: float) -> None:
         if self._blind is not None and now >= self._blind_until:
@@ -308,8 +339,8 @@ class Commander:
         if self._arming is not None and self._arming.vehicle.system == system:
             self._arming.handle_outcome(outcome, self._client, now)
             self._end_arming(self._arming, now)
-        if outcome.command == Command.COMPONENT_ARM_DISARM and outcome.result is not Result.ACCEPTED:
-            self._disarms.pop(system, None)  # refused or no answer; that has been logged
+        if outcome.result is not Result.ACCEPTED:
+            self._stops.pop((system, outcome.command), None)  # refused or no answer; that has been logged
 
 
 def _grants_control(outcome: CommandOutcome) -> bool:

@@ -29,6 +29,7 @@ class EmergencyLock(msgspec.Struct):
     since: float
     """When the stop was requested."""
     due: float = -math.inf
+    rounds: int = 0
     switch_answered: bool = False
     """The safety switch command was acknowledged, with whatever result."""
     disarm_answered: bool = False
@@ -46,9 +47,10 @@ class EmergencyLock(msgspec.Struct):
             return
         self.due = now + RETRY_PERIOD
         if not self.switch_answered:
-            send_stop(client, self.vehicle, LOCK, now)
+            send_stop(client, self.vehicle, LOCK, now, attempt=self.rounds)
         if not self.disarm_answered or self.doubt(now):
-            send_stop(client, self.vehicle, FORCED, now)
+            send_stop(client, self.vehicle, FORCED, now, attempt=self.rounds)
+        self.rounds += 1
 
     def clear(self, client: CommandClient, now: float) -> None:
         """Request the release of the lock."""

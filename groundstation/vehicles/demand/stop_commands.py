@@ -14,6 +14,7 @@ from dialects.enums import Command, ModeFlag
 from dialects.mode_tables import HOLD
 from dialects.modes import set_mode_params
 from dialects.vehicle_types import AUTOPILOT_COMPONENT
+from groundstation.vehicles.state.senders import Sender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.services.command.client import CommandClient
 
@@ -74,10 +75,21 @@ def hold_command(state: VehicleState) -> StopCommand | None:
     return None if number is None else StopCommand(Command.DO_SET_MODE, set_mode_params(number, state.autopilot))
 
 
-def send_stop(client: CommandClient, state: VehicleState, stop: StopCommand, now: float) -> None:
+def shows_hold(state: VehicleState, sender: Sender) -> bool:
+    """Return whether a sender of the vehicle's id shows that it holds.
+
+    A script on board that claims to be the autopilot has modes of its own; it must be disarmed.
+    """
+    if sender.component != state.component and not sender.armed:
+        return True
+    return sender.custom_mode == state.model.number_of(HOLD)
+
+
+def send_stop(client: CommandClient, state: VehicleState, stop: StopCommand, now: float, *, attempt: int = 0) -> None:
     """Send a stop to every component of a vehicle that claims to be its autopilot.
 
-    To component 0 as well, which means all, if that is not the usual one alone; the client adds it to repeats.
+    To component 0 as well, which means all, if that is not the usual one alone; the client adds it to repeats. Every
+    other `attempt` begins as COMMAND_INT: of two vehicles with one id one may accept, and the other take that only.
     """
     others = tuple(each for each in state.senders.components if each != state.component)
     further = () if not others and state.component == AUTOPILOT_COMPONENT else (0, *others)
@@ -89,4 +101,5 @@ def send_stop(client: CommandClient, state: VehicleState, stop: StopCommand, now
         now=now,
         further=further,
         stop=True,
+        other_form=attempt % 2 == 1,
     )

@@ -13,8 +13,9 @@ from collections.abc import Callable, Hashable, Iterator
 import msgspec
 
 from dialects import messages as m
-from dialects.enums import ModeFlag
+from dialects.enums import ModeFlag, SystemState
 from dialects.kinds import find_kind
+from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from link.core import Received
 
@@ -57,6 +58,8 @@ class Sender(msgspec.Struct):
     """When it started by our clock, from its newest time_boot_ms."""
     uid: int = 0
     """Unique id of its AUTOPILOT_VERSION; 0: not known."""
+    locked: bool = False
+    """It reports that its motors are locked. ArduPilot and PX4 mean something else by EMERGENCY."""
     differs_since: float = math.inf
     """Since when its reports differ from those of another sender."""
 
@@ -71,7 +74,8 @@ class Sender(msgspec.Struct):
     @property
     def report(self) -> str:
         """What it reported last, in words."""
-        return f"{'ARMED' if self.armed else 'disarmed'} in {self._mode}"
+        locked = ", locked by its emergency stop" if self.locked else ""
+        return f"{'ARMED' if self.armed else 'disarmed'} in {self._mode}{locked}"
 
 
 class Senders:
@@ -142,6 +146,7 @@ class Senders:
                 self._senders.pop((*key[:3], 0), None)
             self._senders[key] = sender
         sender.autopilot, sender.armed, sender.custom_mode = message.autopilot, armed, message.custom_mode
+        sender.locked = message.system_status == SystemState.EMERGENCY and message.autopilot not in FOREIGN_AUTOPILOTS
         sender.at, sender.clash = now, received.clash
         self._compare(sender, now)
 

@@ -14,7 +14,7 @@ import msgspec
 
 from dialects import messages as m
 from dialects.enums import Command, Result
-from groundstation.station.driving.arming import ArmSequence, ArmStep
+from groundstation.station.driving.arming import ArmSequence, ArmStep, find_arming_doubt
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.requests.requests import RequestBook, RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -43,11 +43,11 @@ class ArmJob(msgspec.Struct):
         self.sequence.tick(client, now)
         if self.sequence.step is not ArmStep.DONE:
             return
-        if self.sequence.vehicle.armed:
-            book.accept(self.number)
-        elif self.sequence.failure is not None:
-            book.refuse(self.number, self.sequence.failure, now)
+        if self.sequence.failure is not None:
+            book.refuse(self.number, self.sequence.failure, now, by_vehicle=False)
             self.sequence.failure = None
+        elif self.sequence.vehicle.armed:
+            book.accept(self.number)
 
     def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:
         """End with the first refusal."""
@@ -67,6 +67,9 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     await session.need_only_vehicle(options.vehicle)
     state = session.vehicle
     if state.armed and not state.emergency_stop:
+        await session.hear_all()
+        if doubt := find_arming_doubt(state, session.now):
+            raise VerbError(ExitCode.REFUSED, f"{state.name} reports ARMED, but {doubt}: two vehicles may have its id")
         output.note(f"{state.name} is armed already")
         output.result(True, state.system, armed=True, detail="armed already")
         return ExitCode.DONE

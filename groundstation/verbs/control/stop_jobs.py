@@ -8,15 +8,13 @@ from dataclasses import dataclass, field
 import msgspec
 
 from dialects.enums import Command, Result, result_name
-from dialects.mode_tables import HOLD
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.arming import CONFIRM_WITHIN
-from groundstation.station.driving.commander import DISARM_RETRY
+from groundstation.station.driving.commander import STOP_RETRY
 from groundstation.station.driving.emergency import EmergencyLock
-from groundstation.vehicles.demand.stop_commands import DISARM, hold_command, send_stop
+from groundstation.vehicles.demand.stop_commands import DISARM, hold_command, send_stop, shows_hold
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.requests.requests import RequestBook
-from groundstation.vehicles.state.senders import Sender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.services.command.client import CommandClient, CommandOutcome
 
@@ -45,11 +43,13 @@ class RepeatedCommand:
 
     number: int
     command: Command
-    send: Callable[[CommandClient, float], None]
+    send: Callable[[CommandClient, float, int], None]
+    """Takes the client, the time, and the number of tries before."""
     find_doubt: Callable[[float], str]
     """Takes the time; returns which sender of its id does not report the effect, "" if the last report of each does."""
     times: StopTimes
     _due: float = 0.0
+    _tries: int = 0
     _accepted: bool = False
     _was_done: bool = field(init=False)
     """It was so before the first try: then it counts only with an answer."""
@@ -65,8 +65,9 @@ class RepeatedCommand:
         elif now >= self.times.until:
             self._give_up(client, book, now)
         elif now >= self._due:
-            self._due = now + DISARM_RETRY
-            self.send(client, now)
+            self._due = now + STOP_RETRY
+            self.send(client, now, self._tries)
+            self._tries += 1
 
     def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:
         """End with a refusal; repeat what was not answered, or rejected for the moment."""
@@ -93,8 +94,8 @@ class RepeatedCommand:
 def disarm_job(number: int, state: VehicleState, times: StopTimes) -> RepeatedCommand:
     """Return the job that disarms."""
 
-    def send(client: CommandClient, now: float) -> None:
-        send_stop(client, state, DISARM, now)
+    def send(client: CommandClient, now: float, tries: int) -> None:
+        send_stop(client, state, DISARM, now, attempt=tries)
 
     return RepeatedCommand(number, DISARM.command, send, state.senders.find_doubt, times)
 
@@ -104,18 +105,12 @@ def hold_job(number: int, state: VehicleState, times: StopTimes) -> RepeatedComm
     hold = hold_command(state)
     if state.model.refusal or hold is None:
         return RefusedJob(number, f"{state.model.refusal}; `mode` takes a mode that it lists, `disarm` ends its power")
-    wanted = state.model.number_of(HOLD)
 
-    def is_held(sender: Sender) -> bool:
-        if sender.component != state.component and not sender.armed:
-            return True  # a script on board that claims to be the autopilot has modes of its own
-        return sender.custom_mode == wanted
-
-    def send(client: CommandClient, now: float) -> None:
-        send_stop(client, state, hold, now)
+    def send(client: CommandClient, now: float, tries: int) -> None:
+        send_stop(client, state, hold, now, attempt=tries)
 
     def find_doubt(now: float) -> str:
-        return state.senders.find_doubt(now, is_held)
+        return state.senders.find_doubt(now, lambda sender: shows_hold(state, sender))
 
     return RepeatedCommand(number, Command.DO_SET_MODE, send, find_doubt, times)
 

@@ -10,11 +10,13 @@ import argparse
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine, Iterable
 
+from dialects import messages as m
 from dialects.enums import Command
 from groundstation.station.driving.arming import CONFIRM_WITHIN
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.vehicles.demand.blind_stop import BlindStop
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, STOP_VERBS, StopKind
+from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.arguments import is_chosen
@@ -165,9 +167,26 @@ async def estop(session: VerbSession, options: argparse.Namespace, output: Outpu
             number, Command.DO_SET_SAFETY_SWITCH_STATE, (DANGEROUS,), "release the emergency stop", now
         )
     )
-    is_clear = await session.wait_for(lambda: not session.vehicle.emergency_stop, CONFIRM_WITHIN)
-    if report.state is RequestState.ACCEPTED and not is_clear:
-        output.error(f"{session.vehicle.name}: accepted, but it still reports the emergency stop")
-        output.result(False, session.vehicle.system, detail="accepted, but it still reports the emergency stop")
+    if report.state is not RequestState.ACCEPTED:
+        return finish(session, report, output, "")
+    if session.vehicle.autopilot in FOREIGN_AUTOPILOTS:
+        return finish(session, report, output, "has accepted the release; it does not report whether it is locked")
+    if doubt := await _wait_for_release(session):
+        output.error(f"{session.vehicle.name}: accepted, but {doubt}")
+        output.result(False, session.vehicle.system, detail=f"accepted, but {doubt}")
         return ExitCode.REFUSED
     return finish(session, report, output, "has released the emergency stop")
+
+
+async def _wait_for_release(session: VerbSession) -> str:
+    """Wait until each sender of its id has reported that it is not locked; return who has not, "" if all have."""
+    state, accepted_at = session.vehicle, session.now
+
+    def find_doubt() -> str:
+        if session.heard_at(m.Heartbeat) <= accepted_at:
+            return "no heartbeat has come since then"
+        doubt = state.senders.find_doubt(session.now, lambda sender: not sender.locked)
+        return doubt or ("it still reports the emergency stop" if state.emergency_stop else "")
+
+    await session.wait_for(lambda: not find_doubt(), CONFIRM_WITHIN)
+    return find_doubt()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 
+from dialects.mode_tables import HOLD
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.handover import ANSWER_WITHIN
+from groundstation.vehicles.demand.stop_commands import shows_hold
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.line.session import LineOutput, LineSession
@@ -40,10 +42,13 @@ async def stop(session: LineSession, options: argparse.Namespace, output: LineOu
     """Stop the sticks, and change to HOLD."""
     _need_selected(session)
     state = session.vehicle
-    before = state.mode
-    session.do(Stop(), SetMode(mode="HOLD"))
-    done = await session.wait_for(lambda: state.mode == "HOLD" or state.mode != before, STOPPED_WITHIN)
-    output.note(f"{state.name} is in {state.mode}" if done else f"{state.name}: stop sent; it reports {state.mode}")
+    session.do(Stop(), SetMode(mode=HOLD))
+
+    def find_doubt() -> str:
+        return state.senders.find_doubt(session.now, lambda sender: shows_hold(state, sender))
+
+    done = await session.wait_for(lambda: not find_doubt(), STOPPED_WITHIN)
+    output.note(f"{state.name} {'holds' if done else f'is not known to hold: {find_doubt()}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 
 

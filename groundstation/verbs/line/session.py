@@ -89,6 +89,10 @@ class LineSession:
     async def need_only_vehicle(self, wanted: int | str | None) -> None:
         """Do nothing: the operator has chosen the vehicle."""
 
+    def explain_silence(self) -> str:
+        """Return nothing: the header of each screen says how the vehicle signs."""
+        return ""
+
     async def take_part(self) -> None:
         """Do nothing: the station proves its session."""
 

@@ -27,6 +27,8 @@ ALONE_AFTER = 1.3
 """s for which the links are heard before a vehicle counts as the only one, and a script that claims to be an autopilot
 as the autopilot: a heartbeat interval and a delay."""
 
+SIGNS = "it signs its frames with a key that is not here, and may obey only that: `groundstation sign` has the keys"
+
 Tap = Callable[[Received, float], None]
 """Takes each message that arrives, and the time."""
 
@@ -116,6 +118,14 @@ class VerbCore:
         if why is not None:
             self.handle_refused(message, why, now)
         return why is None
+
+    def explain_silence(self, system: int) -> str:
+        """Return why a vehicle that is heard may answer nothing: it signs with a key that is not here; else ""."""
+        if not any(system in each.signing for each in self.reports):
+            return ""
+        if any(system in each.verified for each in self.reports):
+            return ""
+        return f"; {SIGNS}"
 
     def driven(self) -> tuple[DrivenVehicle, ...]:
         """Return what the watchdog must know. It sends no neutral to a kind that is not driven: it may fall by it."""

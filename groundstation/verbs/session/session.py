@@ -171,6 +171,10 @@ class VerbSession:
             await asyncio.wait_for(self.core.add_look(condition), seconds)
         return condition()
 
+    def explain_silence(self) -> str:
+        """Return why the vehicle may answer nothing, behind "; "; "" if nothing is known."""
+        return self.core.explain_silence(self.vehicle.system)
+
     @property
     def _refusal(self) -> str:
         contact = self._contact or self.core.chosen
@@ -236,18 +240,19 @@ async def run_session(
     station: StationLink | None = None,
     log_tap: LogTap | None = None,
     signing: SigningKeeper | None = None,
+    patience: float = math.inf,
 ) -> int:
     """Open the links, run the script, and return its exit code. Raises EndpointError, LinkError, VerbError.
 
-    With `station` there are no links: the verb goes through it. A script that is interrupted gets END_WITHIN to end in
-    order, over links that still work.
+    With `station` there are no links: the verb goes through it, unless it does not answer for `patience` s. A script
+    that is interrupted gets END_WITHIN to end in order, over links that still work.
     """
     core = VerbCore(ids, wanted, session)
     core.guard = guard
     runner: Runner | StationRunner
     if station is not None:
         core.has_heard_all = True
-        runner = StationRunner(core, station, PERIOD, lambda links: core.observe(links.reports, 0.0), log_tap)
+        runner = StationRunner(core, station, PERIOD, lambda links: core.observe(links.reports, 0.0), log_tap, patience)
     else:
         from link.endpoint import Side
         from link.links import open_links

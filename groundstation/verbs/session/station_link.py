@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 import socket
 from collections.abc import Callable, Sequence
 
@@ -18,6 +19,7 @@ from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.relay import (
     ALIVE_PERIOD,
     MAX_RELAYED,
+    Alive,
     DemandRefused,
     Heard,
     HeardMessage,
@@ -44,6 +46,15 @@ def station_choice(text: str) -> str:
     raise ValueError(text)
 
 
+class StationLostError(VerbError):
+    """No station takes a verb, though one runs: it does not answer, has ended, or there are several."""
+
+    def __init__(self, code: ExitCode, text: str, endpoints: Sequence[str] = ()) -> None:
+        super().__init__(code, text)
+        self.endpoints = endpoints
+        """Those that it had open, if it has said so."""
+
+
 class StationLink:
     """An open connection; `ready` has the ids and the session of the station."""
 
@@ -53,11 +64,11 @@ class StationLink:
 
     @classmethod
     def open(cls, pid: int, hello: Hello, within: float = HELLO_WITHIN) -> StationLink:
-        """Connect to the station with this process id. Raises VerbError."""
+        """Connect to the station with this process id. Raises StationLostError."""
         try:
             sock = connect(pid, hello, within)
         except (NoStationError, FolderError) as error:
-            raise VerbError(ExitCode.USAGE, str(error)) from error
+            raise StationLostError(ExitCode.USAGE, str(error)) from error
         try:
             answer = decode_from_station(sock.recv(MAX_RELAYED))
         except (OSError, msgspec.DecodeError):
@@ -67,7 +78,7 @@ class StationLink:
             return cls(sock, answer)
         sock.close()
         line = answer.line if isinstance(answer, StationFailed) else f"station {pid} has another version"
-        raise VerbError(ExitCode.USAGE, line)
+        raise StationLostError(ExitCode.USAGE, line)
 
 
 def find_station(
@@ -77,7 +88,7 @@ def find_station(
     note: Callable[[str], None],
     within: float = HELLO_WITHIN,
 ) -> StationLink | None:
-    """Return the station that a verb goes through; None: it opens links of its own. Raises VerbError.
+    """Return the station that a verb goes through; None: it opens links of its own. Raises VerbError, StationLostError.
 
     With `endpoints`, those that the user named, a station counts only if it has them open. `note` gets why stations
     cannot be looked for. A station that does not answer `within` s is none.
@@ -87,7 +98,7 @@ def find_station(
     if choice.isdecimal():
         return StationLink.open(int(choice), hello, within)
     try:
-        pids = running_stations()
+        pids = running_stations(within)
     except FolderError as error:
         if choice == AUTO:
             note(f"no running station is used: {error}")
@@ -95,7 +106,8 @@ def find_station(
         raise VerbError(ExitCode.USAGE, str(error)) from error
     found = _matching(pids, endpoints, hello, within) if endpoints else pids
     if len(found) > 1:
-        raise VerbError(ExitCode.USAGE, f"stations {', '.join(map(str, found))} run here: name one with --station PID")
+        which = ", ".join(map(str, found))
+        raise StationLostError(ExitCode.USAGE, f"stations {which} run here: name one with --station PID")
     if found:
         return StationLink.open(found[0], hello, within)
     if choice == ONLY:
@@ -126,19 +138,26 @@ class StationRunner:
         period: float,
         take_reports: Callable[[LinksReport], None],
         log_tap: LogTap | None = None,
+        patience: float = math.inf,
     ) -> None:
-        """`log_tap` records what the station hears, as frames without signatures."""
+        """`log_tap` records what the station hears, as frames without signatures.
+
+        A station that does not answer for `patience` s is lost.
+        """
         self._core = core
         self._socket = link.sock
         self._buffer = ReceiveBuffer(MAX_RELAYED)
         self._period = period
         self._take_reports = take_reports
         self._log_tap = log_tap
-        self._sent_at = 0.0
+        self._endpoints = link.ready.endpoints
+        self._patience = patience
+        self._asked_at = -math.inf
+        self._unanswered_since = math.inf
         self._ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
     async def run(self) -> None:
-        """Run until stop(); raise what the core raises, and VerbError if the station ends or refuses a demand."""
+        """Run until stop(); raise what the core raises, StationLostError, and VerbError for a refused demand."""
         loop = asyncio.get_running_loop()
         loop.add_reader(self._socket, self._guard, self._read)
         ticking = loop.create_task(self._tick())
@@ -165,8 +184,18 @@ class StationRunner:
         while True:
             self._guard(self._run_tick)
             await asyncio.sleep(self._period)
-            if loop.time() - self._sent_at >= ALIVE_PERIOD:
-                self._send(ToSend())
+            if loop.time() - self._asked_at >= ALIVE_PERIOD:
+                self._guard(self._ask)
+
+    def _ask(self) -> None:
+        """Ask whether the station runs. What it has said while this process stood still is read first."""
+        self._read()
+        now = self._asked_at = asyncio.get_running_loop().time()
+        if now - self._unanswered_since > self._patience:
+            silence = f"the station has not answered for {now - self._unanswered_since:.1f} s"
+            raise StationLostError(ExitCode.NO_ANSWER, silence, self._endpoints)
+        self._unanswered_since = min(self._unanswered_since, now)
+        self._send(ToSend())
 
     def _run_tick(self) -> None:
         self._core.tick(asyncio.get_running_loop().time())
@@ -188,7 +217,6 @@ class StationRunner:
             self._send(ToSend(messages))
 
     def _send(self, packet: ToSend) -> None:
-        self._sent_at = asyncio.get_running_loop().time()
         with contextlib.suppress(OSError):  # a full queue: what must arrive is repeated; a station that ended: _read
             self._socket.send(encode(packet))
 
@@ -196,7 +224,9 @@ class StationRunner:
         now = asyncio.get_running_loop().time()
         while (packet := read_packet(self._socket, self._buffer)) is not None:
             if not packet:
-                raise VerbError(ExitCode.NO_ANSWER, "the station that this verb went through has ended")
+                ended = "the station that this verb went through has ended"
+                raise StationLostError(ExitCode.NO_ANSWER, ended, self._endpoints)
+            self._unanswered_since = math.inf
             self._handle(packet, now)
         self._flush()
 
@@ -210,6 +240,8 @@ class StationRunner:
             case MessageRefused(number, payload, why):
                 if isinstance(self._core, RefusalListener):
                     self._core.handle_refused(codec.decode(number, payload), why, now)
+            case Alive():
+                pass
             case DemandRefused(line):
                 raise VerbError(ExitCode.NOT_IN_CONTROL, line)
 

@@ -94,15 +94,18 @@ class CommandClient:
         place: CommandPlace | None = None,
         further: tuple[int, ...] = (),
         stop: bool = False,
+        other_form: bool = False,
     ) -> None:
         """Send a command with up to 7 parameters (missing ones are 0) and wait for its COMMAND_ACK.
 
         With a `place` it is a COMMAND_INT, and parameters 5 and 6 are not used. `further` components get it as well; it
-        ends when one accepts or all have refused. A `stop` that is not answered is repeated in both forms in turn.
+        ends when one accepts or all have refused. A `stop` that is not answered is repeated in both forms in turn,
+        beginning with the `other_form` if so wished.
         """
         full: Params = (*params, *(0.0,) * (7 - len(params)))  # type: ignore[assignment]
         target = (target_system, target_component)
         waiting = _Waiting(int(command), full, target, now, place, further, stop)
+        waiting.other_form = other_form
         self._waiting[target_system, int(command)] = waiting
         self._transmit(waiting, now)
 
@@ -211,12 +214,14 @@ def _asks_for_other_form(result: int, waiting: _Waiting) -> bool:
 def _joint_result(waiting: _Waiting, component: int, result: int) -> int | None:
     """Return the answer of all components together: the first acceptance, else the refusal of the first component.
 
-    None: others have not answered yet, or the refusal is of a form that was a try only.
+    None: others have not answered yet, or the refusal is of a form that was a try only, or that is not used any more.
     """
     if result == Result.ACCEPTED:
         return result
     if waiting.stop and waiting.other_form and waiting.refused_form is None:
         return None
+    if result == waiting.refused_form:
+        return None  # to a frame that was sent before in the form that is not taken: a repeat, or a blind stop
     waiting.answers[component] = result
     asked = {each for each in (waiting.target[1], *waiting.further) if each}
     return waiting.answers.get(waiting.target[1], result) if asked <= waiting.answers.keys() else None

@@ -62,7 +62,7 @@ def test_acknowledged_but_not_armed_is_reported() -> None:
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm(held=1.0))
     cockpit.run(4.0)
-    assert cockpit.view.refusal == "arming acknowledged, but the heartbeat reports disarmed"
+    assert cockpit.view.refusal == "arming acknowledged, but its heartbeat reports disarmed in MANUAL"
 
 
 def test_disarm_during_arming_ends_the_arming() -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from dialects.enums import Command, Result
+from dialects.modes import Mode
 from groundstation.intents.driving import ClearEmergencyStop, EmergencyStop
 from groundstation.intents.session import ReportKeyReleases
-from groundstation.intents.vehicle import Arm
+from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import EmergencyProgress
 from groundstation.vehicles.demand.stop_commands import FORCE_DISARM
 from tests.fakes.rover import FakeArduPilot
@@ -193,3 +194,41 @@ def test_the_second_press_reaches_vehicles_that_are_not_heard() -> None:
     cockpit.do(EmergencyStop(), EmergencyStop())
     cockpit.run(0.5)
     assert {each.target_system for each in cockpit.vehicle.commands(ARM)} >= {0, 1}
+
+
+def count_modes(vehicle: FakeVehicle) -> int:
+    """Return how many changes of the mode have arrived, in either form."""
+    return sum(each.command == MODE for each in [*vehicle.of("COMMAND_LONG"), *vehicle.of("COMMAND_INT")])
+
+
+def test_hold_is_repeated_until_it_shows_or_another_mode_is_chosen() -> None:
+    vehicle = FakeVehicle(mode=Mode.GUIDED)
+    cockpit = armed_cockpit(vehicle)
+    vehicle.obeys = False
+    cockpit.do(SetMode(mode="HOLD"))
+    cockpit.run(2.0)
+    assert count_modes(vehicle) >= 3, "accepted, and not done"
+    vehicle.obeys = True
+    cockpit.run(2.0)
+    heard = count_modes(vehicle)
+    assert vehicle.mode == Mode.HOLD
+    cockpit.run(3.0)
+    assert count_modes(vehicle) == heard
+    vehicle.obeys = False
+    vehicle.change_mode(Mode.GUIDED)
+    cockpit.run(1.5)
+    cockpit.do(SetMode(mode="HOLD"))
+    cockpit.run(0.1)
+    vehicle.obeys = True
+    cockpit.do(SetMode(mode="MANUAL"))
+    cockpit.run(3.0)
+    assert vehicle.mode == Mode.MANUAL
+
+
+def test_hold_that_no_heartbeat_shows_is_reported() -> None:
+    vehicle = FakeVehicle(mode=Mode.GUIDED)
+    cockpit = armed_cockpit(vehicle)
+    vehicle.obeys = False
+    cockpit.do(SetMode(mode="HOLD"))
+    cockpit.run(7.0)
+    assert cockpit.view.refusal == "mode HOLD: Rover 1: its heartbeat reports ARMED in GUIDED"

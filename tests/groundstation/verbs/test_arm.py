@@ -13,6 +13,7 @@ from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.waits import wait_until
 
 Capture = pytest.CaptureFixture[str]
+COMMAND_INT, COMMAND_LONG = 75, 76
 ARM, MODE, PREARM = 400, 176, 0x10000000
 READY_AFTER = 3.0
 """s, in which a busy machine hears the vehicle and looks once."""
@@ -65,7 +66,7 @@ def test_an_acknowledged_arming_that_the_heartbeat_does_not_show(capsys: Capture
         vehicle.obeys = False
         refused = arm(capsys, vehicle)
         assert refused.code == ExitCode.REFUSED
-        assert "arming acknowledged, but the heartbeat reports disarmed" in refused.err
+        assert "arming acknowledged, but its heartbeat reports disarmed in MANUAL" in refused.err
 
 
 def test_an_interrupted_arming_disarms(capsys: Capture) -> None:
@@ -84,3 +85,16 @@ def test_no_answer(capsys: Capture) -> None:
         vehicle.silent.add(76)
         silent = arm(capsys, vehicle)
         assert (silent.code, vehicle.armed) == (ExitCode.NO_ANSWER, False)
+
+
+def test_of_two_vehicles_with_one_id_both_must_be_armed(capsys: Capture) -> None:
+    with foreign_vehicle() as deaf, foreign_vehicle() as other:
+        deaf.silent |= {COMMAND_LONG, COMMAND_INT}
+        both = ("-v", "1", "-e", other.endpoint, "-e", deaf.endpoint)
+        armed = run_verb(capsys, "arm", *both)
+        assert (armed.code, other.armed, deaf.armed) == (ExitCode.REFUSED, True, False), armed.err
+        assert "arming acknowledged, but the sender at" in armed.err
+        again = run_verb(capsys, "arm", *both)
+        assert again.code == ExitCode.REFUSED
+        assert "the sender at" in again.err
+        assert "reports disarmed in MANUAL" in again.err

@@ -12,7 +12,10 @@ import pytest
 
 from groundstation.station_socket.connect import running_stations
 from groundstation.verbs.common.exit_codes import ExitCode
+from tests.fakes.lines import on_line
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
+from tests.fakes.vehicle import FakeVehicle
+from tests.fakes.wires import PymavlinkWire
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.ports import free_port
 from tests.waits import wait_until
@@ -121,6 +124,41 @@ def test_a_vehicle_with_the_same_id_confirms_no_stop(capsys: Capture, name: str)
         deaf.silent.clear()
         done = run_verb(capsys, name, "-v", "1", "-e", other.endpoint, "-e", deaf.endpoint)
         assert (done.code, STOPS[name](deaf), STOPS[name](other)) == (0, True, True), done.err
+
+
+@pytest.mark.parametrize("name", [*STOPS, "arm"])
+def test_no_answer_of_a_vehicle_that_signs_is_explained(capsys: Capture, name: str) -> None:
+    signing = ForeignVehicle()
+    with on_line(signing, "udpout", wire=PymavlinkWire(key=bytes(range(32)))) as vehicle:
+        vehicle.armed = name != "arm"
+        vehicle.silent |= {COMMAND_LONG, COMMAND_INT}
+        options = () if name == "arm" else ("--timeout", "2.5")
+        silent = verb(capsys, vehicle, name, *options)
+        assert silent.code == ExitCode.NO_ANSWER
+        assert "no answer, after all tries; it signs its frames with a key that is not here" in silent.err
+
+
+def test_a_release_is_confirmed_by_a_heartbeat_of_each_sender(capsys: Capture) -> None:
+    with on_line(FakeVehicle()) as deaf, on_line(FakeVehicle()) as other:
+        deaf.locked = other.locked = True
+        deaf.silent |= {COMMAND_LONG, COMMAND_INT}
+        both = ("-v", "1", "-e", other.endpoint, "-e", deaf.endpoint)
+        kept = run_verb(capsys, "estop", "--clear", *both)
+        assert (kept.code, other.locked) == (ExitCode.REFUSED, False), kept.err
+        assert "locked by its emergency stop" in kept.err
+        deaf.silent.clear()
+        done = run_verb(capsys, "estop", "--clear", *both)
+        assert (done.code, deaf.locked) == (0, False), done.err
+
+
+def test_a_release_without_a_heartbeat_is_not_reported(capsys: Capture) -> None:
+    with on_line(FakeVehicle()) as vehicle:
+        vehicle.locked = True
+        vehicle.on_command[SWITCH] = lambda: setattr(vehicle, "beats", False)
+        vehicle.obeys = False
+        silent = run_verb(capsys, "estop", "--clear", "-v", "1", "-e", vehicle.endpoint)
+        assert silent.code == ExitCode.REFUSED
+        assert "accepted, but no heartbeat has come since then" in silent.err
 
 
 def test_where_nobody_was_heard_there_is_no_address(capsys: Capture) -> None:

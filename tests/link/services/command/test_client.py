@@ -185,6 +185,16 @@ def test_a_command_that_is_refused_in_both_forms_ends() -> None:
     assert [each.number for each in client.outcomes()] == [INT_ONLY], "parameter 5 fits no integer"
 
 
+def test_answers_to_the_form_that_was_refused_end_nothing() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 0.0, target_system=1, stop=True, now=0.0)
+    for at in (0.1, 0.15, 0.2):
+        client.receive(ack(400, INT_ONLY), at)
+    assert client.outcomes() == [], "two more frames were on their way as COMMAND_LONG"
+    client.receive(ack(400, Result.ACCEPTED), 0.3)
+    assert client.outcomes()[0].result is Result.ACCEPTED
+
+
 def test_an_unanswered_stop_goes_in_both_forms_to_all_components() -> None:
     client = CommandClient(255, 190)
     client.send(400, 0.0, target_system=1, target_component=1, further=(0, 2), stop=True, now=0.0)

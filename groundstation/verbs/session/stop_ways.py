@@ -1,0 +1,63 @@
+"""The way of a stop to its vehicle: through a station that answers, else by links of its own, and by either in turn.
+
+A station that hangs (SIGSTOP, a loop, a full socket) must not keep a stop from its vehicle. A port or cable that it
+holds cannot be opened beside it; then the stop waits for its end or for its answer, whichever comes first.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Sequence
+
+from groundstation.station_socket.connect import running_stations
+from groundstation.station_socket.folder import FolderError
+from groundstation.verbs.session.endpoints import link_error
+from groundstation.verbs.session.station_link import AUTO, NEVER, StationLostError
+
+STOP_WITHIN = 0.5
+"""s for a station to answer before a stop goes without it: it may hang."""
+
+AGAIN = 0.2
+"""s between two rounds of both ways."""
+
+Attempt = Callable[[str, Sequence[str]], Awaitable[int]]
+"""Takes a value of --station, and the endpoints; none: those of the command line. Returns the exit code of the verb."""
+
+
+async def stop_by_any_way(attempt: Attempt, note: Callable[[str], None], until: float) -> int:
+    """Return the exit code of the first attempt that has a way. `note` gets why another way is tried.
+
+    Raises VerbError, EndpointError, LinkError, after `until` (the time of the loop) if all ways are closed.
+    """
+    told: set[str] = set()
+
+    def tell(text: str) -> None:
+        if text not in told:
+            note(text)
+        told.add(text)
+
+    while True:
+        try:
+            return await _try_both(attempt, tell)
+        except link_error() as closed:
+            pids = _stations()
+            if not pids or asyncio.get_running_loop().time() >= until:
+                raise
+            tell(f"{closed}; trying on. If station {pids[0]} hangs: kill -9 {pids[0]}")
+        await asyncio.sleep(AGAIN)
+
+
+async def _try_both(attempt: Attempt, tell: Callable[[str], None]) -> int:
+    """Try a station that runs, then links of its own. Raises what `attempt` raises."""
+    try:
+        return await attempt(AUTO, ())
+    except StationLostError as lost:
+        tell(f"{lost}; this stop opens links of its own")
+        return await attempt(NEVER, lost.endpoints)
+
+
+def _stations() -> list[int]:
+    try:
+        return running_stations(STOP_WITHIN)
+    except FolderError:
+        return []
