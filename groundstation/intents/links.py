@@ -8,6 +8,7 @@ from groundstation.intents.base import Intent
 class AddLink(Intent, frozen=True):
     """Open a link; while that fails, it is tried again until the link is closed."""
 
+    valid_when_late = True  # it moves nothing, and whoever asked waits for it
     request: int
     """Number by which ConnectView.attempts reports how it stands; see ui/display/request_numbers.py."""
     endpoint: str

@@ -46,7 +46,7 @@ def terminal(tmp_path: Path, port: int) -> Iterator[Tmux]:
 
 def drive_until_it_turns(terminal: Tmux, vehicle: Vehicle) -> None:
     terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
-    terminal.until(lambda _: vehicle.at_full(), PATIENCE, holding="i")
+    terminal.drive_until(lambda _: vehicle.at_full())
 
 
 def row(screen: str, name: str) -> str:

@@ -128,7 +128,7 @@ def test_the_first_drive(tmux: Callable[..., Tmux], columns: int, lines: int) ->
     terminal = tmux(columns, lines, "--sitl")
     terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
     terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
-    terminal.until(lambda screen: home_distance(screen) > 1.0 and speed_shown(screen), PATIENCE, holding="i")
+    terminal.drive_until(lambda screen: home_distance(screen) > 1.0 and speed_shown(screen))
     terminal.until(
         lambda screen: re.search(r"left\s.*\+0%", screen) is not None and home_distance(screen) > 1.0, PATIENCE
     )

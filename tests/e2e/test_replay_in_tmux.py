@@ -40,7 +40,7 @@ def test_a_log_has_the_terminal_until_it_is_killed_or_quit(tmux: Callable[..., T
         terminal.press("Escape")
         terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
     terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
-    terminal.until(speed_shown, PATIENCE, holding="i")
+    terminal.drive_until(speed_shown)
     terminal.press("C-g", "0")
     terminal.until(lambda screen: "ENTER shows a log" in screen, PATIENCE)
     terminal.press("Enter")

@@ -115,8 +115,13 @@ def test_a_router_that_stood_still_delivers_no_old_command(world: World) -> None
 def test_graph_telemetry_parameters_and_arming_through_a_station(world: World) -> None:
     node = world.start("--tf", "--arm-service", *world.start_station())
     peer = world.peer
-    tokens = peer.tokens()
-    assert any(each.endswith("/0/0/NN/%/%/mavhelm_1") for each in tokens)
+    tokens: list[str] = []
+
+    def node_is_known() -> bool:
+        tokens[:] = peer.tokens()
+        return any(each.endswith("/0/0/NN/%/%/mavhelm_1") for each in tokens)
+
+    world.until(node_is_known, "the node has no token")
     kinds = {"/".join(each.split("/")[5:6] + each.split("/")[9:10]) for each in tokens}
     assert {"MP/%odom", "MP/%tf", "MS/%cmd_vel", "SS/%mavhelm_1%arm", "SS/%mavhelm_1%set_parameters"} <= kinds
     heard: dict[str, bytes] = {}

@@ -39,15 +39,18 @@ async def compass(session: VerbSession, options: argparse.Namespace, output: Out
     with _listening(session, calibration.receive):
         for message in (m.MagCalProgress, m.MagCalReport):
             _request(session, message.id, MAG_CAL_RATE)
-        report = await _command(session, KINDS[kind].command, KINDS[kind].params, f"{REQUEST}compass")
-        if report.state is not RequestState.ACCEPTED:
-            return finish(session, report, output)
-        output.note(f"{name}: turn it slowly about every axis, outdoors; Ctrl-C cancels")
+        report = None
         try:
-            await _measured(session, calibration, output)
+            report = await _command(session, KINDS[kind].command, KINDS[kind].params, f"{REQUEST}compass")
+            if report.state is RequestState.ACCEPTED:
+                output.note(f"{name}: turn it slowly about every axis, outdoors; Ctrl-C cancels")
+                await _measured(session, calibration, output)
         finally:
-            if not calibration.ready:
+            # Also when interrupted before the answer has come: the vehicle may have begun.
+            if not calibration.ready and (report is None or report.state is RequestState.ACCEPTED):
                 _send(session, Command.DO_CANCEL_MAG_CAL)
+    if report.state is not RequestState.ACCEPTED:
+        return finish(session, report, output)
     if not calibration.ready:
         raise VerbError(ExitCode.REFUSED, f"{name}: {calibration.summary}")
     report = await _command(session, Command.DO_ACCEPT_MAG_CAL, (0.0,), f"{REQUEST}{WRITE}")

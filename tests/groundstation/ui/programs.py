@@ -16,6 +16,7 @@ from textual.drivers.linux_driver import LinuxDriver
 
 from groundstation.intents.session import RenewLease
 from groundstation.intents.union import AnyIntent
+from groundstation.intents.watch import Watch
 from groundstation.ui.app.run import run
 from groundstation.ui.terminal.console_driver import ConsoleDriver
 from tests.groundstation.ui.examples import Recorder, snapshot
@@ -85,7 +86,10 @@ class Program:
 
 
 class Journal(Recorder):
-    """A station that writes the names of its intents to a file at once; with `crash` its lease breaks the screen."""
+    """A station that writes the names of its intents to a file at once, without those that change nothing.
+
+    With `crash` its lease breaks the screen.
+    """
 
     def __init__(self, file: Path, *, crash: bool) -> None:
         super().__init__()
@@ -94,7 +98,9 @@ class Journal(Recorder):
     def send(self, *intents: AnyIntent) -> None:
         super().send(*intents)
         with self._file.open("a") as file:
-            file.writelines(f"{type(intent).__name__}\n" for intent in intents if intent != RenewLease())
+            file.writelines(
+                f"{type(intent).__name__}\n" for intent in intents if not isinstance(intent, RenewLease | Watch)
+            )
         if self._crash and RenewLease() in intents:
             raise ZeroDivisionError
 
