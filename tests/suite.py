@@ -40,7 +40,8 @@ LONG = (
     "groundstation/station/test_recorded_traffic.py", "groundstation/test_foreign_missions.py",
     "groundstation/ui/screens", "groundstation/ui/test_escape_sequences.py", "groundstation/ui/test_exit.py",
     "groundstation/ui/test_hold.py", "groundstation/ui/test_interpreter.py", "groundstation/ui/test_mouse.py",
-    "groundstation/vehicles/test_dialect_probe.py", "groundstation/vehicles/test_replay.py", "groundstation/verbs",
+    "groundstation/vehicles/probes/test_dialect_probe.py", "groundstation/vehicles/test_replay.py",
+    "groundstation/verbs",
     "groundstation/watchdog/test_watchdog.py::test_after_a_neutral_of_the_watchdog",
 )  # fmt: skip
 """Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, or need

@@ -14,7 +14,7 @@ from groundstation.verbs.common.output import Output
 from groundstation.verbs.messages.status_changes import ChangePrinter
 from groundstation.verbs.session.contact import VehicleContact
 from tests.fakes.services import foreign_vehicle
-from tests.groundstation.vehicles.test_vehicle_state import heartbeat, received
+from tests.groundstation.vehicles.state.test_vehicle_state import heartbeat, received
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
 

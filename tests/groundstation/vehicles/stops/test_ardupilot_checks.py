@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.groundstation.vehicles.test_settings_check import new_check, value
+from tests.groundstation.vehicles.stops.test_settings_check import new_check, value
 
 ALERT_WIDTH = 76
 """Columns of the alert line at 80 columns."""
