@@ -26,6 +26,16 @@ missions, logs, files, modes (services.py), servers of link/services (served.py)
 sends telemetry as ArduRover 4.7 does; ForeignVehicle (services.py) has all services as ArduPilot or PX4 has them, and
 `with foreign_vehicle(PX4) as vehicle` puts it on UDP. A vehicle with physics or a camera is a FakeVehicle with one more
 part; two components are two FakeVehicles with the same `system`.
+
+Other classes around a vehicle are no stand-ins for one:
+
+- `CommandRig`, `ParamRig`, `FtpRig`, `MissionRig` (tests/link/*_rig.py), `JobRig`, `LogRig` and `FolderRig` (in their
+  tests) hold the real server under test and record its calls. A FakeVehicle would take the server's place.
+- `Vehicle` of tests/e2e/programs.py and tests/vehicle/ground.py starts `python -m vehicle` as a process;
+  `Vehicle` of tests/interop/test_mavsdk_vehicle.py starts MAVSDK as one; `VehicleMember` of tests/soak kills the first.
+- `Vehicle` of tests/benchmarks/bridge_stations.py sends ready frames, because building them would be measured, too;
+  `VehicleInMemory` of tests/benchmarks/receive_path.py is the real one without its loop.
+- `MuteVehicle` and `Vehicles` of the groundstation tests are FakeVehicles.
 """
 
 from __future__ import annotations

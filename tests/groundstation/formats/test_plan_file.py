@@ -16,7 +16,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.formats.plan import Plan, PlannedHome, for_vehicle, from_vehicle
 from groundstation.formats.plan_file import format_plan, parse_plan
 from link.services.mission.items import MissionItem, from_message, to_message
-from tests.link.mission_vehicle import plain
+from tests.link.mission_rig import plain
 from tests.link.services_world import through_the_wire
 
 NAN = math.nan

@@ -15,7 +15,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.formats.plan import Plan, PlannedHome
 from groundstation.formats.waypoint_file import format_waypoints, parse_waypoints
 from link.services.mission.files import encode_plan
-from tests.link.mission_vehicle import plain, waypoint
+from tests.link.mission_rig import plain, waypoint
 
 MISSION_PLANNER = """\
 QGC WPL 110

@@ -18,7 +18,7 @@ from link.services.log.server import LogServer
 from link.services.mission.client import MissionClient
 from link.services.pacing import BulkPacer
 from link.services.param.client import ParamClient
-from tests.link import ftp_vehicle, mission_vehicle, param_vehicle
+from tests.link import ftp_rig, mission_rig, param_rig
 from tests.link.services_world import PEER
 
 IDS = sorted(
@@ -35,15 +35,15 @@ FRAMES = st.tuples(st.sampled_from(IDS), st.binary(max_size=255))
 
 
 def log_server() -> LogServer:
-    files = ftp_vehicle.Vehicle().tree.find(b"/logs")
+    files = ftp_rig.FtpRig().tree.find(b"/logs")
     assert files is not None
     return LogServer(files.folder, system=1, component=1, pacer=BulkPacer())
 
 
 SERVERS: list[Callable[[], Any]] = [
-    lambda: param_vehicle.Vehicle().server,
-    lambda: mission_vehicle.Vehicle().server,
-    lambda: ftp_vehicle.Vehicle().server,
+    lambda: param_rig.ParamRig().server,
+    lambda: mission_rig.MissionRig().server,
+    lambda: ftp_rig.FtpRig().server,
     log_server,
 ]
 
@@ -79,7 +79,7 @@ CLIENTS: list[Callable[[], Any]] = [
     lambda: begun(MissionClient(255, 190, target_system=1), lambda each: each.download(MissionType.MISSION, 0.0)),
     lambda: begun(
         MissionClient(255, 190, target_system=1),
-        lambda each: each.upload([mission_vehicle.waypoint()], MissionType.MISSION, 0.0),
+        lambda each: each.upload([mission_rig.waypoint()], MissionType.MISSION, 0.0),
     ),
     lambda: begun(FtpClient(255, 190, target_system=1), lambda client: client.download("/x", 0.0)),
     lambda: begun(FtpClient(255, 190, target_system=1), lambda client: client.list_folder("/", 0.0)),

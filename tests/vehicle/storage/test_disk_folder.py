@@ -205,7 +205,7 @@ def _ignore(value: object) -> None:
 # ---- by MAVLink FTP ----
 
 
-class Vehicle:
+class FolderRig:
     """A file server over the folder; its clock is the test's."""
 
     def __init__(self, folder: DiskFolder, *, allowed: bool = True) -> None:
@@ -228,7 +228,7 @@ class Vehicle:
 
 
 def test_it_is_served_as_every_other_folder(folder: DiskFolder) -> None:
-    vehicle = Vehicle(folder)
+    vehicle = FolderRig(folder)
     assert vehicle.ask(FtpOpcode.LIST, b"/logs").data == b"F1.tlog\t%d\0F2.tlog\t0\0" % len(DATA)
     assert int.from_bytes(vehicle.ask(FtpOpcode.OPEN, b"/logs/1.tlog").data, "little") == len(DATA)
     assert vehicle.ask(FtpOpcode.READ, offset=PIECE - 3, size=10).data == DATA[PIECE - 3 : PIECE + 7]
@@ -240,7 +240,7 @@ def test_it_is_served_as_every_other_folder(folder: DiskFolder) -> None:
 
 
 def test_only_who_may_write_removes(folder: DiskFolder) -> None:
-    answer = Vehicle(folder, allowed=False).ask(FtpOpcode.REMOVE, b"/logs/1.tlog")
+    answer = FolderRig(folder, allowed=False).ask(FtpOpcode.REMOVE, b"/logs/1.tlog")
     assert (answer.op, answer.data) == (FtpOpcode.NAK, bytes([FtpError.PROTECTED]))
     assert len(soon(folder.entries)) == 2
 
@@ -249,7 +249,7 @@ def test_only_who_may_write_removes(folder: DiskFolder) -> None:
 def test_a_file_that_goes_while_fetched_is_a_failure_not_silence(
     folder: DiskFolder, tmp_path: Path, op: FtpOpcode
 ) -> None:
-    vehicle = Vehicle(folder)
+    vehicle = FolderRig(folder)
     assert vehicle.ask(FtpOpcode.OPEN, b"/logs/1.tlog").op == FtpOpcode.ACK
     (tmp_path / "logs/1.tlog").unlink()
     answer = vehicle.ask(op, offset=0, size=239)
@@ -263,7 +263,7 @@ def test_a_checksum_of_a_file_that_is_cut_meanwhile_is_a_failure(folder: DiskFol
         return True
 
     folder.fetch = cut  # type: ignore[method-assign]
-    assert Vehicle(folder).ask(FtpOpcode.CRC, b"/logs/1.tlog").data == bytes([FtpError.FAIL])
+    assert FolderRig(folder).ask(FtpOpcode.CRC, b"/logs/1.tlog").data == bytes([FtpError.FAIL])
 
 
 def test_disk_that_answers_at_once_does_not_delay_the_next_read(

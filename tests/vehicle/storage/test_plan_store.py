@@ -19,7 +19,7 @@ from link.core import Peer, Received
 from link.services.mission.client import MissionClient, MissionOutcome
 from link.services.mission.items import Items, MissionItem
 from link.services.mission.plans import plan_id
-from tests.link.mission_vehicle import plain
+from tests.link.mission_rig import plain
 from tests.vehicle.bench import CYCLE, said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running

@@ -13,7 +13,7 @@ from groundstation.vehicles.requests.metadata_requests import MetadataRequests
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.state.identity import METADATA, VERSION, VehicleIdentity
 from link.services.ftp.client import FtpClient
-from tests.link import ftp_vehicle
+from tests.link import ftp_rig
 from tests.link.services_world import Pair, from_vehicle
 
 GENERAL = {"metadataTypes": [{"type": 4, "uri": "mftp:///x"}, {"type": 1, "uri": "mftp://[;comp=1]/logs/p.json"}]}
@@ -25,7 +25,7 @@ def fetch(
 ) -> MetadataRequests:
     """Let a vehicle say where its texts are, and follow that."""
     logs = {name: each if isinstance(each, bytes) else json.dumps(each).encode() for name, each in files.items()}
-    vehicle, identity = ftp_vehicle.Vehicle(logs=logs, rate=1e6), VehicleIdentity(1)
+    vehicle, identity = ftp_rig.FtpRig(logs=logs, rate=1e6), VehicleIdentity(1)
     requests = FileRequests(FtpClient(255, 190, target_system=1), RequestBook())
     metadata = MetadataRequests(requests, identity, {} if cache is None else cache)
     pair = Pair(vehicle.server, requests)

@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
-from tests.link.command_vehicle import received
+from tests.link.command_rig import received
 
 ROVER, HOLD, MANUAL = 10, 4, 0
 

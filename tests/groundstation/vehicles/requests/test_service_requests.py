@@ -15,8 +15,8 @@ from link.services.log.client import LogClient, RemoteLog
 from link.services.log.server import LogServer
 from link.services.mission.client import MissionClient
 from link.services.pacing import BulkPacer
-from tests.link import ftp_vehicle, mission_vehicle
-from tests.link.mission_vehicle import plain, waypoint
+from tests.link import ftp_rig, mission_rig
+from tests.link.mission_rig import plain, waypoint
 from tests.link.services_world import Pair
 
 DATA = random.Random(2).randbytes(30_000)
@@ -28,7 +28,7 @@ def ends(book: RequestBook) -> dict[int, RequestState]:
 
 
 def test_plans_go_one_after_the_other() -> None:
-    vehicle, book = mission_vehicle.Vehicle(), RequestBook()
+    vehicle, book = mission_rig.MissionRig(), RequestBook()
     plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
     pair = Pair(vehicle.server, plans)
     plans.upload(1, MissionType.MISSION, ITEMS, pair.now)
@@ -42,7 +42,7 @@ def test_plans_go_one_after_the_other() -> None:
 
 
 def test_cancelled_upload_changes_nothing_and_next_request_runs() -> None:
-    vehicle, book = mission_vehicle.Vehicle(), RequestBook()
+    vehicle, book = mission_rig.MissionRig(), RequestBook()
     plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
     pair = Pair(vehicle.server, plans)
     plans.upload(1, MissionType.MISSION, ITEMS, pair.now)
@@ -57,7 +57,7 @@ def test_cancelled_upload_changes_nothing_and_next_request_runs() -> None:
 
 
 def test_a_download_that_was_not_answered_goes_on_where_it_ended() -> None:
-    vehicle, book = mission_vehicle.Vehicle(), RequestBook()
+    vehicle, book = mission_rig.MissionRig(), RequestBook()
     vehicle.upload(ITEMS)
     plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
     pair = Pair(vehicle.server, plans)
@@ -76,7 +76,7 @@ def test_a_download_that_was_not_answered_goes_on_where_it_ended() -> None:
 
 
 def test_files_are_cancelled_one_by_one() -> None:
-    vehicle, book = ftp_vehicle.Vehicle(logs={"1.bin": DATA}, rate=50_000.0), RequestBook()
+    vehicle, book = ftp_rig.FtpRig(logs={"1.bin": DATA}, rate=50_000.0), RequestBook()
     files = FileRequests(FtpClient(255, 190, target_system=1), book)
     pair = Pair(vehicle.server, files)
     files.download(1, "/logs/1.bin", pair.now)

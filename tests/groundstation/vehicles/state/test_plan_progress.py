@@ -6,7 +6,7 @@ import pytest
 
 from dialects import messages as m
 from groundstation.vehicles.state.plan_progress import FRESH, MAX_REACHED, PlanProgress
-from tests.link.command_vehicle import received
+from tests.link.command_rig import received
 
 NOT_STARTED, ACTIVE, PAUSED, COMPLETE = 2, 3, 4, 5
 

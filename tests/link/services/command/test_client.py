@@ -11,7 +11,7 @@ from dialects.enums import Command, Rejection, Result
 from dialects.messages import CommandAck, CommandInt, CommandLong
 from link.core import Outgoing, Received
 from link.services.command.client import REPEAT_AFTER, TRIES, CommandClient, CommandPlace
-from tests.link.command_vehicle import Vehicle, received
+from tests.link.command_rig import CommandRig, received
 
 
 def sent(client: CommandClient) -> list[CommandLong]:
@@ -87,7 +87,7 @@ def test_a_newer_wish_replaces_the_older_of_its_kind() -> None:
 
 
 def test_a_lossy_link_still_ends_every_command() -> None:
-    dice, vehicle, client, now = random.Random(3), Vehicle(), CommandClient(255, 190), 0.0
+    dice, vehicle, client, now = random.Random(3), CommandRig(), CommandClient(255, 190), 0.0
     ended = []
     for _ in range(200):
         client.send(400, 1.0, target_system=1, now=now)

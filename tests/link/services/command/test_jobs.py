@@ -29,7 +29,7 @@ class Work:
         self.cancelled += 1
 
 
-class Vehicle:
+class JobRig:
     """A server whose commands take a while, and the works it began."""
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ def ack_of(outgoing: Outgoing) -> CommandAck:
 
 
 def test_it_begins_tells_its_progress_and_ends_once() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     assert vehicle.ask(0.0) == [Result.IN_PROGRESS]
     words: list[Outgoing] = []
     for cycle in range(1, 200):
@@ -83,12 +83,12 @@ def test_it_begins_tells_its_progress_and_ends_once() -> None:
 
 
 def test_unknown_progress_is_255() -> None:
-    [outgoing] = Vehicle().say(CommandLong(1, 1, TEST, 0, 0, 0, 0, 0, 0, 0, 0), 0.0)
+    [outgoing] = JobRig().say(CommandLong(1, 1, TEST, 0, 0, 0, 0, 0, 0, 0, 0), 0.0)
     assert ack_of(outgoing).progress == 255
 
 
 def test_a_refused_one_is_no_job() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     vehicle.refusal = Result.DENIED
     assert vehicle.ask(0.0) == [Result.DENIED]
     assert vehicle.cancel(0.1) == []
@@ -96,7 +96,7 @@ def test_a_refused_one_is_no_job() -> None:
 
 
 def test_its_repeat_begins_nothing_and_another_one_has_to_wait() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     vehicle.ask(0.0)
     assert vehicle.ask(0.3) == [Result.IN_PROGRESS]
     assert vehicle.ask(0.6, confirmation=1) == [Result.IN_PROGRESS]
@@ -107,7 +107,7 @@ def test_its_repeat_begins_nothing_and_another_one_has_to_wait() -> None:
 
 
 def test_a_repeat_with_nan_parameters_is_still_a_repeat() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     for times in range(2):  # each decodes to a NaN of its own
         nan = float("nan")
         said = vehicle.say(CommandLong(1, 1, TEST, times, 1.0, nan, nan, nan, nan, nan, nan), times * 0.3)
@@ -116,14 +116,14 @@ def test_a_repeat_with_nan_parameters_is_still_a_repeat() -> None:
 
 
 def test_long_after_its_beginning_only_what_says_so_is_a_repeat() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     vehicle.ask(0.0)
     assert vehicle.ask(REPEAT_WINDOW + 1, confirmation=2) == [Result.IN_PROGRESS]
     assert vehicle.ask(REPEAT_WINDOW + 1) == [Result.TEMPORARILY_REJECTED]
 
 
 def test_repeat_after_end_hears_of_it_and_a_new_wish_starts_anew() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     vehicle.ask(0.0)
     assert results(vehicle.server.tick(2.0)) == [Result.ACCEPTED]
     assert vehicle.ask(2.5, confirmation=1) == [Result.ACCEPTED]
@@ -133,7 +133,7 @@ def test_repeat_after_end_hears_of_it_and_a_new_wish_starts_anew() -> None:
 
 
 def test_a_command_int_counts_as_a_repeat_for_a_while() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     same = CommandInt(1, 1, 0, TEST, 0, 0, 0, 0, 0, 0, 0, 0, 0)
     vehicle.say(same, 0.0)
     vehicle.server.tick(2.0)
@@ -143,7 +143,7 @@ def test_a_command_int_counts_as_a_repeat_for_a_while() -> None:
 
 
 def test_a_cancel_stops_it_and_is_its_end() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     vehicle.ask(0.0)
     [outgoing] = vehicle.cancel(0.5)
     assert (ack_of(outgoing).command, ack_of(outgoing).result) == (TEST, Result.CANCELLED)
@@ -154,7 +154,7 @@ def test_a_cancel_stops_it_and_is_its_end() -> None:
 
 
 def test_whoever_cancels_and_whoever_began_hear_of_it() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     vehicle.ask(0.0)
     words = vehicle.cancel(0.5, system=254)
     assert {(each.peer, ack_of(each).target_system) for each in words} == {(HERE, 255), (THERE, 254)}
@@ -162,7 +162,7 @@ def test_whoever_cancels_and_whoever_began_hear_of_it() -> None:
 
 
 def test_a_cancel_finds_nothing_idle_and_nothing_of_others() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     assert vehicle.cancel(0.0) == []
     vehicle.ask(0.0)
     for target in ((2, 1), (1, 42), (0, 0), (0, 1)):
@@ -174,14 +174,14 @@ def test_a_cancel_finds_nothing_idle_and_nothing_of_others() -> None:
 
 
 def test_a_cancel_long_after_the_end_is_ignored() -> None:
-    vehicle = Vehicle()
+    vehicle = JobRig()
     vehicle.ask(0.0)
     vehicle.server.tick(2.0)
     assert vehicle.cancel(2.0 + REPEAT_WINDOW) == []
 
 
 def test_client_waits_for_end_on_a_line_that_loses_first_words() -> None:
-    vehicle, client, now = Vehicle(), CommandClient(255, 190), 0.0
+    vehicle, client, now = JobRig(), CommandClient(255, 190), 0.0
     client.send(TEST, target_system=1, now=now)
     answers, outcomes = 0, client.outcomes()
     while not outcomes:

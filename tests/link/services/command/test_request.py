@@ -6,7 +6,7 @@ import math
 
 from dialects.messages import CommandInt, CommandLong
 from link.services.command.request import parse_command, value_or_default
-from tests.link.command_vehicle import received
+from tests.link.command_rig import received
 
 
 def test_a_parameter_that_is_left_out_has_its_default() -> None:

@@ -14,7 +14,7 @@ from link.core import Outgoing
 from link.services.ftp.client import FtpClient
 from link.services.ftp.job import MAX_SIZE, TRIES, FtpOutcome
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
-from tests.link.ftp_vehicle import Vehicle
+from tests.link.ftp_rig import FtpRig
 from tests.link.services_world import Pair, from_vehicle, messages
 
 
@@ -30,7 +30,7 @@ def ending(client: FtpClient, pair: Pair, within: float = 120.0) -> FtpOutcome:
     return outcome
 
 
-def fetch(vehicle: Vehicle, path: str, **how: Any) -> FtpOutcome:
+def fetch(vehicle: FtpRig, path: str, **how: Any) -> FtpOutcome:
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client, **how)
     client.download(path, pair.now)
@@ -46,7 +46,7 @@ def fetch(vehicle: Vehicle, path: str, **how: Any) -> FtpOutcome:
 )
 def test_a_file_arrives_whatever_is_lost(seed: int, loss: float, size: int, slow: bool) -> None:
     data = random.Random(size).randbytes(size)
-    vehicle = Vehicle(logs={"1.bin": data}, slow=slow)
+    vehicle = FtpRig(logs={"1.bin": data}, slow=slow)
     outcome = fetch(vehicle, "/logs/1.bin", loss=loss, seed=seed)
     assert outcome.done
     assert outcome.data == data
@@ -54,7 +54,7 @@ def test_a_file_arrives_whatever_is_lost(seed: int, loss: float, size: int, slow
 
 def test_a_megabyte_takes_what_the_link_gives() -> None:
     data = random.Random(1).randbytes(1_000_000)
-    vehicle = Vehicle(logs={"1.bin": data}, rate=400_000.0)
+    vehicle = FtpRig(logs={"1.bin": data}, rate=400_000.0)
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
     client.download("/logs/1.bin", pair.now)
@@ -65,13 +65,13 @@ def test_a_megabyte_takes_what_the_link_gives() -> None:
 
 
 def test_a_file_that_is_not_there() -> None:
-    outcome = fetch(Vehicle(), "/logs/3.bin")
+    outcome = fetch(FtpRig(), "/logs/3.bin")
     assert (outcome.done, outcome.error) == (False, FtpError.NOT_FOUND)
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.3])
 def test_a_folder_is_listed(loss: float) -> None:
-    vehicle = Vehicle(logs={f"{number:05}.bin": b"x" * number for number in range(100)})
+    vehicle = FtpRig(logs={f"{number:05}.bin": b"x" * number for number in range(100)})
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client, loss=loss, seed=5)
     client.list_folder("/logs", pair.now)
@@ -93,7 +93,7 @@ def test_silence_ends_too() -> None:
 
 
 def test_a_vehicle_that_falls_silent_in_the_middle_ends_too() -> None:
-    vehicle = Vehicle(rate=10_000.0)
+    vehicle = FtpRig(rate=10_000.0)
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
     client.download("/logs/1.bin", pair.now)

@@ -11,7 +11,7 @@ from link.services.ftp.client import FtpClient
 from link.services.ftp.download import CHANGED
 from link.services.ftp.job import FtpOutcome
 from link.services.ftp.protocol import FtpError, FtpOpcode, crc32, parse_packet
-from tests.link.ftp_vehicle import Vehicle
+from tests.link.ftp_rig import FtpRig
 from tests.link.services_world import Pair
 
 DATA = random.Random(7).randbytes(20_000)
@@ -20,7 +20,7 @@ DATA = random.Random(7).randbytes(20_000)
 class Watched:
     """The vehicle's server; keeps the opcodes and offsets that it was asked for, and may not know some."""
 
-    def __init__(self, vehicle: Vehicle, unknown: frozenset[FtpOpcode] = frozenset()) -> None:
+    def __init__(self, vehicle: FtpRig, unknown: frozenset[FtpOpcode] = frozenset()) -> None:
         self.vehicle, self.unknown = vehicle, unknown
         self.asked: list[tuple[int, int]] = []
 
@@ -43,7 +43,7 @@ def fetch(server: Watched, loss: float = 0.0, **how: Any) -> FtpOutcome:
 
 
 def test_a_download_is_resumed_behind_what_has_arrived() -> None:
-    server = Watched(Vehicle(logs={"1.bin": DATA}))
+    server = Watched(FtpRig(logs={"1.bin": DATA}))
     outcome = fetch(server, have=DATA[:12_345], verify=True)
     assert outcome.done
     assert outcome.data == DATA
@@ -52,13 +52,13 @@ def test_a_download_is_resumed_behind_what_has_arrived() -> None:
 
 
 def test_what_was_kept_of_another_file_is_noticed() -> None:
-    outcome = fetch(Watched(Vehicle(logs={"1.bin": DATA})), have=b"x" * 500, verify=True)
+    outcome = fetch(Watched(FtpRig(logs={"1.bin": DATA})), have=b"x" * 500, verify=True)
     assert (outcome.done, outcome.problem) == (False, CHANGED)
 
 
 @pytest.mark.parametrize("have", [DATA, DATA + b"more"])
 def test_whole_file_is_only_compared_and_longer_one_fetched_anew(have: bytes) -> None:
-    server = Watched(Vehicle(logs={"1.bin": DATA}))
+    server = Watched(FtpRig(logs={"1.bin": DATA}))
     outcome = fetch(server, have=have, verify=True)
     assert outcome.done
     assert outcome.data == DATA
@@ -66,7 +66,7 @@ def test_whole_file_is_only_compared_and_longer_one_fetched_anew(have: bytes) ->
 
 
 def test_beginning_of_a_file_is_kept_when_the_vehicle_is_silent() -> None:
-    vehicle = Vehicle(logs={"1.bin": DATA}, rate=10_000.0)
+    vehicle = FtpRig(logs={"1.bin": DATA}, rate=10_000.0)
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
     client.download("/logs/1.bin", pair.now)
@@ -82,12 +82,12 @@ def test_beginning_of_a_file_is_kept_when_the_vehicle_is_silent() -> None:
 
 @pytest.mark.parametrize("loss", [0.0, 0.2])
 def test_a_vehicle_without_checksums_still_gives_files(loss: float) -> None:
-    outcome = fetch(Watched(Vehicle(logs={"1.bin": DATA}), frozenset({FtpOpcode.CRC})), loss, verify=True)
+    outcome = fetch(Watched(FtpRig(logs={"1.bin": DATA}), frozenset({FtpOpcode.CRC})), loss, verify=True)
     assert (outcome.done, outcome.checksum, outcome.data) == (True, None, DATA)
 
 
 def test_a_file_that_is_not_there_is_named() -> None:
-    outcome = fetch(Watched(Vehicle(logs={})))
+    outcome = fetch(Watched(FtpRig(logs={})))
     assert (outcome.done, outcome.error, outcome.problem) == (
         False,
         FtpError.NOT_FOUND,

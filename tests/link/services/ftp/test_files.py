@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from link.services.ftp.protocol import FtpError, FtpOpcode
-from tests.link.ftp_vehicle import Vehicle, error
+from tests.link.ftp_rig import FtpRig, error
 
 PATHS = [
     b"../../etc/shadow",
@@ -42,17 +42,17 @@ PATHS = [
     [FtpOpcode.OPEN, FtpOpcode.CRC, FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE, FtpOpcode.REMOVE, FtpOpcode.TRUNCATE],
 )
 def test_71_no_path_leads_out(path: bytes, op: FtpOpcode) -> None:
-    assert error(Vehicle().ask(op, path)) in (FtpError.NOT_FOUND, FtpError.PROTECTED)
+    assert error(FtpRig().ask(op, path)) in (FtpError.NOT_FOUND, FtpError.PROTECTED)
 
 
 @pytest.mark.parametrize(
     "path", [b"..", b".", b"/..", b"/logs/..", b"/logs/.", b"../..", b"logs/../1.bin", b"/logs/a\\b"]
 )
 def test_no_folder_ever_sees_a_name_that_leads_out(path: bytes) -> None:
-    assert Vehicle().tree.find(path) is None
+    assert FtpRig().tree.find(path) is None
 
 
 @given(st.binary(max_size=239))
 def test_only_names_that_are_served_are_found(path: bytes) -> None:
-    place = Vehicle().tree.find(path)
+    place = FtpRig().tree.find(path)
     assert place is None or place.name == "" or ("/" not in place.name and place.name not in (".", ".."))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket
-from tests.link.ftp_vehicle import LOG, MAX_OFFSET, Vehicle, error
+from tests.link.ftp_rig import LOG, MAX_OFFSET, FtpRig, error
 from tests.link.services_world import PEER, from_gcs
 
 # ---- bad questions ----
@@ -17,33 +17,33 @@ from tests.link.services_world import PEER, from_gcs
 @pytest.mark.parametrize("size", [240, 255])
 @pytest.mark.parametrize("op", [FtpOpcode.OPEN, FtpOpcode.READ, FtpOpcode.BURST, FtpOpcode.WRITE, FtpOpcode.LIST])
 def test_72_a_size_that_cannot_be_is_refused(size: int, op: FtpOpcode) -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
     assert error(vehicle.ask(op, b"A" * 239, size=size)) is FtpError.INVALID_SIZE
 
 
 @pytest.mark.parametrize("op", [16, 17, 100, 127, 130, 200, 255])
 def test_73_unknown_questions_are_unknown(op: int) -> None:
-    assert error(Vehicle().ask(op, b"/")) is FtpError.UNKNOWN_COMMAND
+    assert error(FtpRig().ask(op, b"/")) is FtpError.UNKNOWN_COMMAND
 
 
 @pytest.mark.parametrize("op", [FtpOpcode.READ, FtpOpcode.BURST, FtpOpcode.WRITE])
 def test_72_a_session_that_is_not_open(op: FtpOpcode) -> None:
-    assert error(Vehicle().ask(op, session=200)) is FtpError.INVALID_SESSION
+    assert error(FtpRig().ask(op, session=200)) is FtpError.INVALID_SESSION
 
 
 @pytest.mark.parametrize("op", [FtpOpcode.RENAME, FtpOpcode.MAKE_DIRECTORY, FtpOpcode.REMOVE_DIRECTORY])
 def test_the_tree_keeps_its_shape(op: FtpOpcode) -> None:
-    assert error(Vehicle().ask(op, b"/missions/new")) is FtpError.PROTECTED
+    assert error(FtpRig().ask(op, b"/missions/new")) is FtpError.PROTECTED
 
 
 def test_answers_are_never_answered() -> None:
     for op in (FtpOpcode.ACK, FtpOpcode.NAK):
-        assert Vehicle().send(FtpPacket(1, op)) == []
+        assert FtpRig().send(FtpPacket(1, op)) == []
 
 
 def test_what_is_for_others_or_from_strangers_is_not_answered() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     question = FtpPacket(1, FtpOpcode.LIST, data=b"/")
     for target in ((2, 1), (0, 0), (1, 42)):
         assert vehicle.server.receive(from_gcs(question.message(*target)), 0.0) == []
@@ -53,7 +53,7 @@ def test_what_is_for_others_or_from_strangers_is_not_answered() -> None:
 @settings(max_examples=300)
 @given(st.lists(st.binary(min_size=251, max_size=251), max_size=8))
 def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     for number, payload in enumerate(payloads):
         answers = vehicle.server.receive(from_gcs(m.FileTransferProtocol(0, 1, 1, payload)), number * 1.0)
         vehicle.server.tick(number * 1.0)
@@ -76,7 +76,7 @@ def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) ->
     )
 )
 def test_any_order_of_questions_is_safe_and_writes_only_plans(questions: list[FtpPacket]) -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     for number, question in enumerate(questions):
         vehicle.send(question, number * 0.5)
         vehicle.tick(number * 0.5)
@@ -88,7 +88,7 @@ def test_any_order_of_questions_is_safe_and_writes_only_plans(questions: list[Ft
 
 
 def test_answers_go_to_who_asked() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     [outgoing] = vehicle.server.receive(from_gcs(FtpPacket(1, FtpOpcode.LIST, data=b"/").message(1, 0)), 0.0)
     message = outgoing.message
     assert isinstance(message, m.FileTransferProtocol)

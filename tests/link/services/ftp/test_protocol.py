@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from dialects import messages as m
 from link.services.ftp.protocol import FtpPacket, parse_packet
-from tests.link.ftp_vehicle import MAX_OFFSET
+from tests.link.ftp_rig import MAX_OFFSET
 
 
 @given(

@@ -11,7 +11,7 @@ import pytest
 from pymavlink import mavftp
 
 from dialects import messages as m
-from tests.link.ftp_vehicle import LOG, Vehicle
+from tests.link.ftp_rig import LOG, FtpRig
 from tests.link.services_world import from_gcs, messages
 
 
@@ -34,7 +34,7 @@ class Master:
 
     source_system, source_component = 255, 190
 
-    def __init__(self, vehicle: Vehicle, clock: Clock, loss: float) -> None:
+    def __init__(self, vehicle: FtpRig, clock: Clock, loss: float) -> None:
         self.mav = self
         self._vehicle, self._clock, self._loss = vehicle, clock, loss
         self._dice = random.Random(4)
@@ -55,7 +55,7 @@ class Master:
         self._inbox.extend(message for message in messages(outgoing) if self._dice.random() >= self._loss)
 
 
-def pymavlinks(vehicle: Vehicle, monkeypatch: pytest.MonkeyPatch, loss: float = 0.0) -> mavftp.MAVFTP:
+def pymavlinks(vehicle: FtpRig, monkeypatch: pytest.MonkeyPatch, loss: float = 0.0) -> mavftp.MAVFTP:
     clock = Clock()
     monkeypatch.setattr(mavftp, "time", clock)
     return mavftp.MAVFTP(Master(vehicle, clock, loss), 1, 1)
@@ -78,19 +78,19 @@ def got(client: mavftp.MAVFTP, path: str) -> bytes | None:
 @pytest.mark.parametrize("size", [0, 80, 1000, 10_240, 100_000])
 def test_pymavlink_downloads_what_we_serve(size: int, loss: float, monkeypatch: pytest.MonkeyPatch) -> None:
     data = random.Random(size).randbytes(size)
-    client = pymavlinks(Vehicle(logs={"1.bin": data}), monkeypatch, loss)
+    client = pymavlinks(FtpRig(logs={"1.bin": data}), monkeypatch, loss)
     assert got(client, "/logs/1.bin") == data
 
 
 def test_pymavlink_downloads_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    client = pymavlinks(Vehicle(), monkeypatch)
+    client = pymavlinks(FtpRig(), monkeypatch)
     assert got(client, "@PARAM/param.pck?withdefaults=1") == b"packed[('withdefaults', '1')]"
     assert got(client, "/nothing") is None
     assert got(client, "/logs/1.bin") == LOG
 
 
 def test_pymavlink_lists_what_we_serve(monkeypatch: pytest.MonkeyPatch) -> None:
-    client = pymavlinks(Vehicle(), monkeypatch)
+    client = pymavlinks(FtpRig(), monkeypatch)
     for path, names in (("/", ["@PARAM", "general.json.xz", "logs", "missions"]), ("/logs", ["1.bin", "2.bin"])):
         listed = client.cmd_list([path])
         assert listed.error_code == mavftp.FtpError.Success
@@ -98,7 +98,7 @@ def test_pymavlink_lists_what_we_serve(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_pymavlink_uploads_and_removes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     client = pymavlinks(vehicle, monkeypatch)
     local = tmp_path / "new.plan"
     local.write_bytes(b"{" + bytes(1000))

@@ -9,14 +9,14 @@ from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket
 from link.services.ftp.server import FtpServer
 from link.services.ftp.sessions import EXPIRY, IDLE_AFTER, MAX_FILE, MAX_SESSIONS, MAX_SESSIONS_PER_CLIENT
 from link.services.pacing import BulkPacer
-from tests.link.ftp_vehicle import GENERAL, LOG, MAX_OFFSET, Vehicle, as_entries, error, only_plans
+from tests.link.ftp_rig import GENERAL, LOG, MAX_OFFSET, FtpRig, as_entries, error, only_plans
 from tests.link.services_world import OTHER_PEER
 
 # ---- repeats ----
 
 
 def test_74_a_repeated_question_gets_its_stored_answer() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     remove = FtpPacket(9, FtpOpcode.REMOVE, data=b"/missions/old.plan")
     first, second = vehicle.send(remove), vehicle.send(remove)
     assert first == second
@@ -25,14 +25,14 @@ def test_74_a_repeated_question_gets_its_stored_answer() -> None:
 
 
 def test_same_sequence_with_another_question_is_a_new_question() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.send(FtpPacket(0, FtpOpcode.OPEN, data=b"/logs/1.bin"))
     [listed] = vehicle.send(FtpPacket(0, FtpOpcode.LIST, data=b"/logs"))
     assert as_entries(listed.data)[0].name == "1.bin"
 
 
 def test_a_stored_answer_ends_with_the_file_that_it_opened() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     question = FtpPacket(0, FtpOpcode.OPEN, data=b"/logs/1.bin")
     vehicle.send(question)
     vehicle.tick(EXPIRY + 1.0)
@@ -41,7 +41,7 @@ def test_a_stored_answer_ends_with_the_file_that_it_opened() -> None:
 
 
 def test_a_refusal_is_thought_over_when_asked_again() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     for session in range(MAX_SESSIONS_PER_CLIENT):
         vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin", session=session)
     question = FtpPacket(500, FtpOpcode.OPEN, 99, b"/logs/1.bin")
@@ -54,7 +54,7 @@ def test_a_refusal_is_thought_over_when_asked_again() -> None:
 
 
 def test_clients_have_their_own_sessions() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin", session=0)
     vehicle.ask(FtpOpcode.OPEN, b"/general.json.xz", session=0, system=254)
     vehicle.ask(FtpOpcode.OPEN, b"@PARAM/param.pck", session=0, peer=OTHER_PEER)
@@ -66,14 +66,14 @@ def test_clients_have_their_own_sessions() -> None:
 
 
 def test_a_client_that_lost_track_opens_in_place_of_the_old() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin", session=0)
     assert vehicle.ask(FtpOpcode.OPEN, b"/general.json.xz", session=0).session == 0
     assert vehicle.ask(FtpOpcode.READ, session=0, size=4).data == GENERAL[:4]
 
 
 def test_open_files_are_bounded_and_idle_ones_give_way() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     for number in range(MAX_SESSIONS):
         opened = vehicle.ask(
             FtpOpcode.OPEN,
@@ -88,7 +88,7 @@ def test_open_files_are_bounded_and_idle_ones_give_way() -> None:
 
 
 def test_open_files_are_forgotten() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
     vehicle.tick(EXPIRY - 1.0)
     assert vehicle.ask(FtpOpcode.READ, size=4, now=EXPIRY - 1.0).op == FtpOpcode.ACK
@@ -97,14 +97,14 @@ def test_open_files_are_forgotten() -> None:
 
 
 def test_closing_twice_is_no_error() -> None:
-    assert Vehicle().ask(FtpOpcode.TERMINATE, session=3).op == FtpOpcode.ACK
-    assert Vehicle().ask(FtpOpcode.RESET).op == FtpOpcode.ACK
+    assert FtpRig().ask(FtpOpcode.TERMINATE, session=3).op == FtpOpcode.ACK
+    assert FtpRig().ask(FtpOpcode.RESET).op == FtpOpcode.ACK
 
 
 # ---- writing ----
 
 
-def write(vehicle: Vehicle, path: bytes, *pieces: tuple[int, bytes], op: FtpOpcode = FtpOpcode.CREATE) -> FtpPacket:
+def write(vehicle: FtpRig, path: bytes, *pieces: tuple[int, bytes], op: FtpOpcode = FtpOpcode.CREATE) -> FtpPacket:
     opened = vehicle.ask(op, path)
     if opened.op == FtpOpcode.NAK:
         return opened
@@ -114,7 +114,7 @@ def write(vehicle: Vehicle, path: bytes, *pieces: tuple[int, bytes], op: FtpOpco
 
 
 def test_a_file_is_written_when_it_is_closed() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.CREATE, b"/missions/new.plan")
     vehicle.ask(FtpOpcode.WRITE, b"56", offset=6)
     vehicle.ask(FtpOpcode.WRITE, b"{12345", offset=0)
@@ -125,7 +125,7 @@ def test_a_file_is_written_when_it_is_closed() -> None:
 
 
 def test_a_reset_closes_too() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.CREATE, b"/missions/new.plan")
     vehicle.ask(FtpOpcode.WRITE, b"{}")
     vehicle.ask(FtpOpcode.RESET)
@@ -133,7 +133,7 @@ def test_a_reset_closes_too() -> None:
 
 
 def test_half_a_file_is_none() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.CREATE, b"/missions/new.plan")
     vehicle.ask(FtpOpcode.WRITE, b"{}")
     vehicle.tick(EXPIRY + 1.0)
@@ -142,7 +142,7 @@ def test_half_a_file_is_none() -> None:
 
 
 def test_an_old_file_is_changed_in_place_and_cut() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     write(vehicle, b"/missions/old.plan", (1, b"NEW"), op=FtpOpcode.OPEN_TO_WRITE)
     assert vehicle.stored(b"/missions/old.plan") == b"{NEW}"
     assert vehicle.ask(FtpOpcode.TRUNCATE, b"/missions/old.plan", offset=2).op == FtpOpcode.ACK
@@ -152,32 +152,32 @@ def test_an_old_file_is_changed_in_place_and_cut() -> None:
 @pytest.mark.parametrize("op", [FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE, FtpOpcode.REMOVE, FtpOpcode.TRUNCATE])
 @pytest.mark.parametrize("path", [b"/logs/1.bin", b"/general.json.xz", b"@PARAM/param.pck", b"/new.plan"])
 def test_what_is_only_read_is_protected(op: FtpOpcode, path: bytes) -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     assert error(vehicle.ask(op, path)) is FtpError.PROTECTED
     assert vehicle.stored(b"/logs/1.bin") == LOG
 
 
 @pytest.mark.parametrize("op", [FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE, FtpOpcode.REMOVE, FtpOpcode.TRUNCATE])
 def test_only_who_is_in_control_may_write(op: FtpOpcode) -> None:
-    vehicle = Vehicle(allowed=False)
+    vehicle = FtpRig(allowed=False)
     assert error(vehicle.ask(op, b"/missions/old.plan")) is FtpError.PROTECTED
     assert vehicle.stored(b"/missions/old.plan") == b"{old}"
 
 
 def test_a_folder_may_refuse_a_name_or_a_content() -> None:
-    assert error(write(Vehicle(), b"/missions/evil.sh", (0, b"{"))) is FtpError.PROTECTED
-    assert error(write(Vehicle(), b"/missions/bad.plan", (0, b"no plan"))) is FtpError.FAIL
+    assert error(write(FtpRig(), b"/missions/evil.sh", (0, b"{"))) is FtpError.PROTECTED
+    assert error(write(FtpRig(), b"/missions/bad.plan", (0, b"no plan"))) is FtpError.FAIL
 
 
 @pytest.mark.parametrize("offset", [MAX_FILE, MAX_FILE - 1, MAX_OFFSET])
 def test_a_file_that_is_written_is_bounded(offset: int) -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.CREATE, b"/missions/new.plan")
     assert error(vehicle.ask(FtpOpcode.WRITE, b"xx", offset=offset)) is FtpError.FAIL
 
 
 def test_a_file_is_either_read_or_written() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.ask(FtpOpcode.OPEN, b"/missions/old.plan")
     assert error(vehicle.ask(FtpOpcode.WRITE, b"x")) is FtpError.PROTECTED
     vehicle.ask(FtpOpcode.CREATE, b"/missions/new.plan", session=1)
@@ -202,7 +202,7 @@ def test_closing_written_file_waits_for_disk_and_is_said_again(
     op: FtpOpcode, data: bytes, answer: FtpError | None
 ) -> None:
     missions = SlowMissions({"old.plan": b"{old}"}, accept=only_plans)
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     vehicle.server = FtpServer(FileTree(missions, {}), system=1, component=1, pacer=BulkPacer(lambda peer: 1e6))
     vehicle.ask(FtpOpcode.CREATE, b"new.plan")
     vehicle.ask(FtpOpcode.WRITE, data)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from link.services.ftp.client import FtpClient
 from link.services.ftp.job import FtpOperation, FtpOutcome
 from link.services.ftp.protocol import FtpError, crc32
-from tests.link.ftp_vehicle import LOG, Vehicle
+from tests.link.ftp_rig import LOG, FtpRig
 from tests.link.services_world import Pair
 
 
@@ -15,7 +15,7 @@ def run(client: FtpClient, pair: Pair) -> list[FtpOutcome]:
 
 
 def test_jobs_run_in_their_order_whatever_is_lost() -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client, loss=0.2, seed=8)
     numbers = [
@@ -38,7 +38,7 @@ def test_jobs_run_in_their_order_whatever_is_lost() -> None:
 
 
 def test_a_job_that_is_cancelled_leaves_the_others() -> None:
-    vehicle = Vehicle(rate=20_000.0)
+    vehicle = FtpRig(rate=20_000.0)
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
     first = client.download("/logs/1.bin", pair.now)

@@ -13,7 +13,7 @@ from link.services.ftp.client import FtpClient
 from link.services.ftp.job import MAX_SIZE, TRIES, FtpOperation, FtpOutcome
 from link.services.ftp.protocol import FtpError, FtpOpcode, crc32, parse_packet
 from link.services.ftp.upload import DIFFERS
-from tests.link.ftp_vehicle import Vehicle
+from tests.link.ftp_rig import FtpRig
 from tests.link.services_world import Pair
 
 
@@ -31,7 +31,7 @@ def send(server: Any, path: str, data: bytes, loss: float = 0.0, seed: int = 0) 
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.2]), st.sampled_from([1, 239, 240, 5000]))
 def test_a_file_arrives_whatever_is_lost(seed: int, loss: float, size: int) -> None:
     data = b"{" + random.Random(size).randbytes(size - 1)
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     outcome = send(vehicle.server, "/missions/new.plan", data, loss, seed)
     assert outcome.done, outcome
     assert outcome.checksum == crc32(data)
@@ -49,14 +49,14 @@ def test_a_file_arrives_whatever_is_lost(seed: int, loss: float, size: int) -> N
     ],
 )
 def test_a_refusal_is_named(path: str, data: bytes, error: int | None, words: str) -> None:
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     outcome = send(vehicle.server, path, data)
     assert (outcome.done, outcome.error, outcome.problem) == (False, error, words)
     assert vehicle.written == []
 
 
 def test_too_many_bytes_are_refused() -> None:  # no parameter of the test above: pytest would print all of them
-    vehicle = Vehicle()
+    vehicle = FtpRig()
     outcome = send(vehicle.server, "/missions/x.plan", bytes(MAX_SIZE + 1))
     assert (outcome.done, outcome.problem) == (False, f"{MAX_SIZE + 1} bytes are more than {MAX_SIZE}")
     assert vehicle.written == []
@@ -66,7 +66,7 @@ class Part:
     """A vehicle that does not answer some requests, or computes another checksum."""
 
     def __init__(self, silent: frozenset[FtpOpcode] = frozenset(), damage: bool = False) -> None:
-        self.vehicle, self.silent, self.damage = Vehicle(), silent, damage
+        self.vehicle, self.silent, self.damage = FtpRig(), silent, damage
 
     def receive(self, received: Any, now: float) -> list[Any]:
         packet = parse_packet(received.message)

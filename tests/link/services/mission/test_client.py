@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.services.mission.client import TRIES, MissionClient, MissionOperation, MissionOutcome
-from tests.link.mission_vehicle import (
-    Vehicle,
+from tests.link.mission_rig import (
+    MissionRig,
     plain,
     waypoint,
 )
@@ -32,7 +32,7 @@ def ending(client: MissionClient, pair: Pair, within: float) -> MissionOutcome:
 @settings(max_examples=25)
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.1, 0.3]), st.integers(0, 40))
 def test_a_plan_goes_up_and_down_whatever_is_lost(seed: int, loss: float, length: int) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     client = MissionClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client, loss=loss, seed=seed)
     items = [waypoint(number) for number in range(length)]
@@ -51,7 +51,7 @@ def test_a_plan_goes_up_and_down_whatever_is_lost(seed: int, loss: float, length
 
 
 def test_two_hundred_items_take_a_round_trip_each() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     client = MissionClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
     client.upload([waypoint(number) for number in range(200)], MissionType.MISSION, pair.now)
@@ -60,7 +60,7 @@ def test_two_hundred_items_take_a_round_trip_each() -> None:
 
 
 def test_a_refusal_is_told_with_its_reason() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     client = MissionClient(255, 190, target_system=1)
     client.upload([waypoint(command=22)], MissionType.MISSION, 100.0)
     outcome = ending(client, Pair(vehicle.server, client), within=5.0)
@@ -132,7 +132,7 @@ def test_the_item_that_was_refused_is_named(count: int, requested: int | None, r
 
 @pytest.mark.parametrize("changed", [False, True])
 def test_a_download_is_resumed_unless_the_plan_has_changed(changed: bool) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(number) for number in range(30)])
     client = MissionClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
@@ -154,7 +154,7 @@ def test_a_download_is_resumed_unless_the_plan_has_changed(changed: bool) -> Non
 
 
 def test_a_cancelled_upload_is_cancelled_on_the_vehicle() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     client = MissionClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
     client.upload([waypoint(number) for number in range(30)], MissionType.MISSION, pair.now)

@@ -12,14 +12,14 @@ from link.services.ftp.files import NotReadyError
 from link.services.ftp.protocol import FtpError
 from link.services.mission.commit import WRITE_TIMEOUT
 from link.services.mission.files import PlanFolder, encode_plan
-from tests.link.mission_vehicle import FENCE_CIRCLE, Vehicle, plain, waypoint
+from tests.link.mission_rig import FENCE_CIRCLE, MissionRig, plain, waypoint
 
 MISSION, FENCE, RALLY, ALL = MissionType.MISSION, MissionType.FENCE, MissionType.RALLY, MissionType.ALL
 OLD, NEW = [waypoint(1), waypoint(2)], [waypoint(3), waypoint(4), waypoint(5)]
 FULL = "No space left on device"
 
 
-class Disk(Vehicle):
+class Disk(MissionRig):
     """A vehicle with OLD as its mission, and a disk that is done when it is told so."""
 
     def __init__(self) -> None:

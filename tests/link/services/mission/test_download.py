@@ -9,8 +9,8 @@ from dialects.enums import MissionResult
 from link.core import Peer
 from link.services.mission.download import MAX_CLIENTS
 from link.services.pacing import BulkPacer
-from tests.link.mission_vehicle import (
-    Vehicle,
+from tests.link.mission_rig import (
+    MissionRig,
     waypoint,
 )
 
@@ -19,7 +19,7 @@ from tests.link.mission_vehicle import (
     ("first", "last", "told"), [(1, 2, [1, 2]), (2, 2, [2]), (0, 3, [0, 1, 2, 3]), (0, -1, [0, 1, 2, 3]), (3, -1, [3])]
 )
 def test_a_part_of_a_plan_is_told_without_more_questions(first: int, last: int, told: list[int]) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(number) for number in range(4)])
     assert vehicle.ask(m.MissionRequestPartialList(1, 1, first, last)) == []
     items = vehicle.tick(1.0)
@@ -29,7 +29,7 @@ def test_a_part_of_a_plan_is_told_without_more_questions(first: int, last: int, 
 
 
 def test_a_large_part_goes_no_faster_than_the_line() -> None:
-    vehicle = Vehicle(pacer=BulkPacer(lambda peer: 1000.0))
+    vehicle = MissionRig(pacer=BulkPacer(lambda peer: 1000.0))
     vehicle.upload([waypoint(number) for number in range(100)])
     vehicle.ask(m.MissionRequestPartialList(1, 1, 0, -1))
     told = [item.seq for cycle in range(100) for item in vehicle.tick(cycle * 0.02)]
@@ -51,7 +51,7 @@ def test_a_large_part_goes_no_faster_than_the_line() -> None:
     ],
 )
 def test_no_part_of_what_is_not_there(first: int, last: int, kind: int, verdict: MissionResult) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1)])
     [ack] = vehicle.ask(m.MissionRequestPartialList(1, 1, first, last, kind))
     assert ack.type == verdict
@@ -59,7 +59,7 @@ def test_no_part_of_what_is_not_there(first: int, last: int, kind: int, verdict:
 
 
 def test_a_newer_question_replaces_the_former_and_there_are_few() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1), waypoint(2)])
     vehicle.ask(m.MissionRequestPartialList(1, 1, 0, 1))
     vehicle.ask(m.MissionRequestPartialList(1, 1, 2, 2))
@@ -72,7 +72,7 @@ def test_a_newer_question_replaces_the_former_and_there_are_few() -> None:
 
 
 def test_a_plan_is_read_item_by_item_in_either_words() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1)])
     vehicle.at = 1
     [count] = vehicle.ask(m.MissionRequestList(1, 1, 0))
@@ -85,8 +85,8 @@ def test_a_plan_is_read_item_by_item_in_either_words() -> None:
 
 @pytest.mark.parametrize("kind", [0, 1, 2])
 def test_no_plan_is_a_count_of_zero(kind: int) -> None:
-    assert [count.count for count in Vehicle().ask(m.MissionRequestList(1, 1, kind))] == [0]
+    assert [count.count for count in MissionRig().ask(m.MissionRequestList(1, 1, kind))] == [0]
 
 
 def test_an_item_beyond_the_end_is_an_invalid_sequence() -> None:
-    assert [ack.type for ack in Vehicle().ask(m.MissionRequestInt(1, 1, 0, 0))] == [MissionResult.INVALID_SEQUENCE]
+    assert [ack.type for ack in MissionRig().ask(m.MissionRequestInt(1, 1, 0, 0))] == [MissionResult.INVALID_SEQUENCE]

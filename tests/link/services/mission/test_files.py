@@ -16,7 +16,7 @@ from dialects.enums import MissionResult, MissionType
 from link.services.ftp.protocol import FtpError
 from link.services.mission.files import FILE_TYPES, PlanFileError, PlanFolder, decode_plan, encode_plan
 from link.services.mission.items import MissionItem, from_message, to_message
-from tests.link.mission_vehicle import Vehicle, plain, waypoint
+from tests.link.mission_rig import MissionRig, plain, waypoint
 from tests.link.services_world import through_the_wire
 
 FLOATS = st.floats(width=32)
@@ -99,7 +99,7 @@ def test_any_bytes_are_a_plan_or_an_error(data: bytes) -> None:
 
 
 def test_the_plans_are_files() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1)])
     folder = PlanFolder(vehicle.server)
     assert [entry.name for entry in folder.entries()] == list(FILE_TYPES)
@@ -112,7 +112,7 @@ def test_the_plans_are_files() -> None:
 
 
 def test_a_written_file_is_the_plan_in_force() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     folder = PlanFolder(vehicle.server)
     assert folder.store("mission.waypoints", encode_plan([waypoint(3)])) is None
     assert plain(vehicle.plan) == plain((waypoint(3),))
@@ -132,7 +132,7 @@ def test_a_written_file_is_the_plan_in_force() -> None:
     ],
 )
 def test_what_breaks_the_rules_changes_nothing(name: str, data: bytes, error: FtpError) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(9)])
     assert PlanFolder(vehicle.server).store(name, data) is error
     assert plain(vehicle.plan) == plain((waypoint(9),))
@@ -140,7 +140,7 @@ def test_what_breaks_the_rules_changes_nothing(name: str, data: bytes, error: Ft
 
 
 def test_a_plan_that_may_not_be_changed_now_is_protected() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     told: list[tuple[MissionType, str]] = []
     folder = PlanFolder(
         vehicle.server,
@@ -154,7 +154,7 @@ def test_a_plan_that_may_not_be_changed_now_is_protected() -> None:
 
 
 def test_a_file_does_not_cross_an_upload() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 2))
     assert PlanFolder(vehicle.server).store("mission.waypoints", encode_plan([waypoint()])) is FtpError.FAIL
 
@@ -169,7 +169,7 @@ def test_a_file_does_not_cross_an_upload() -> None:
 )
 def test_what_is_wrong_with_a_file_is_told(data: bytes, told: list[object], unfit: list[object]) -> None:
     """MAVLink FTP says no more than "failed", and MAVProxy does not even look."""
-    vehicle, why = Vehicle(), []
+    vehicle, why = MissionRig(), []
     folder = PlanFolder(vehicle.server, refused=lambda kind, words: why.append((kind, words)))
     assert folder.store("mission.waypoints", data) is FtpError.FAIL
     assert why == told
@@ -177,6 +177,6 @@ def test_what_is_wrong_with_a_file_is_told(data: bytes, told: list[object], unfi
 
 
 def test_only_plans_have_a_place() -> None:
-    folder = PlanFolder(Vehicle().server)
+    folder = PlanFolder(MissionRig().server)
     assert all(map(folder.writable, FILE_TYPES))
     assert not folder.writable("other.waypoints")

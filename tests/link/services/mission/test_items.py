@@ -10,11 +10,11 @@ import pytest
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.services.mission.items import UNSET_COORDINATE
-from tests.link.mission_vehicle import (
+from tests.link.mission_rig import (
     DO_JUMP,
     NAV_LOITER_TIME,
     NAV_WAYPOINT,
-    Vehicle,
+    MissionRig,
     plain,
     waypoint,
 )
@@ -45,7 +45,7 @@ from tests.link.mission_vehicle import (
 def test_68_an_invalid_item_ends_the_upload_and_says_which_field(
     changes: dict[str, Any], verdict: MissionResult
 ) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(5)])
     vehicle.ask(m.MissionCount(1, 1, 1))
     [ack] = vehicle.give(waypoint(**changes), 0, 0.1)
@@ -58,13 +58,13 @@ def test_68_an_invalid_item_ends_the_upload_and_says_which_field(
 
 @pytest.mark.parametrize("latitude", [math.nan, math.inf, -math.inf, 1e30, 91.0])
 def test_68_a_latitude_in_floats_that_is_none(latitude: float) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 1))
     old = m.MissionItem(1, 1, 0, 3, NAV_WAYPOINT, 0, 1, 0.0, 0.0, 0.0, 0.0, latitude, 8.5, 0.5)
     assert [ack.type for ack in vehicle.ask(old)] == [MissionResult.INVALID_X]
 
 
 def test_here_is_a_place_where_a_command_allows_it() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(command=NAV_LOITER_TIME, params=(5.0, 0.0, 0.0, 0.0), x=0, y=0)])
     assert len(vehicle.plan) == 1

@@ -12,9 +12,9 @@ from dialects import messages as m
 from dialects.enums import MissionType
 from link.services.mission.files import decode_plan, encode_plan
 from link.services.mission.plans import plan_id
-from tests.link.mission_vehicle import (
+from tests.link.mission_rig import (
     NAV_LOITER_TIME,
-    Vehicle,
+    MissionRig,
     waypoint,
 )
 
@@ -23,7 +23,7 @@ PINNED = 1059710445
 
 
 def test_the_id_is_told_at_the_end_of_an_upload_and_on_download() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 1, opaque_id=77))
     [ack] = vehicle.give(waypoint(0), 0)
     [count] = vehicle.ask(m.MissionRequestList(1, 1, 0))
@@ -31,7 +31,7 @@ def test_the_id_is_told_at_the_end_of_an_upload_and_on_download() -> None:
 
 
 def test_the_id_changes_with_the_plan_and_only_with_it() -> None:
-    vehicle, seen = Vehicle(), []
+    vehicle, seen = MissionRig(), []
     for items in ([waypoint(0)], [waypoint(1)], [waypoint(0), waypoint(1)], [waypoint(1), waypoint(0)], [waypoint(0)]):
         vehicle.upload(items)
         seen.append(vehicle.server.plan_id(MissionType.MISSION))
@@ -66,6 +66,6 @@ def test_the_id_never_changes_from_release_to_release() -> None:
 
 def test_a_plan_has_the_same_id_after_the_way_through_a_file() -> None:
     items = [waypoint(0, z=0.1), waypoint(1, params=(0.3, math.nan, -1e-9, 5.0))]
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload(items)
     assert plan_id(decode_plan(encode_plan(vehicle.plan))) == vehicle.server.plan_id(MissionType.MISSION)

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.services.mission.items import UNSET_COORDINATE, ItemRequest
-from tests.link.mission_vehicle import (
+from tests.link.mission_rig import (
     DO_JUMP,
     FENCE_CIRCLE,
-    Vehicle,
+    MissionRig,
     plain,
     waypoint,
 )
@@ -22,7 +22,7 @@ from tests.link.services_world import from_gcs
 
 
 def test_a_part_of_a_plan_is_replaced() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(number) for number in range(4)])
     [request] = vehicle.ask(m.MissionWritePartialList(1, 1, 1, 2))
     assert request.seq == 1
@@ -34,14 +34,14 @@ def test_a_part_of_a_plan_is_replaced() -> None:
 
 @pytest.mark.parametrize(("first", "last"), [(-1, 0), (0, 2), (1, 0), (5, 5), (-32768, 32767)])
 def test_a_part_must_lie_inside_the_plan(first: int, last: int) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1)])
     answers = vehicle.ask(m.MissionWritePartialList(1, 1, first, last))
     assert [ack.type for ack in answers] == [MissionResult.INVALID_SEQUENCE]
 
 
 def test_a_part_that_breaks_the_rules_leaves_the_plan() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1), waypoint(2, command=DO_JUMP, params=(1.0, 2.0, 0.0, 0.0))])
     vehicle.ask(m.MissionWritePartialList(1, 1, 2, 2))
     [ack] = vehicle.give(waypoint(2, command=DO_JUMP, params=(7.0, 2.0, 0.0, 0.0)), 2)
@@ -59,11 +59,11 @@ def test_unknown_kinds_are_unsupported(kind: int) -> None:
         m.MissionCount(1, 1, 1, kind),
         m.MissionRequestInt(1, 1, 0, kind),
     ):
-        assert [ack.type for ack in Vehicle().ask(message)] == [MissionResult.UNSUPPORTED]
+        assert [ack.type for ack in MissionRig().ask(message)] == [MissionResult.UNSUPPORTED]
 
 
 def test_clearing_one_kind_and_all_of_them() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     circle = waypoint(command=FENCE_CIRCLE, params=(50.0, 0.0, 0.0, 0.0))
     for kind, item in ((MissionType.MISSION, waypoint()), (MissionType.FENCE, circle)):
         assert vehicle.server.load(kind, [item]) is MissionResult.ACCEPTED
@@ -74,7 +74,7 @@ def test_clearing_one_kind_and_all_of_them() -> None:
 
 
 def test_clearing_ends_an_upload_of_ones_own() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 2))
     vehicle.ask(m.MissionClearAll(1, 1, 0))
     assert vehicle.give(waypoint(), 0) == []
@@ -82,7 +82,7 @@ def test_clearing_ends_an_upload_of_ones_own() -> None:
 
 
 def test_whoever_uploads_may_end_it_and_nobody_else() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(9)])
     vehicle.ask(m.MissionCount(1, 1, 2))
     stop = m.MissionAck(1, 1, MissionResult.CANCELLED)
@@ -97,7 +97,7 @@ def test_whoever_uploads_may_end_it_and_nobody_else() -> None:
 
 
 def test_choosing_an_item_is_answered_to_all() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1)])
     [outgoing] = vehicle.server.receive(from_gcs(m.MissionSetCurrent(1, 1, 1)), 0.0)
     assert isinstance(outgoing.message, m.MissionCurrent)
@@ -116,7 +116,7 @@ def lone(current: int, target: int = 1, component: int = 1, kind: int = 0) -> m.
 @pytest.mark.parametrize("request_", [ItemRequest.DRIVE_TO, ItemRequest.CHANGE_ALTITUDE])
 @pytest.mark.parametrize("verdict", [MissionResult.ACCEPTED, MissionResult.ERROR])
 def test_a_lone_item_is_passed_on_and_acknowledged(request_: ItemRequest, verdict: MissionResult) -> None:
-    vehicle = Vehicle(verdict)
+    vehicle = MissionRig(verdict)
     [ack] = vehicle.ask(lone(request_))
     assert (ack.type, ack.mission_type, ack.opaque_id) == (verdict, MissionType.MISSION, 0)
     assert (ack.target_system, ack.target_component) == (255, 190)
@@ -127,7 +127,7 @@ def test_a_lone_item_is_passed_on_and_acknowledged(request_: ItemRequest, verdic
 
 
 def test_a_lone_item_with_floats_is_the_same_request() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     message = m.MissionItem(1, 1, 0, 3, 16, 2, 0, 0, 0, 0, 0, 47.5, 8.25, 0)
     assert [ack.type for ack in vehicle.ask(message)] == [MissionResult.ACCEPTED]
     [(request, item)] = vehicle.requests
@@ -136,7 +136,7 @@ def test_a_lone_item_with_floats_is_the_same_request() -> None:
 
 def test_a_lone_item_to_all_is_handled_and_one_to_another_is_not() -> None:
     """DroneKit's simple_goto sends target system 0."""
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     assert len(vehicle.ask(lone(2, target=0, component=0))) == 1
     assert vehicle.ask(lone(2, target=2)) == []
     assert vehicle.ask(lone(2, component=100)) == []
@@ -145,13 +145,13 @@ def test_a_lone_item_to_all_is_handled_and_one_to_another_is_not() -> None:
 
 
 def test_lone_item_of_a_sender_without_heartbeat_is_not_answered() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     assert vehicle.ask(lone(2), introduced=False) == []
     assert vehicle.requests == []
 
 
 def test_a_lone_item_is_no_part_of_an_upload_of_its_sender() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 1))
     assert [type(answer) for answer in vehicle.ask(lone(2))] == [m.MissionAck]
     assert vehicle.plan == ()
@@ -163,7 +163,7 @@ def test_a_lone_item_is_no_part_of_an_upload_of_its_sender() -> None:
 
 def test_a_current_of_2_in_a_fence_is_an_item_of_the_upload() -> None:
     """Only items of missions may be requests, as in ArduPilot."""
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 1, MissionType.FENCE))
     circle = waypoint(command=FENCE_CIRCLE, params=(50.0, 0.0, 0.0, 0.0))
     place = (circle.x, circle.y, circle.z)
@@ -173,7 +173,7 @@ def test_a_current_of_2_in_a_fence_is_an_item_of_the_upload() -> None:
 
 
 def test_a_saved_plan_passes_the_same_rules() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     assert vehicle.server.load(MissionType.MISSION, [waypoint(x=UNSET_COORDINATE)]) is MissionResult.INVALID_X
     assert vehicle.server.load(MissionType.FENCE, [waypoint()] * 11) is MissionResult.NO_SPACE
     assert vehicle.plan == ()
@@ -197,7 +197,7 @@ WORDS = st.one_of(
 
 @given(st.lists(WORDS, max_size=30))
 def test_nothing_that_is_said_raises(words: list[m.Message]) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     for number, word in enumerate(words):
         vehicle.ask(word, number * 0.3)
         vehicle.tick(number * 0.3)

@@ -10,10 +10,10 @@ import pytest
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.services.mission.upload import REPEAT_WINDOW, REQUEST_TIMEOUT, UPLOAD_TIMEOUT
-from tests.link.mission_vehicle import (
+from tests.link.mission_rig import (
     FENCE_CIRCLE,
     NAV_WAYPOINT,
-    Vehicle,
+    MissionRig,
     plain,
     waypoint,
 )
@@ -21,7 +21,7 @@ from tests.link.services_world import OTHER_PEER, PEER, from_gcs
 
 
 def test_an_upload_is_asked_for_item_by_item() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     [first] = vehicle.ask(m.MissionCount(1, 1, 2))
     assert isinstance(first, m.MissionRequestInt)
     assert (first.seq, first.target_system, first.target_component, first.mission_type) == (0, 255, 190, 0)
@@ -35,13 +35,13 @@ def test_an_upload_is_asked_for_item_by_item() -> None:
 
 
 def test_answers_go_to_who_asked() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     [outgoing] = vehicle.server.receive(from_gcs(m.MissionCount(1, 1, 1)), 0.0)
     assert outgoing.peer == PEER
 
 
 def test_an_item_in_floats_is_the_same_item() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 1))
     old = m.MissionItem(1, 1, 0, 3, NAV_WAYPOINT, 0, 1, 0.0, 1.0, 0.0, math.nan, 47.25, -8.5, 0.5)
     assert [ack.type for ack in vehicle.ask(old)] == [MissionResult.ACCEPTED]
@@ -49,14 +49,14 @@ def test_an_item_in_floats_is_the_same_item() -> None:
 
 
 def test_an_empty_plan_clears() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint()])
     assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 0))] == [MissionResult.ACCEPTED]
     assert vehicle.plan == ()
 
 
 def test_65_too_many_items_are_no_space() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint()])
     assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 65535))] == [MissionResult.NO_SPACE]
     assert len(vehicle.plan) == 1
@@ -64,7 +64,7 @@ def test_65_too_many_items_are_no_space() -> None:
 
 
 def test_66_silence_is_asked_again_then_cancelled_and_plan_stays() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint()])
     vehicle.ask(m.MissionCount(1, 1, 5), 10.0)
     asked: list[tuple[float, Any]] = []
@@ -85,7 +85,7 @@ def test_66_silence_is_asked_again_then_cancelled_and_plan_stays() -> None:
 
 def test_who_refuses_floats_is_asked_in_integers_from_then_on() -> None:
     """As MAVSDK does: its refusal is no wish to end."""
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 2))
     [old] = vehicle.tick(REQUEST_TIMEOUT)
     assert isinstance(old, m.MissionRequest)
@@ -99,14 +99,14 @@ def test_who_refuses_floats_is_asked_in_integers_from_then_on() -> None:
 
 
 def test_unsupported_ends_an_upload_asked_for_in_integers() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 2))
     assert vehicle.ask(m.MissionAck(1, 1, MissionResult.UNSUPPORTED)) == []
     assert vehicle.give(waypoint(0), 0) == []
 
 
 def test_67_item_out_of_order_is_dropped_and_the_right_one_asked() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 3), 0.0)
     vehicle.give(waypoint(0), 0, 0.1)
     assert vehicle.give(waypoint(0), 0, 0.11) == [], "a repeat is no reason to ask"
@@ -119,7 +119,7 @@ def test_67_item_out_of_order_is_dropped_and_the_right_one_asked() -> None:
 
 
 def test_67_the_last_item_said_again_is_acknowledged_again() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1)])
     assert [ack.type for ack in vehicle.give(waypoint(1), 1, 1.0)] == [MissionResult.ACCEPTED]
     assert vehicle.give(waypoint(0), 0, 1.0) == []
@@ -128,7 +128,7 @@ def test_67_the_last_item_said_again_is_acknowledged_again() -> None:
 
 
 def test_67_items_of_another_ground_station_do_not_count() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 1), 0.0)
     assert vehicle.give(waypoint(9), 0, 0.1, system=254) == []
     assert vehicle.give(waypoint(9), 0, 0.1, peer=OTHER_PEER) == []
@@ -138,7 +138,7 @@ def test_67_items_of_another_ground_station_do_not_count() -> None:
 
 
 def test_a_second_sender_is_denied_and_the_first_may_begin_again() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 5), 0.0)
     assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 1), 0.1, system=254)] == [MissionResult.DENIED]
     assert [ack.type for ack in vehicle.ask(m.MissionClearAll(1, 1, 0), 0.1, system=254)] == [MissionResult.DENIED]
@@ -147,7 +147,7 @@ def test_a_second_sender_is_denied_and_the_first_may_begin_again() -> None:
 
 
 def test_what_may_not_be_changed_any_more_at_the_end_stays() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(9)])
     vehicle.ask(m.MissionCount(1, 1, 2))
     vehicle.give(waypoint(0), 0)
@@ -157,7 +157,7 @@ def test_what_may_not_be_changed_any_more_at_the_end_stays() -> None:
 
 
 def test_plans_of_different_kinds_go_up_side_by_side() -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 1, MissionType.MISSION))
     vehicle.ask(m.MissionCount(1, 1, 1, MissionType.FENCE), system=254)
     circle = waypoint(command=FENCE_CIRCLE, params=(50.0, 0.0, 0.0, 0.0))
@@ -169,7 +169,7 @@ def test_plans_of_different_kinds_go_up_side_by_side() -> None:
 
 @pytest.mark.parametrize("verdict", [MissionResult.DENIED, MissionResult.ERROR])
 def test_the_vehicle_may_refuse_to_be_changed(verdict: MissionResult) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     vehicle.upload([waypoint(0), waypoint(1)])
     vehicle.verdict = verdict
     for message in (
@@ -186,7 +186,7 @@ def test_the_vehicle_may_refuse_to_be_changed(verdict: MissionResult) -> None:
     ("system", "component", "introduced"), [(2, 1, True), (0, 0, True), (1, 42, True), (1, 1, False)]
 )
 def test_what_is_for_others_or_from_strangers_is_not_answered(system: int, component: int, introduced: bool) -> None:
-    vehicle = Vehicle()
+    vehicle = MissionRig()
     assert vehicle.ask(m.MissionCount(system, component, 1), introduced=introduced) == []
     assert vehicle.ask(m.MissionRequestList(system, component, 0), introduced=introduced) == []
     assert vehicle.tick(1.0) == []

@@ -13,14 +13,14 @@ from dialects.enums import ParamErrorCode
 from link.core import Outgoing
 from link.services.param.client import TRIES, ParamClient, ParamOutcome
 from link.services.param.values import REAL32
-from tests.link.param_vehicle import Vehicle, big_table
+from tests.link.param_rig import ParamRig, big_table
 from tests.link.services_world import Pair, from_vehicle
 
 
 @settings(max_examples=25)
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.1, 0.3]))
 def test_all_parameters_arrive_whatever_is_lost(seed: int, loss: float) -> None:
-    vehicle = Vehicle(table=big_table(120))
+    vehicle = ParamRig(table=big_table(120))
     client = ParamClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client, loss=loss, seed=seed)
     client.fetch(pair.now)
@@ -30,7 +30,7 @@ def test_all_parameters_arrive_whatever_is_lost(seed: int, loss: float) -> None:
 
 
 def test_a_whole_list_takes_one_question() -> None:
-    vehicle = Vehicle(table=big_table(300))
+    vehicle = ParamRig(table=big_table(300))
     client = ParamClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client)
     client.fetch(pair.now)
@@ -41,7 +41,7 @@ def test_a_whole_list_takes_one_question() -> None:
 @settings(max_examples=25)
 @given(st.integers(0, 10_000))
 def test_a_set_over_a_lossy_link_ends_as_wanted(seed: int) -> None:
-    vehicle = Vehicle()
+    vehicle = ParamRig()
     client = ParamClient(255, 190, target_system=1)
     pair = Pair(vehicle.server, client, loss=0.2, seed=seed)
     client.set("MAN_DEADBAND", 12.5, pair.now)
@@ -63,7 +63,7 @@ def ending(client: ParamClient, pair: Pair) -> ParamOutcome:
 
 
 def test_a_refusal_and_an_unknown_name_end_at_once() -> None:
-    vehicle = Vehicle(armed=True)
+    vehicle = ParamRig(armed=True)
     client = ParamClient(255, 190, target_system=1)
     client.set("MAN_TIMEOUT", 1.0, 100.0)
     refused = ending(client, Pair(vehicle.server, client))

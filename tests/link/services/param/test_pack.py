@@ -11,7 +11,7 @@ from pymavlink import mavftp
 
 from link.services.param.float32 import shortest_float32
 from link.services.param.pack import pack
-from tests.link.param_vehicle import TABLE, Line, Memory
+from tests.link.param_rig import TABLE, Line, Memory
 
 
 def unpack(data: bytes | None) -> Any:

@@ -12,7 +12,7 @@ from link.services.param.client import Param
 from link.services.param.pack import pack
 from link.services.param.unpack import unpack
 from link.services.param.values import REAL32
-from tests.link.param_vehicle import Line, Memory
+from tests.link.param_rig import Line, Memory
 
 NAMES = st.lists(st.text("ABCDEF_", min_size=1, max_size=16), min_size=1, max_size=40, unique=True)
 

@@ -46,7 +46,7 @@ def only_plans(name: str, data: bytes) -> FtpError | None:
 
 
 @dataclass
-class Vehicle:
+class FtpRig:
     """A server, what was written to it, and short words to ask it."""
 
     rate: float = 1e6

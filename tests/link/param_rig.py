@@ -41,7 +41,7 @@ class Memory(dict[str, float]):
 
 
 @dataclass
-class Vehicle:
+class ParamRig:
     """A server, and what it told its vehicle."""
 
     rate: float = 1e6

@@ -21,7 +21,7 @@ def long(
     return CommandLong(system, component, command, confirmation, param1, 0, 0, 0, 5, 6, 7)
 
 
-class Vehicle:
+class CommandRig:
     """A server that notes what it ran."""
 
     def __init__(self, result: Result = Result.ACCEPTED) -> None:

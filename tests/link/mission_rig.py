@@ -70,7 +70,7 @@ class Writing:
 
 
 @dataclass
-class Vehicle:
+class MissionRig:
     """A server, and what it told its vehicle."""
 
     verdict: MissionResult = MissionResult.ACCEPTED
