@@ -18,7 +18,7 @@ PAGES = sorted((ROOT / "docs").glob("*.md"))
 BLOCKS = [(page, block) for page in PAGES for block in find_blocks(page.read_text())]
 BY_HAND = ("commands",)
 """Pages that CI does not type yet: a busy machine leaves the vehicle armed or in another mode before the next line.
-tests/groundstation/verbs/test_examples.py runs each line of the first block of this one."""
+tests/groundstation/verbs/manual/test_examples.py runs each line of the first block of this one."""
 TYPED = sorted(
     {page for page, block in BLOCKS if block.is_shell and "not run" not in block.notes and page.stem not in BY_HAND}
 )

@@ -201,7 +201,7 @@ def count_modes(vehicle: FakeVehicle) -> int:
     return sum(each.command == MODE for each in [*vehicle.of("COMMAND_LONG"), *vehicle.of("COMMAND_INT")])
 
 
-def test_hold_is_repeated_until_it_shows_or_another_mode_is_chosen() -> None:
+def test_hold_repeats_until_it_shows_or_another_mode_is_chosen() -> None:
     vehicle = FakeVehicle(mode=Mode.GUIDED)
     cockpit = armed_cockpit(vehicle)
     vehicle.obeys = False

@@ -25,8 +25,8 @@ from tests.e2e.relay import Relay
 from tests.fakes.params import Param
 from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
-from tests.groundstation.verbs.test_doctor import INTERVAL, MAG_CAL_START, channels, progress, report, send_all
-from tests.groundstation.verbs.test_examples import prepare
+from tests.groundstation.verbs.manual.test_examples import prepare
+from tests.groundstation.verbs.setup.test_doctor import INTERVAL, MAG_CAL_START, channels, progress, report, send_all
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
 from tests.waits import wait_until
@@ -92,7 +92,10 @@ LINES: dict[str, tuple[Line, ...]] = {
     "log erase": line("log erase --yes"),
 }  # fmt: skip
 """Verb and action -> what is run, in an order in which each finds what it needs."""
-ELSEWHERE = {"export": "test_export.py", "ros1": "test_ros1.py", "ros2": "test_ros2.py", "sign": "test_sign.py"}
+ELSEWHERE = {
+    "export": "files/test_export.py", "ros1": "ros/test_ros1.py", "ros2": "ros/test_ros2.py",
+    "sign": "setup/test_sign.py",
+}  # fmt: skip
 """Verb without a vehicle, with one on a cable, or that needs another program -> its test."""
 ALL, SECOND_PART = slice(None), [*LINES].index("mission put")
 """What of LINES is run; what comes from SECOND_PART on needs nothing of what is before it."""
@@ -112,7 +115,7 @@ MOTORS = {"SERVO1_FUNCTION": Param(73.0), "SERVO3_FUNCTION": Param(74.0)}
 def test_every_verb_has_a_line() -> None:
     names = {f"{verb} {action}".strip() for verb in VERBS.keys() - ELSEWHERE for action in VERBS[verb]}
     assert names == LINES.keys()
-    assert all(Path(__file__).with_name(test).exists() for test in ELSEWHERE.values())
+    assert all((Path(__file__).parent / test).exists() for test in ELSEWHERE.values())
 
 
 def runs() -> Iterator[object]:

@@ -11,7 +11,7 @@ from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.table import VERBS
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
-from tests.groundstation.verbs.test_examples import RUN, prepare
+from tests.groundstation.verbs.manual.test_examples import RUN, prepare
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
 

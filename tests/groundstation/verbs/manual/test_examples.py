@@ -18,7 +18,7 @@ from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.verb_runs import run_verb
 
-DOCUMENT = Path(__file__).parents[3] / "docs/commands.md"
+DOCUMENT = Path(__file__).parents[4] / "docs/commands.md"
 ALL = (*EXAMPLES, *AUTOPILOT_EXAMPLES)
 SHORTER = {
     "status": ("--timeout", "5"), "vehicles": ("--for", "0.2"), "links": ("--for", "0.2"), "messages": ("--for", "0.2"),
