@@ -2,13 +2,14 @@
 
 The short suite is for everybody who has a clone: the cores and the safety code in virtual time, all that needs no other
 program, and the main job with the real ones. It takes 200 s of CPU and skips nothing with the packages of the extra
-`test`. A new test belongs to it, unless one of MARKERS or a row of LONG says otherwise. Tests that are named on the
-command line always run.
+`test`. A new test belongs to it, unless one of MARKERS or a row of LONG says otherwise; of a long table of parameters
+ROWS do. Tests that are named on the command line always run.
 """
 
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -60,6 +61,9 @@ MAIN_JOB = (
 """Tests that are in it all the same: starting, driving, every way to die, serial lines, the bridge, and the verbs that
 arm and stop."""
 
+ROWS = 6
+"""Rows of one parametrised test in the short suite at most, evenly from its table; the others are in the rest."""
+
 APPS = "groundstation/ui"
 """A coroutine below this folder drives the whole program with its screens: 0.1 to 1 s of CPU each."""
 
@@ -81,8 +85,8 @@ def is_long_file(path: Path) -> bool:
 
 def is_short(item: pytest.Item) -> bool:
     """Return whether a test is in the short suite."""
-    name = f"{_below(item.path)}::{item.nodeid.partition('::')[2]}"
-    if any(_covers(row, name) for row in MAIN_JOB):
+    name = _name_of(item)
+    if _is_main_job(item):
         return True
     if any(_covers(row, name) for row in LONG) or any(mark.name in MARKERS for mark in item.iter_markers()):
         return False
@@ -93,9 +97,30 @@ def split(items: Sequence[pytest.Item], suite: str) -> tuple[list[pytest.Item], 
     """Return the tests of a suite, and the others."""
     if suite == ALL:
         return list(items), []
-    ours = [is_short(item) == (suite == SHORT) for item in items]
+    short = set(map(id, _thinned([item for item in items if is_short(item)])))
+    ours = [(id(item) in short) == (suite == SHORT) for item in items]
     pairs = list(zip(items, ours, strict=True))
     return [item for item, our in pairs if our], [item for item, our in pairs if not our]
+
+
+def _thinned(items: Sequence[pytest.Item]) -> list[pytest.Item]:
+    """Return the items with at most ROWS of each parametrised test, but for those of MAIN_JOB."""
+    rows: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        rows.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    kept: list[pytest.Item] = []
+    for of_one in rows.values():
+        kept += of_one if _is_main_job(of_one[0]) else of_one[:: math.ceil(len(of_one) / ROWS)]
+    return kept
+
+
+def _is_main_job(item: pytest.Item) -> bool:
+    name = _name_of(item)
+    return any(_covers(row, name) for row in MAIN_JOB)
+
+
+def _name_of(item: pytest.Item) -> str:
+    return f"{_below(item.path)}::{item.nodeid.partition('::')[2]}"
 
 
 def _below(path: Path) -> str:

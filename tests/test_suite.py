@@ -29,6 +29,13 @@ def test_short_and_rest_are_all_tests_each_once(request: pytest.FixtureRequest) 
     assert suite.split(items, suite.ALL) == (items, [])
 
 
+def test_six_rows_of_a_long_table_are_in_the_short_suite(request: pytest.FixtureRequest) -> None:
+    rows = [item for item in request.session.items if "::test_a_row_names_a_folder" in item.nodeid]
+    short, others = suite.split(rows, suite.SHORT)
+    assert 4 <= len(short) <= suite.ROWS
+    assert len(others) == len(rows) - len(short)
+
+
 @pytest.mark.parametrize(
     ("path", "is_long"),
     [

@@ -49,7 +49,15 @@ def test_every_intent_has_a_handler() -> None:
 def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
     late = {kind.__name__ for kind in KINDS if kind.valid_when_late}
     stops = {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "ReleaseControl", "Quit", "Detach", "StopMotorTest"}
-    assert late == stops | {"ReleasePad", "SetKeyGate", "ReportKeyReleases", "ReportScreen", "Watch", "PinSeries"}
+    assert late == stops | {
+        "ReleasePad",
+        "SetKeyGate",
+        "ReportKeyReleases",
+        "ReportScreen",
+        "Watch",
+        "PinSeries",
+        "AddLink",
+    }
 
 
 def test_what_the_screen_sends_on_its_own_is_no_input() -> None:
