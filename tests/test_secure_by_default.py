@@ -97,11 +97,12 @@ def test_escape_sequences_of_a_vehicle_reach_no_terminal_or_log(
     output = Output("status", as_json=False, quiet=False)
     output.line(f"one\n{EVIL}")
     output.error(EVIL)
+    Output("status", as_json=True, quiet=False).record(name=EVIL)
     log = DaemonLog(str(tmp_path / "vehicle.log"))
     logging.getLogger("vehicle").warning("%s", EVIL)
     log.close()
     printed = capsys.readouterr()
-    assert printed.out.count("\n") == 2
+    assert printed.out.count("\n") == 3
     for text in (printed.out, printed.err, (tmp_path / "vehicle.log").read_text()):
         assert "text" in text
         assert text.replace("\n", "").isprintable()

@@ -27,6 +27,7 @@ from groundstation.host_process import HostProcess
 from groundstation.input.pad_mapping import OFF, add_buttons, build_mapping
 from groundstation.recent.recent_file import RecentFile
 from groundstation.recording.options import RecordOptions
+from link.runtime import stdio
 from link.runtime.whole_file import PRIVATE
 
 if TYPE_CHECKING:
@@ -153,7 +154,7 @@ def report_armed(lines: Sequence[str]) -> None:
     """Print which vehicles are left armed; the terminal may be closed."""
     with contextlib.suppress(OSError):
         for line in lines:
-            print(f"groundstation: {line}", file=sys.stderr, flush=True)
+            print(f"groundstation: {stdio.escape(line)}", file=sys.stderr, flush=True)
 
 
 def _endpoints(options: argparse.Namespace, effective: Effective, names: Sequence[str]) -> list[str]:

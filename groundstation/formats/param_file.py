@@ -8,6 +8,7 @@ component id, name, value and MAV_PARAM_TYPE, separated by tabs
 from __future__ import annotations
 
 import math
+import re
 import struct
 from collections.abc import Callable, Iterable
 
@@ -71,7 +72,7 @@ def format_params(params: Iterable[Param], form: ParamForm, *, vehicle: int = 1,
     chosen = sorted((param for param in params if math.isfinite(param.value)), key=lambda param: param.name)
     if form is ParamForm.QGROUNDCONTROL:
         return _header(vehicle) + "".join(
-            f"{vehicle}\t{component}\t{param.name}\t{_full(param)}\t{param.kind}\n" for param in chosen
+            f"{vehicle}\t{component}\t{_word(param.name)}\t{_full(param)}\t{param.kind}\n" for param in chosen
         )
     return "".join(_WRITERS[form](param) for param in chosen)
 
@@ -98,6 +99,7 @@ def _line(
 ) -> ParamLine:
     if name_to_wire(name) is None:
         raise FileFormatError(f"{where}: {shown(name)} is not a name of at most {NAME_SIZE} ASCII characters")
+    name = _SET_IN.sub(lambda found: chr(int(found[1], 16)), name)
     return ParamLine(name, _value(text, name, where), text, number, component, kind)
 
 
@@ -120,15 +122,27 @@ def _whole(text: str, what: str, where: str) -> int:
 # ---- writing ----
 
 
+_SEPARATORS = re.compile(r"[ ,#\t]")
+_SET_IN = re.compile(r"\\x(20|2c|23)")
+
+
+def _word(name: str) -> str:
+    r"""Return a name without what divides the words of a line, e.g. a space as "\x20".
+
+    A vehicle chooses its names: as it is, `OTHER 0 #` would be a line for OTHER.
+    """
+    return _SEPARATORS.sub(lambda found: f"\\x{ord(found[0]):02x}", name)
+
+
 def _mavproxy(param: Param) -> str:
     """Return a line as MAVProxy writes it, with more digits where six decimals are not enough."""
     text = f"{param.value:f}"
     text = text if same_float32(float(text), param.value) else f"{param.value:.9g}"
-    return f"{param.name:<16} {text}\n"
+    return f"{_word(param.name):<16} {text}\n"
 
 
 def _mission_planner(param: Param) -> str:
-    return f"{param.name},{value_text(param.value)}\n"
+    return f"{_word(param.name)},{value_text(param.value)}\n"
 
 
 _WRITERS: dict[ParamForm, Callable[[Param], str]] = {

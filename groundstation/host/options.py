@@ -12,6 +12,7 @@ from pathlib import Path
 from groundstation.host_process import STATION, read_arguments
 from groundstation.input.style import Style
 from groundstation.station_socket.connect import SOCKET_BUFFER
+from link.runtime import stdio
 
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
@@ -38,7 +39,7 @@ def log_to(path: Path | None) -> None:
     handler: logging.Handler = logging.NullHandler()
     if path is not None:
         handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=1, encoding="utf-8")
-    logging.basicConfig(level=logging.INFO, handlers=[handler], format=LOG_FORMAT)
+    stdio.log_plainly(handler, logging.INFO, LOG_FORMAT)
     logging.captureWarnings(True)
 
 

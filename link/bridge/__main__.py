@@ -74,7 +74,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = _parser()
     options = parser.parse_args(parser.reject_empty(arguments))
     _check(options.endpoints, parser)
-    logging.basicConfig(level=logging.INFO, format="bridge: %(message)s", stream=sys.stderr)
+    stdio.log_plainly(logging.StreamHandler(), logging.INFO, "bridge: %(message)s")
     try:
         for note in use_dialect(options.dialect):
             log.log(logging.WARNING if note.severity <= Severity.WARNING else logging.INFO, note.text)

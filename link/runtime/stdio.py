@@ -7,6 +7,7 @@ socket or a settings file. So each of the three that is closed is opened on /dev
 from __future__ import annotations
 
 import io
+import logging
 import os
 import sys
 from typing import TextIO
@@ -36,3 +37,25 @@ def discard_output() -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)
+
+
+def escape(text: str) -> str:
+    r"""Return a text with each unprintable character as Python writes it, e.g. "\x1b": no terminal obeys that."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+class PlainFormatter(logging.Formatter):
+    """Formats a record with its control characters escaped: some texts come from the network.
+
+    Further lines of a text are set in, so that none looks like a record of its own.
+    """
+
+    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802  # the name is logging's
+        """Return the line of the record, without a traceback."""
+        return "\n    ".join(map(escape, super().formatMessage(record).split("\n")))
+
+
+def log_plainly(handler: logging.Handler, level: int, form: str) -> None:
+    """Let all libraries log to this handler, in this form."""
+    handler.setFormatter(PlainFormatter(form))
+    logging.basicConfig(level=level, handlers=[handler])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import grp
+import re
 import shlex
 import sys
 from pathlib import Path
@@ -11,16 +12,19 @@ from pathlib import Path
 import msgspec
 
 from link.runtime.command_line import USAGE_ERROR
+from vehicle.cli.subcommand import SubcommandError
 from vehicle.commands.reboot import RebootRequest
 
 HARDWARE_GROUPS = ("dialout", "gpio", "i2c", "video")
 """Groups with access to serial ports, pins, I2C and the supply monitor on Raspberry Pi OS."""
 HOMES = (Path("/home"), Path("/root"))
 PWM = "sysfs-pwm"
+USER = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*|[0-9]+")
+PLAIN = re.compile(r"[A-Za-z0-9_/.:@%$+,=-]+")
 
 TEMPLATE = """\
 # Printed by `vehicle systemd-unit`. To install it:
-#   vehicle systemd-unit --config {config} | sudo tee /etc/systemd/system/rover.service
+#   vehicle systemd-unit --config {typed} | sudo tee /etc/systemd/system/rover.service
 #   sudo systemctl daemon-reload && sudo systemctl enable --now rover
 # To follow its log: journalctl -u rover -f
 
@@ -136,7 +140,12 @@ class UnitOptions(msgspec.Struct, frozen=True):
 
 
 def build_unit(options: UnitOptions) -> str:
-    """Return the unit of the rover."""
+    """Return the unit of the rover. Raises SubcommandError for a name that cannot stand in one."""
+    for word in (str(options.config), str(options.python), options.user or ""):
+        if not word.isprintable():
+            raise SubcommandError(f"{word!r} has control characters, which a unit cannot hold: rename it")
+    if options.user and not USER.fullmatch(options.user):
+        raise SubcommandError(f"{options.user!r} is not the name of a user")
     in_home = any(_in_home(path) for path in (options.config, options.python))
     codes = (USAGE_ERROR, *POWER.values()) if options.power else (USAGE_ERROR,)
     reason = "No restart after an error in the file (2)"
@@ -146,6 +155,7 @@ def build_unit(options: UnitOptions) -> str:
     return TEMPLATE.format(
         vehicle=f"{_quote(options.python)} -m vehicle",
         config=_quote(options.config),
+        typed=shlex.quote(str(options.config)),
         user=f"User={options.user}" if options.user else "DynamicUser=yes",
         groups=groups,
         power_units="OnFailure=rover-reboot.service rover-poweroff.service\n" if options.power else "",
@@ -182,5 +192,12 @@ def _in_home(path: Path) -> bool:
 
 
 def _quote(path: Path) -> str:
-    """Quote a word of a command line in a unit, where % and $ are special."""
-    return shlex.quote(str(path)).replace("%", "%%").replace("$", "$$")
+    """Quote a word of a command line in a unit (systemd.syntax(7), systemd.service(5)).
+
+    % and $ are special there, and a backslash is also within single quotes, unlike in a shell.
+    """
+    word = str(path).replace("%", "%%").replace("$", "$$")
+    if PLAIN.fullmatch(word):
+        return word
+    escaped = word.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'

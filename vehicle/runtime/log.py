@@ -14,7 +14,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import ClassVar
 
-from link.runtime import journald
+from link.runtime import journald, stdio
 from vehicle.runtime.log_file import LogFile
 
 QUEUE_LINES = 1000
@@ -40,21 +40,11 @@ class _Brief(logging.Formatter):
     def format(self, record: logging.LogRecord) -> str:
         mark = journald.priority_prefix(self.SEVERITIES.get(record.levelno, journald.INFO))
         text = " ".join(record.getMessage().split())
-        return f"{mark}vehicle: {_escape(text)}"
+        return f"{mark}vehicle: {stdio.escape(text)}"
 
 
-class _Full(logging.Formatter):
-    """Formats a record with time and traceback; control characters of its lines are replaced."""
-
-    def __init__(self) -> None:
-        super().__init__("%(asctime)s %(levelname)s %(name)s: %(message)s")
-
-    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802  # the name is logging's
-        return "\n".join(map(_escape, super().formatMessage(record).split("\n")))
-
-
-def _escape(text: str) -> str:
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+FULL = "%(asctime)s %(levelname)s %(name)s: %(message)s"
+"""Of the log file, with tracebacks."""
 
 
 class _Queued(logging.Handler):
@@ -80,7 +70,7 @@ class DaemonLog:
         self._lines: queue.Queue[tuple[_Write, bytes] | None] = queue.Queue(QUEUE_LINES)
         self._handlers = [self._handler(partial(os.write, journald.STDERR), _Brief())]
         if path is not None:
-            self._handlers.append(self._handler(LogFile(path).write, _Full()))
+            self._handlers.append(self._handler(LogFile(path).write, stdio.PlainFormatter(FULL)))
         root = logging.getLogger()
         root.setLevel(logging.DEBUG if verbose else logging.INFO)
         for handler in self._handlers:

@@ -45,14 +45,14 @@ class CommandLine(OwnDismissal[str], ModalScreen[str]):
         self.field = LineField()
         self._history = context.keep(CommandHistory)
         self._words: tuple[str, ...] = ()
-        self._proposed = Static(HINT, id="words")
+        self._proposed = Static(HINT, id="words", markup=False)
         self._asked: Callable[[], None] | None = None
         self._line = ""
 
     def compose(self) -> ComposeResult:
         """Lay out the proposed words and the field."""
         yield self._proposed
-        yield Horizontal(Static(":", id="colon"), self.field, id="line")
+        yield Horizontal(Static(":", id="colon", markup=False), self.field, id="line")
 
     def on_mount(self) -> None:
         """Open the field."""

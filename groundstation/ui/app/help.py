@@ -15,6 +15,7 @@ from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.app.navigation import load_screen
 from groundstation.ui.base.own_dismissal import OwnDismissal
 from groundstation.ui.base.screen import ConsoleScreen
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.keys.keynames import format_key
 from groundstation.ui.look.colours import BLUE, DIM, RED, YELLOW
 
@@ -64,7 +65,7 @@ class HelpScreen(OwnDismissal[None], ConsoleScreen):
     def compose(self) -> ComposeResult:
         """Lay out one scrolling page."""
         with VerticalScroll(id="page") as page:
-            page.border_title = f"keys · map “{self.context.keymap.name}”"
+            page.border_title = plain(f"keys · map “{self.context.keymap.name}”")
             page.border_subtitle = "↑ ↓ scroll · any other key goes back"
             yield Static(Content.assemble(*self._lines()))
 

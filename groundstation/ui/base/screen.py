@@ -22,6 +22,7 @@ from groundstation.ui.base.chrome import CHROME, InstrumentRow
 from groundstation.ui.base.question import ANSWER_WITHIN, Question
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.request_numbers import RequestNumbers
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.terminal.painting import LineCompositor, painted_at_once
 from groundstation.ui.widgets.instrument import Instrument
@@ -140,7 +141,7 @@ class ConsoleScreen(Screen[None]):
     def build_panel(self, widget: Widget, title: str) -> Widget:
         """Return a widget with the frame of a panel; class `-chosen` marks the one that has the arrows."""
         widget.add_class("panel")
-        widget.border_title = title
+        widget.border_title = plain(title)
         return widget
 
     def say(self, text: str | None) -> None:

@@ -19,6 +19,7 @@ from groundstation.ui.connect.model import ConnectModel, Panel
 from groundstation.ui.connect.tables import heard_value, logs_value, ports_value, recent_value, simulators_value
 from groundstation.ui.connect.welcome import Welcome, WelcomeValue
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.files.model import FilesModel
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.line_field import FieldUse
@@ -228,7 +229,7 @@ class ConnectScreen(ConsoleScreen):
         self._recent.show(recent_value(model.entries, opened, model.shown_cursor(Panel.RECENT)))
         self._ports.show(ports_value(model.ports, opened, model.baud, model.shown_cursor(Panel.PORTS)))
         self._simulators.show(simulators_value(model.shown_cursor(Panel.SIMULATORS), snapshot.simulator))
-        self._heard.border_subtitle = "asked nobody, sent nothing yet" if not opened else f"{len(opened)} open"
+        self._heard.border_subtitle = plain("asked nobody, sent nothing yet" if not opened else f"{len(opened)} open")
         self._recent.border_subtitle = "* pinned · p pins · x forgets"
         self._ports.border_subtitle = "live"
         for panel, table in zip(Panel, self._tables, strict=True):

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 import textwrap
 
+from textual.content import Content
+
 
 def clean(text: str) -> str:
     """Return a text without control characters: one that comes from the link must not reach the terminal."""
     if text.isprintable():
         return text
     return "".join(character if character.isprintable() else "�" for character in text)
+
+
+def plain(text: str) -> Content:
+    """Return a text for a title or a Static as it is: Textual takes a str for markup there, and `[/x]` for a mistake.
+
+    A name from the link in a str would style the screen, or end it with a MarkupError.
+    """
+    return Content(clean(text))
 
 
 def wrap(text: str, width: int) -> list[str]:

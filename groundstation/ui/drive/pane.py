@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.drive.panes import PANES, Pane, PaneInput
 from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.ui.widgets.instrument import Instrument
@@ -63,15 +64,15 @@ class PaneFrame(Vertical, can_focus=False):
         self._index = index % len(PANES)
         for pane in PANES:
             self._built[pane.id].display = pane is self.pane
-        self.border_title = self.pane.id
+        self.border_title = plain(self.pane.id)
         self._draw()
 
     def set_hint(self, key: str) -> None:
         """Say which key shows which pane next."""
         following = PANES[(self._index + 1) % len(PANES)].id
-        text = f"{key} {following}"
-        if self.border_subtitle != text:
-            self.border_subtitle = text
+        hint = plain(f"{key} {following}")
+        if self.border_subtitle != hint.markup:
+            self.border_subtitle = hint
 
     def zoom(self, step: int) -> None:
         """Zoom by a step, as far as the pane can."""

@@ -84,7 +84,7 @@ class DriveScreen(ConsoleScreen):
                     yield from self.build_place("readings")
             yield from self.build_place("bottom")
         yield self._strip
-        yield Static(id="too-small")
+        yield Static(id="too-small", markup=False)
 
     def on_resize(self, event: events.Resize) -> None:
         """Show what fits: a layout of the console, the driving strip, or the size that is needed."""

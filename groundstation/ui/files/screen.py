@@ -16,7 +16,7 @@ from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.local_files import short_path
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
-from groundstation.ui.display.wrap import clean
+from groundstation.ui.display.wrap import clean, plain
 from groundstation.ui.files.export import ChosenLog, FileExport
 from groundstation.ui.files.exports import LOG_SUFFIX, Exports
 from groundstation.ui.files.model import FilesModel, Panel
@@ -209,10 +209,12 @@ class FilesScreen(ConsoleScreen):
         self._tree.show(tree_value(model))
         self._here.show(here_value(model))
         self._tasks.show(tasks_value(model.tasks, model.shown_cursor(Panel.TASKS)))
-        self._logs.border_subtitle = _sum([log.size for log in model.logs])
+        self._logs.border_subtitle = plain(_sum([log.size for log in model.logs]))
         self._tree.border_subtitle = "MAVLink FTP"
-        self._here.border_subtitle = f"{short_path(model.disk.folder)} · {_sum([each.size for each in model.here])}"
-        self._tasks.border_subtitle = f"{len(model.tasks.running)} running · x stops one"
+        self._here.border_subtitle = plain(
+            f"{short_path(model.disk.folder)} · {_sum([each.size for each in model.here])}"
+        )
+        self._tasks.border_subtitle = plain(f"{len(model.tasks.running)} running · x stops one")
         page = Panel.LOGS if model.chosen is Panel.TASKS else model.chosen
         for panel, table in zip(Panel, self._tables, strict=True):
             table.set_class(panel is model.chosen, "-chosen")

@@ -17,6 +17,7 @@ from groundstation.ui.base.panels import PanelHeights, share_rows
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import handover_text
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.keys.keynames import format_key
 from groundstation.ui.links.control_panel import ControlPanel, ControlPanelValue
 from groundstation.ui.links.link_table import LinkTable, LinkTableValue
@@ -115,13 +116,13 @@ class LinksScreen(ConsoleScreen):
                 self._show_vehicles(view)
             case LinksView():
                 self._show_links(view)
-                self._links.border_subtitle = describe_links(view)
+                self._links.border_subtitle = plain(describe_links(view))
             case ControlView():
                 keys = (self._state.key("vehicle.control"), self._state.key("vehicle.release"))
                 self._control.show(ControlPanelValue(view, *keys, self._control.value.top))
             case MessagesPage() if view.order == "bytes":
                 self._bytes.show(view)
-                self._bytes.border_subtitle = f"{view.bytes / 1000:.1f} kB/s"
+                self._bytes.border_subtitle = plain(f"{view.bytes / 1000:.1f} kB/s")
         self._lay_out()
 
     def show_body(self, now: DisplayState) -> None:
@@ -252,7 +253,7 @@ class LinksScreen(ConsoleScreen):
         cursor = selected if self._cursor is None else self._cursor
         self._vehicles.show(VehicleTableValue(view, selected, cursor, snapshot.waiting or ""))
         more = f" of {len(known) + view.not_shown}" if view and view.not_shown else ""
-        self._vehicles.border_subtitle = f"{len(known)}{more} heard" if view and known else ""
+        self._vehicles.border_subtitle = plain(f"{len(known)}{more} heard" if view and known else "")
         heading = snapshot.vehicle.heading if snapshot.vehicle else None
         self._where.show(build_where(view, selected, heading, ascii=self._state.ascii))
 

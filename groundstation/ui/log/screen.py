@@ -20,6 +20,7 @@ from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.task_list import TaskList
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.files.tables import tasks_value
 from groundstation.ui.log.detail import LogDetail, describe
 from groundstation.ui.log.detail_panel import LogDetailPanel
@@ -124,7 +125,7 @@ class LogScreen(ConsoleScreen):
         below = self._place_detail() + (running + BORDERS if running else 0)
         room = self.size.height - 4 - 2 * BORDERS - LEAST_ROWS - below
         self._alerts.styles.height = BORDERS + max(1, min(wanted, room))
-        self._alerts.border_subtitle = f"{wanted} rows · TAB, then ↑ ↓" if wanted > room else ""
+        self._alerts.border_subtitle = plain(f"{wanted} rows · TAB, then ↑ ↓" if wanted > room else "")
         self._show_lines()
 
     def _place_detail(self) -> int:
@@ -243,9 +244,9 @@ class LogScreen(ConsoleScreen):
         self._rows.show(self._model.window(self._rows.size.height))
         detail = describe(self._model.marked, self._model.group)
         self._detail.show(detail)
-        self._detail.border_title = detail.title
+        self._detail.border_title = plain(detail.title)
         shown, count = len(self._model.shown), self._model.count
-        self._rows.border_subtitle = f"{count} lines" if shown == count else f"{shown} of {count} lines"
+        self._rows.border_subtitle = plain(f"{count} lines" if shown == count else f"{shown} of {count} lines")
 
     # ---- files ----
 

@@ -14,6 +14,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.map.draw.plan_map import PlanMap
 from groundstation.ui.map.draw.plan_map_value import PlanMapValue
 from groundstation.ui.map.drive_keys import DriveKeys
@@ -217,7 +218,7 @@ class MapScreen(ConsoleScreen):
         self._line.show(lines[0] if lines else value.note)
         self._map.show(value if self._narrow else value.with_lines(lines))
         self.set_class(bool(value.note), "-table-only")
-        self._map.border_subtitle = layer_title(model)
+        self._map.border_subtitle = plain(layer_title(model))
 
     def _show_tables(self) -> None:
         model, vehicle = self._model, self._state.snapshot.vehicle
@@ -226,13 +227,13 @@ class MapScreen(ConsoleScreen):
         self.set_class(self._chosen == 2, "-editing")
         table = build_table(model, max(1, self._table.size.height - 2), narrow=self._narrow)
         self._table.show(table.with_reason(self._map.value.note))
-        self._table.border_title = model.plan_name
+        self._table.border_title = plain(model.plan_name)
         diff = model.editor.diff(model.editor.layer)
         count, found = len(model.editor.rows()), f"/{model.filter.text} {len(model.shown_rows)} of "
         items = f"{found if model.filter.text else ''}{count} items"
-        self._table.border_subtitle = items + (f" · {diff.text}" if diff.count else "")
+        self._table.border_subtitle = plain(items + (f" · {diff.text}" if diff.count else ""))
         self._item.show(build_item(model, self._field if self._chosen == 2 else None))
-        self._item.border_title = f"item {model.editor.selected + model.first}" if model.editor.row else "item"
+        self._item.border_title = plain(f"item {model.editor.selected + model.first}" if model.editor.row else "item")
         self._plans.show(build_plans(model))
         self._progress.show(build_progress(model, vehicle))
 

@@ -13,6 +13,7 @@ from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.charts.model import ChartsModel
 from groundstation.ui.display.display_state import ScreenKey
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.messages.calls import MessageCalls, parse_rate
 from groundstation.ui.messages.csv_file import MessageCsv
 from groundstation.ui.messages.detail import MessageDetail, MessageDetailValue, detail_lines
@@ -249,14 +250,14 @@ class MessagesScreen(ConsoleScreen):
         selected = next((at for at, row in enumerate(rows) if key_of(row) == model.selected), -1)
         note = "" if model.text else describe_silence(model.page, self._state.snapshot.links)
         self._table.show(MessageTableValue(rows, selected, model.order == MESSAGE_ORDERS[0], model.closed, note))
-        self._table.border_subtitle = f"{page.kinds} kinds · {page.rate:.0f}/s · {page.bytes / 1000:.1f} kB/s"
+        self._table.border_subtitle = plain(f"{page.kinds} kinds · {page.rate:.0f}/s · {page.bytes / 1000:.1f} kB/s")
 
     def _show_message(self, view: MessageView) -> None:
         self._field.follow(view)
         self._detail.show(MessageDetailValue(view, self._top(view), self._field.field, self._raw))
         self._show_plot(view)
-        self._detail.border_title = f"{view.name} #{view.id}" if view.fields else view.name
-        self._detail.border_subtitle = (
+        self._detail.border_title = plain(f"{view.name} #{view.id}" if view.fields else view.name)
+        self._detail.border_subtitle = plain(
             f"{view.system}/{view.component} · {view.rate:.1f} Hz · {view.length} B · {format_age(view.age)} s ago"
         )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from groundstation.ui.base.panels import BORDERS
-from groundstation.ui.display.wrap import clean
+from groundstation.ui.display.wrap import clean, plain
 from groundstation.ui.params.compare import CompareList, CompareValue
 from groundstation.ui.params.detail import DetailValue, ParamDetail
 from groundstation.ui.params.edit.pending_table import PendingList, PendingValue
@@ -67,8 +67,8 @@ class ParamWidgets:
         )
         scope = "" if model.scope == ALL else f" · {model.scope.label}"
         words = f" / {model.filter}" if model.filter else ""
-        self.table.border_title = clean(f"parameters{scope}{words}")
-        self.table.border_subtitle = _count_text(page) if page else ""
+        self.table.border_title = plain(f"parameters{scope}{words}")
+        self.table.border_subtitle = plain(_count_text(page) if page else "")
 
     def _show_detail(self, model: ParamModel, panels: ParamPanels) -> None:
         page, editor = model.page, model.editor
@@ -93,13 +93,13 @@ class ParamWidgets:
                 "choose a parameter with ↑ ↓" if row is None else "" if described or page is None else _no_text(page),
             )
         )
-        self.detail.border_title = clean(row.name) if row else "detail"
+        self.detail.border_title = plain(row.name if row else "detail")
 
     def _show_compare(self, model: ParamModel, panels: ParamPanels) -> None:
         diff = model.diff
         pending = frozenset(model.pending) & {name for name, _, _ in diff.different} if diff else frozenset[str]()
         self.compare.show(CompareValue(diff, panels.difference, pending, panels.chosen == "compare"))
-        self.compare.border_title = f"compare with {clean(diff.file)}" if diff else "compare with a file"
+        self.compare.border_title = plain(f"compare with {diff.file}" if diff else "compare with a file")
         self.compare.border_subtitle = "ENTER takes one · a takes all"
 
     def _show_pending(self, model: ParamModel, *, armed: bool, room: int) -> None:
@@ -107,7 +107,9 @@ class ParamWidgets:
         self.pending.show(PendingValue(changes, model.infos, armed, model.last_write))
         self.pending.styles.display = "block" if changes or not room else "none"
         self.pending.styles.height = BORDERS + min(room, len(changes) + (room > MAX_PENDING)) if room else "1fr"
-        self.pending.border_subtitle = f"{len(changes)} {'edit' if len(changes) == 1 else 'edits'}" if changes else ""
+        self.pending.border_subtitle = plain(
+            f"{len(changes)} {'edit' if len(changes) == 1 else 'edits'}" if changes else ""
+        )
 
 
 def _empty_note(model: ParamModel, page: ParamPage | None) -> str:

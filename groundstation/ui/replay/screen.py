@@ -15,6 +15,7 @@ from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.local_files import list_logs
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
 from groundstation.ui.drive.panes import SPEED_CHART, PaneInput, speed_samples
@@ -119,8 +120,8 @@ class ReplayScreen(ConsoleScreen):
         self._export.tell_end()
         view = self._model.view
         if view is not None:
-            self._timeline.border_subtitle = summary(view) if self.size.width >= WIDE else short_summary(view)
-            self._events.border_subtitle = f"{view.total} · / searches"
+            self._timeline.border_subtitle = plain(summary(view) if self.size.width >= WIDE else short_summary(view))
+            self._events.border_subtitle = plain(f"{view.total} · / searches")
 
     @property
     def advice(self) -> str:

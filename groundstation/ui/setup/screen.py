@@ -16,6 +16,7 @@ from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.save_file import save_text
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.params.edit.pending import PendingChange
 from groundstation.ui.params.kept import keep_params
 from groundstation.ui.setup.calibration_keys import CalibrationKeys
@@ -243,11 +244,11 @@ class SetupScreen(ConsoleScreen):
         model, view = self._model, self._model.view
         selected = model.selected
         self._chain.show(ChainValue(model.rows, selected.id if selected else "", model.next_steps))
-        self._chain.border_subtitle = counts(model.rows)
+        self._chain.border_subtitle = plain(counts(model.rows))
         self._checks.show(ChecksValue(view))
-        self._checks.border_subtitle = checks_age(view) if view is not None else ""
+        self._checks.border_subtitle = plain(checks_age(view) if view is not None else "")
         self._motors.show(MotorsValue(view, model.testing, model.strength))
-        self._motors.border_subtitle = frame_note(view)
+        self._motors.border_subtitle = plain(frame_note(view))
         self._calibration.show(ListValue(view))
         self._facts.show(ListValue(view))
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import msgspec
 from textual.strip import Strip
 
+from groundstation.ui.display.wrap import plain
 from groundstation.ui.look.colours import DIM, LINE, style
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none
@@ -64,7 +65,7 @@ class Chart(Instrument[ChartValue]):
         id: str | None = None,  # noqa: A002
     ) -> None:
         super().__init__(value, id=id)
-        self.border_title = title
+        self.border_title = plain(title)
         self._unit, self._series, self._step = unit, tuple(series), step
 
     def draw(self, width: int, height: int) -> list[Strip]:

@@ -50,4 +50,6 @@ def name_problem(name: str) -> str:
     """Return why a file of the vehicle cannot have this name in a folder here; "" if it can."""
     if not name or name in (".", "..") or name != PurePosixPath(name).name or "\\" in name:
         return f"{name!r} would leave the folder"
+    if name[0] in ".-":
+        return f"{name!r} would be hidden or taken for an option"
     return "" if name.isprintable() else f"{name!r} has control characters"

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import PurePosixPath
 
+from groundstation.vehicles.requests.disk_jobs import name_problem
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.local_file import read_bytes
@@ -35,6 +36,8 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
     local = options.local or PurePosixPath(options.remote.partition("?")[0]).name
     if not local:
         raise VerbError(ExitCode.USAGE, f"{options.remote!r} names no file")
+    if not options.local and (problem := name_problem(local)):
+        raise VerbError(ExitCode.USAGE, f"{problem}: name the local file, too")
 
     async def fetch(have: bytes) -> tuple[RequestReport, bytes]:
         report, outcome = await _ask(session, lambda number, now: files.download(number, options.remote, now, have))

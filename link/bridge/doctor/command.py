@@ -50,7 +50,7 @@ def run(arguments: Sequence[str]) -> int:
     """Examine, print, and return the exit code."""
     parser = build_parser()
     options = parser.parse_args(parser.reject_empty(arguments))
-    logging.basicConfig(level=logging.WARNING, format="bridge doctor: %(message)s", stream=sys.stderr)
+    stdio.log_plainly(logging.StreamHandler(), logging.WARNING, "bridge doctor: %(message)s")
     try:
         use_dialect(options.dialect)
         code = _examine(options)

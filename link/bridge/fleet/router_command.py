@@ -8,7 +8,6 @@ import logging
 import os
 import signal
 import socket
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +26,7 @@ from link.bridge.fleet.members import read_encoded
 from link.bridge.fleet.self_probe import SelfProbe, raise_descriptor_limit
 from link.fleet.config import SETTINGS, apply_settings, load_zenoh
 from link.fleet.router_session import direct
+from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 from link.runtime.toml_file import TomlError
 from link.transport.transport import LinkError
@@ -62,7 +62,7 @@ def run(arguments: Sequence[str]) -> int:
     """Run until a signal; return the exit code."""
     parser = build_parser()
     options = parser.parse_args(parser.reject_empty(arguments))
-    logging.basicConfig(level=logging.INFO, format="bridge router: %(message)s", stream=sys.stderr)
+    stdio.log_plainly(logging.StreamHandler(), logging.INFO, "bridge router: %(message)s")
     try:
         _run(read_fleet_file(options.file), options.file.parent, _read_links(options.link))
     except (TomlError, LinkError) as error:

@@ -130,3 +130,12 @@ def test_parameters_of_two_components_do_not_collide() -> None:
 def test_no_text_raises_anything_else(text: str) -> None:
     with contextlib.suppress(FileFormatError):
         parse_params(text, "x")
+
+
+@pytest.mark.parametrize("form", ParamForm)
+@pytest.mark.parametrize(
+    "name", ["OTHER 0 #", "a b", "#x", "a,b", "OTHER,0#", "-o", "[/x]", "=1+1", r"a\x0ab", "'", '"']
+)
+def test_no_name_of_a_vehicle_makes_a_line_for_another_parameter(name: str, form: ParamForm) -> None:
+    text = format_params([Param(name, 1.0, REAL32, 0)], form)
+    assert [(line.name, line.value) for line in parse_params(text, "rover.param").lines] == [(name, 1.0)]

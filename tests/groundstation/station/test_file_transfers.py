@@ -123,6 +123,8 @@ def test_what_cannot_be_written_is_refused_with_the_reason(tmp_path: Path) -> No
     assert "exists already" in pit.end_of(get(1, tmp_path)).detail
     for number, name in enumerate(("../2.tlog", "/etc/passwd", "..", "", "a/b", "x\\y"), start=10):
         assert "would leave the folder" in pit.end_of(get(number, tmp_path, name=name)).detail
+    for number, name in enumerate((".bashrc", "-rf", "--", ".x.part"), start=20):
+        assert "hidden or taken for an option" in pit.end_of(get(number, tmp_path, name=name)).detail
     assert "control characters" in pit.end_of(get(2, tmp_path, name="a\x1b[2J")).detail
     assert "no folder" in pit.end_of(get(3, tmp_path / "missing")).detail
     assert (tmp_path / "2.tlog").read_bytes() == b"mine"

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from link.runtime import stdio
 
 ROOT = Path(__file__).resolve().parents[3]
 LOOK = """
@@ -104,3 +107,12 @@ def test_a_name_that_is_no_text_is_told(words: list[bytes], code: int, says: byt
     assert done.returncode == code
     assert says in done.stdout + done.stderr
     assert (done.stdout + done.stderr).count(b"\n") == 1
+
+
+def test_a_log_line_has_no_control_characters_and_forges_no_other() -> None:
+    text = "fleet of a\x1b[2J\x1b]0;b\x07\rc\u202e\n2026-01-01 INFO vehicle: all is well"
+    record = logging.LogRecord("link", logging.WARNING, __file__, 1, "%s", (text,), None)
+    lines = stdio.PlainFormatter("bridge: %(message)s").format(record).split("\n")
+    assert all(line.isprintable() for line in lines)
+    assert lines[0].startswith(r"bridge: fleet of a\x1b[2J\x1b]0;b\x07\rc\u202e")
+    assert lines[1] == "    2026-01-01 INFO vehicle: all is well"

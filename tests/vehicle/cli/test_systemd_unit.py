@@ -14,6 +14,7 @@ import pytest
 
 from link.runtime.command_line import USAGE_ERROR
 from tests.vehicle.words import said_by
+from vehicle.cli.subcommand import SubcommandError
 from vehicle.cli.systemd_unit import UnitOptions, build_unit, home_owner
 
 PYTHON = Path(sys.executable)
@@ -25,6 +26,8 @@ PLACES = {
         Path("/home/pi/rover.toml"), PYTHON, ("dialout", "video"), user="daemon", driver="sysfs-pwm"
     ),
 }
+
+ODD = UnitOptions(Path("/etc/a \\x41 '\" %n $HOME.toml"), PYTHON, ("dialout",))
 
 analysed = pytest.mark.skipif(
     shutil.which("systemd-analyze") is None and "MAVHELM_CI" not in os.environ,
@@ -61,7 +64,23 @@ def test_who_it_runs_as_and_what_it_may_touch() -> None:
 
 def test_a_path_with_odd_characters_is_one_word() -> None:
     place = UnitOptions(Path("/etc/my rover $1 50%.toml"))
-    assert service(place)["ExecStart"].endswith("--config '/etc/my rover $$1 50%%.toml'")
+    assert service(place)["ExecStart"].endswith('--config "/etc/my rover $$1 50%%.toml"')
+    odd = UnitOptions(Path("/etc/a\\x41'\".toml"))
+    assert service(odd)["ExecStart"].endswith('--config "/etc/a\\\\x41\'\\".toml"')
+
+
+def test_the_command_in_its_comment_is_quoted_for_a_shell() -> None:
+    unit = build_unit(UnitOptions(Path("/etc/$(touch x) 50%.toml")))
+    assert "#   vehicle systemd-unit --config '/etc/$(touch x) 50%.toml' | sudo tee" in unit
+
+
+@pytest.mark.parametrize("name", ["a\nUser=root", "a\rb", "a\x1b[2J"])
+def test_a_name_with_control_characters_is_refused(name: str) -> None:
+    for options in (UnitOptions(Path(f"/etc/{name}")), UnitOptions(Path("/etc/rover.toml"), user=name)):
+        with pytest.raises(SubcommandError, match="control characters"):
+            build_unit(options)
+    with pytest.raises(SubcommandError, match="not the name of a user"):
+        build_unit(UnitOptions(Path("/etc/rover.toml"), user="-o %n"))
 
 
 def test_the_owner_of_a_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,7 +164,7 @@ def test_its_exposure_is_low(place: UnitOptions, tmp_path: Path) -> None:
 
 
 @analysed
-@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+@pytest.mark.parametrize("place", [*PLACES.values(), ODD], ids=[*PLACES, "with an odd name"])
 def test_systemd_understands_every_line(place: UnitOptions, tmp_path: Path) -> None:
     file = tmp_path / "rover.service"
     file.write_text(build_unit(place))
