@@ -1,6 +1,6 @@
 """Escape sequences that a slow line splits, with the real programs: nothing but neutral, and stop keys still stop.
 
-tests/groundstation/ui/test_escape_sequences.py splits every sequence at every byte.
+tests/groundstation/ui/terminal/test_escape_sequences.py splits every sequence at every byte.
 """
 
 from __future__ import annotations

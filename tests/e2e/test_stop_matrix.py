@@ -134,7 +134,7 @@ def test_ground_station_frozen_with_its_children(rig: Build) -> None:
 
 
 def test_ground_station_told_to_end(rig: Build) -> None:
-    """tests/groundstation/ui/test_exit.py has the other signals, which have the same handler."""
+    """tests/groundstation/ui/app/test_exit.py has the other signals, which have the same handler."""
     world = rig()
     world.drive()
     told = time.monotonic()

@@ -2,7 +2,7 @@
 
 Over SSH and in tmux COLORTERM is often missing, and Textual then uses 256 colours; the Linux console and xterm without
 it have 16. Rich takes the nearest one. The colours are chosen so that all text stays readable then (4.5:1, WCAG 2.1
-1.4.3; tests/groundstation/ui/test_themes.py computes it). Where the nearest of 16 does not, `sixteen` has another one.
+1.4.3; tests/groundstation/ui/look/test_themes.py computes it). Where the nearest of 16 does not, `sixteen` has another.
 """
 
 from __future__ import annotations

@@ -17,10 +17,10 @@ from groundstation.views.base import ViewRequest
 from groundstation.views.drive import SpeedRequest, TrackRequest
 from groundstation.views.messages import MessagesRequest
 from groundstation.views.plan import PlanRequest
+from tests.groundstation.ui.drive.instruments.test_instruments import state_of
 from tests.groundstation.ui.example_map import VIEWS
 from tests.groundstation.ui.examples import MESSAGES_PAGE, SPEEDS, TRACK, snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.test_instruments import state_of
 from tests.waits import until
 
 VIEW_KEYS = ("v", "pageup", "pagedown")

@@ -17,9 +17,9 @@ from groundstation.views.requests import RequestLine
 from link.tlog.tlog import read_records
 from tests.groundstation.export.logs import drive
 from tests.groundstation.replay.logs import NOON, BytesSource, build_station, drive_log, finish
+from tests.groundstation.ui.files.test_screen import WIDE, open_files
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.replay_station import replay_console
-from tests.groundstation.ui.screens.test_files import WIDE, open_files
 from tests.waits import until
 
 FOLDER = Path("/logs")

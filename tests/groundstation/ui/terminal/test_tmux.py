@@ -27,7 +27,7 @@ from tests.groundstation.held_key import GAP, event_times
 from tests.groundstation.ui.ptys import attach_pty
 from tests.waits import PATIENCE
 
-FOLDER = Path(__file__).parents[3]
+FOLDER = Path(__file__).parents[4]
 
 needs_tmux = pytest.mark.skipif(
     shutil.which("tmux") is None and "MAVHELM_CI" not in os.environ,
