@@ -37,8 +37,9 @@ LONG = (
     "vehicle/machine", "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
     "vehicle/storage/test_tlog_files.py::test_a_real_card",
     "groundstation/cli/test_keys_verb.py", "groundstation/connect", "groundstation/export", "groundstation/gamepad",
-    "groundstation/replay", "groundstation/station/test_file_transfers.py", "groundstation/station/test_freeze.py",
-    "groundstation/station/test_recorded_traffic.py", "groundstation/test_foreign_missions.py",
+    "groundstation/replay", "groundstation/station/services/test_file_transfers.py",
+    "groundstation/station/driving/test_freeze.py",
+    "groundstation/station/messages/test_recorded_traffic.py", "groundstation/test_foreign_missions.py",
     "groundstation/ui/app/test_command_line.py", "groundstation/ui/app/test_help.py",
     "groundstation/ui/charts/test_screen.py", "groundstation/ui/connect/test_screen.py",
     "groundstation/ui/drive/test_screen.py", "groundstation/ui/files/test_screen.py",
@@ -62,8 +63,8 @@ MAIN_JOB = (
     "e2e/test_stop_matrix.py::test_vehicle_told_to_end", "e2e/test_station_process_lost.py::test_our_rover_stops",
     "e2e/test_handover.py::test_given_control_stops", "e2e/test_serial_and_tcp.py::test_ground_station_killed",
     "e2e/test_serial_and_bridge.py", "vehicle/runtime/test_daemon.py::test_a_signal_while_driving",
-    "vehicle/safety/test_estop_button.py", "groundstation/verbs/line", "groundstation/verbs/test_arm.py",
-    "groundstation/verbs/test_stops.py",
+    "vehicle/safety/test_estop_button.py", "groundstation/verbs/line", "groundstation/verbs/control/test_arm.py",
+    "groundstation/verbs/control/test_stops.py",
 )  # fmt: skip
 """Tests that are in it all the same: starting, driving, every way to die, serial lines, the bridge, and the verbs that
 arm and stop."""

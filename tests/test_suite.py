@@ -42,7 +42,7 @@ def test_six_rows_of_a_long_table_are_in_the_short_suite(request: pytest.Fixture
         ("e2e", False), ("e2e/test_stop_matrix.py", False), ("e2e/test_browser.py", True), ("interop", True),
         ("recipes", True), ("recipes/test_key.py", True), ("vehicle/drive/test_gate.py", False),
         ("groundstation/verbs", False), ("groundstation/verbs/line", False),
-        ("groundstation/verbs/line/test_parser.py", False), ("groundstation/verbs/test_param.py", True),
+        ("groundstation/verbs/line/test_parser.py", False), ("groundstation/verbs/files/test_param.py", True),
         ("vehicle/sensors/test_gps.py", False),
     ],
 )  # fmt: skip

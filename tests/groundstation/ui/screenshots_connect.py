@@ -20,7 +20,7 @@ from link.runtime.child_process import start_module
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.example_connect import remember
-from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
+from tests.groundstation.ui.files.test_log_summary import HEARTBEATS, log
 
 HEARD = (["--sim", "udpout:127.0.0.1:14550"], ["--sim", "udpout:127.0.0.1:14551", "--system", "3"])
 FLEET = (

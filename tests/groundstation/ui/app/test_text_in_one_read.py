@@ -12,7 +12,7 @@ from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.drive.screen import DriveScreen
 from groundstation.ui.log.screen import LogScreen
 from groundstation.ui.messages.screen import MessagesScreen
-from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
+from tests.groundstation.ui.files.test_log_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.waits import until
 

@@ -25,7 +25,7 @@ from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRo
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from tests.groundstation.ui.example_files import FILES, FOLDERS, NO_TASKS, TASKS, fill_folder
 from tests.groundstation.ui.examples import snapshot
-from tests.groundstation.ui.log.test_summary import HEARTBEATS, log
+from tests.groundstation.ui.files.test_log_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console
 from tests.waits import until
 
