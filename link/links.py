@@ -44,6 +44,7 @@ def open_links(
         places=places,
         first_sequence=int(time.monotonic() * SEQUENCES_PER_SECOND) & 0xFF if side is Side.GROUND_STATION else 0,
         downloads=side is Side.GROUND_STATION,
+        bounded=side is not Side.GROUND_STATION,  # its demands and stops never wait
     )
     return [build(transport, index) for index, transport in enumerate(open_transports(endpoints, side, devices))]
 
@@ -60,6 +61,7 @@ def build_link(
     places: int = MAX_PEERS,
     first_sequence: int = 0,
     downloads: bool = False,
+    bounded: bool = False,
 ) -> Link:
     """Return a link over an open transport. `index` is unique among the links of a runner."""
     channel = Channel(
@@ -75,6 +77,7 @@ def build_link(
         places=places,
         first_sequence=first_sequence,
         downloads=downloads,
+        bounded=bounded,
         named=bool(transport.endpoint.fleet),
     )
     return Link(transport, channel, watch_only)

@@ -28,6 +28,7 @@ from link.core import (
     TimeTeller,
 )
 from link.protocol.channel import Channel
+from link.protocol.frame import read_header
 from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
 from link.routing.router import Delivery, Router
@@ -250,8 +251,11 @@ class Runner:
 
     def _forward(self, deliveries: Sequence[Delivery]) -> None:
         for index, address, frames in deliveries:
+            link = self._links[index]
             for frame in frames:
-                self._links[index].send(frame, address)
+                header = read_header(frame)
+                if header is None or link.channel.may_send(header.message_id, len(frame), address):
+                    link.send(frame, address)
 
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
@@ -291,6 +295,8 @@ class Runner:
         for link in self.links:
             if found := link.channel.tick(now):
                 self._hand_over(found, now)
+            for data, address in link.channel.questions(now):
+                link.send(data, address)
         if self._router:
             self._forward(self._router.tick(now))
         if now >= self._report_due:

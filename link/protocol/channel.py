@@ -12,7 +12,7 @@ import math
 from collections.abc import Hashable, Iterator, Sequence
 
 from dialects import codec
-from dialects.messages import FileTransferProtocol, Heartbeat, Message, RadioStatus
+from dialects.messages import FileTransferProtocol, Heartbeat, Message, Ping, RadioStatus, Timesync
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
 from link.core import LinkReport, Outgoing, Peer, Received
 from link.protocol.flow_control import FlowControl
@@ -33,6 +33,11 @@ _RATE_CLASS = {**dict.fromkeys(DEMANDS, "demand"), **dict.fromkeys(COMMANDS, "co
 _RATE_CLASS_OF_STATIONS = {**_RATE_CLASS, FileTransferProtocol.id: "file"}
 
 
+_ANSWERS = frozenset({Ping.id, Timesync.id})
+MAX_ANSWERS = 32
+"""Answers to PING that wait for the next tick."""
+FRAME = codec.HEADER_V2 + 2
+"""Bytes around a payload, without a signature."""
 LOOK_WITHIN = 2.0
 """s until a vehicle that is looked at sends everything."""
 
@@ -45,7 +50,8 @@ class Channel:
     links that send first. `capacity`: bytes/s that the link carries, where known. `sent`: shared by all channels.
     `downloads`: files may come faster than other messages; a vehicle serves them and expects requests only.
     `places`: peers at once. `first_sequence`: packet sequence of the first frame to each. `named`: an address is the
-    name of its program in a fleet. `guard`: verifies and signs; None: frames are neither verified nor signed.
+    name of its program in a fleet. `bounded`: an address of datagrams gets a little only until it has shown that it
+    receives (address_budget.py). `guard`: verifies and signs; None: frames are neither verified nor signed.
     """
 
     def __init__(
@@ -64,6 +70,7 @@ class Channel:
         first_sequence: int = 0,
         downloads: bool = False,
         named: bool = False,
+        bounded: bool = False,
         guard: SigningGuard | None = None,
     ) -> None:
         self.name = name
@@ -80,9 +87,14 @@ class Channel:
         self._wanted = wanted
         self._rate_class = _RATE_CLASS_OF_STATIONS if downloads else _RATE_CLASS
         self._new_peer_framer = Framer(stream=False)
-        self._peers = PeerTable(index, stream=stream, places=places, first_sequence=first_sequence, named=named)
+        self._peers = PeerTable(
+            index, stream=stream, places=places, first_sequence=first_sequence, named=named, bounded=bounded
+        )
+        self._answers_ping = wanted is None or Ping.id not in wanted
+        self._answers: list[tuple[PeerState, Ping]] = []
+        """Answers to PING, by which a vehicle sees that this program receives, where the core does not answer."""
         self._bytes_received = 0
-        self._duplicates = self._late = self._rate_limited = 0
+        self._duplicates = self._late = self._rate_limited = self._withheld = 0
         self._own_id = False
         self._untimely: list[Peer] = []
         self._proven: set[int] = set()
@@ -207,6 +219,7 @@ class Channel:
                 continue
             state.last_seen, state.silent = now, False
             state.newest[system] = raw
+            self._prove(state, frame, verified=judged is not None and judged[index].verified is not None)
             digest = hash(raw)
             source = state.sources.get(sender)
             if source is None:
@@ -226,6 +239,19 @@ class Channel:
                                 digest, role, verified)  # fmt: skip
             accepted.append(received)
         return accepted
+
+    def _prove(self, state: PeerState, frame: Frame, *, verified: bool) -> None:
+        """Note what a frame shows of the address that it came from, and the questions of others about ours."""
+        number, _, _, _, raw = frame
+        if (budget := state.budget) is not None and not budget.proven:
+            budget.grant(number, len(raw))
+            budget.proven |= verified
+            if number in _ANSWERS:
+                budget.note_answer(codec.decode_frame(number, raw))
+        if number == Ping.id and self._answers_ping and len(self._answers) < MAX_ANSWERS:
+            ping = codec.decode_frame(number, raw)
+            if isinstance(ping, Ping) and not ping.target_system:
+                self._answers.append((state, Ping(ping.time_usec, ping.seq, frame[1], frame[2])))
 
     def _accept_stops(self, frames: list[Frame], address: Hashable, now: float) -> list[Received]:
         """Return the stops among the frames of a sender for whom there is no place; all else is dropped."""
@@ -284,14 +310,40 @@ class Channel:
         number = type(message).id
         payload = codec.encode_payload(message) if payload is None else payload
         for state in self._peers.recipients(outgoing):
+            if not self.may_send(number, len(payload) + FRAME, state.peer.address):
+                continue
             sequence = state.sequence
-            if self.guard is None:
-                data = codec.frame(number, payload, sequence, *self.ids)
-            else:
-                data = self.guard.build_frame(number, payload, self.ids, state, now)
-            state.sequence = (sequence + 1) & 0xFF
-            self._sent.add(data)
-            yield data, state.peer.address, sequence
+            yield self._build(number, payload, state, now), state.peer.address, sequence
+
+    def may_send(self, number: int, size: int, address: Hashable) -> bool:
+        """Return whether a message may go to an address now, and count it: see `bounded`."""
+        state = self._peers.get(address)
+        if state is None or state.budget is None or state.budget.take(number, size):
+            return True
+        self._withheld += 1
+        return False
+
+    def questions(self, now: float) -> Iterator[tuple[bytes, Hashable]]:
+        """Yield what asks the addresses that have shown nothing yet, and answers to others who ask us so."""
+        answers, self._answers = self._answers, []
+        asked = [
+            (state, message)
+            for state in self._peers
+            if state.budget is not None and state.systems
+            for message in state.budget.questions(now)
+        ]
+        for state, message in (*answers, *asked):
+            data = self._build(type(message).id, codec.encode_payload(message), state, now)
+            yield data, state.peer.address
+
+    def _build(self, number: int, payload: bytes, state: PeerState, now: float) -> bytes:
+        if self.guard is None:
+            data = codec.frame(number, payload, state.sequence, *self.ids)
+        else:
+            data = self.guard.build_frame(number, payload, self.ids, state, now)
+        state.sequence = (state.sequence + 1) & 0xFF
+        self._sent.add(data)
+        return data
 
     def signing_way(self, address: Hashable, now: float) -> SigningWay | None:
         """Return how frames to an address are signed; None if they are not."""
@@ -335,7 +387,7 @@ class Channel:
             down=down or hint,
             capacity=self._capacity,
             headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
-            dropped=dropped,
+            dropped=dropped + self._withheld,
             sources=count_sources(self._peers),
             audience=tuple(state.peer for state in self._peers if state.accepts_target(0)),
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from link.core import Peer, SourceCount
+from link.protocol.address_budget import AddressBudget
 from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 from link.protocol.rate import TokenBucket
@@ -57,6 +58,8 @@ class PeerState(msgspec.Struct):
     buckets: dict[str, TokenBucket] = msgspec.field(default_factory=_buckets)
     key: SigningKey | None = None
     """The key of its newest signed frame, with which ours to it are signed."""
+    budget: AddressBudget | None = None
+    """What may be sent before the address has shown that it receives; None: no limit."""
     source: Hashable = None
     """Whose address it is: the name of an operator of a fleet, or a host."""
     clocks: dict[SigningKey, float] = msgspec.field(default_factory=dict)

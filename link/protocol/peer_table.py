@@ -20,6 +20,7 @@ from dialects.messages import target_system
 from dialects.traits import COMMANDS, LOG_ONLY, is_stop
 from link.core import Outgoing, Peer
 from link.endpoint import FLEET_NAME
+from link.protocol.address_budget import AddressBudget
 from link.protocol.frame import Frame, FramerCounts
 from link.protocol.framer import Framer
 from link.protocol.peer import PeerState
@@ -74,7 +75,14 @@ class PeerTable:
     """
 
     def __init__(
-        self, index: int, *, stream: bool, places: int = MAX_PEERS, first_sequence: int = 0, named: bool = False
+        self,
+        index: int,
+        *,
+        stream: bool,
+        places: int = MAX_PEERS,
+        first_sequence: int = 0,
+        named: bool = False,
+        bounded: bool = False,
     ) -> None:
         self.past_counts = FramerCounts()
         """Of the peers that have gone."""
@@ -91,6 +99,7 @@ class PeerTable:
         self._places = places
         self._first_sequence = first_sequence
         self._named = named
+        self._bounded = bounded and not stream  # a connection proves its address
         self._states: dict[Hashable, PeerState] = {}
         self._conversations = count()
 
@@ -248,7 +257,14 @@ class PeerTable:
     def _new(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
         peer, framer = self._new_conversation(address), Framer(stream=self._stream)
         return PeerState(
-            peer, framer, now, fixed, silent=fixed, sequence=self._first_sequence, source=self._source(address)
+            peer,
+            framer,
+            now,
+            fixed,
+            silent=fixed,
+            sequence=self._first_sequence,
+            budget=AddressBudget() if self._bounded and not fixed else None,
+            source=self._source(address),
         )
 
     def _new_conversation(self, address: Hashable) -> Peer:

@@ -45,7 +45,6 @@ def make_member(common_name: str, authority: KeyPair, hosts: Sequence[str] = ())
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         (place / "authority.pem").write_bytes(authority.certificate)
-        _write_key(place / "authority.key", authority.key)
         (place / "own.cnf").write_text(_extensions(hosts))
         _openssl(folder, "req", "-new", *_new_key("own"), "-subj", f"/CN={common_name}", "-out", "own.csr")
         _openssl(
@@ -57,7 +56,7 @@ def make_member(common_name: str, authority: KeyPair, hosts: Sequence[str] = ())
             "-CA",
             "authority.pem",
             "-CAkey",
-            "authority.key",
+            "/dev/stdin",  # a copy in a file would stay behind if this program were killed
             "-sha256",
             "-CAcreateserial",
             "-days",
@@ -66,6 +65,7 @@ def make_member(common_name: str, authority: KeyPair, hosts: Sequence[str] = ())
             "own.cnf",
             "-out",
             "own.pem",
+            given=authority.key,
         )
         return _read_pair(place)
 
@@ -91,20 +91,15 @@ def _is_address(host: str) -> bool:
     return True
 
 
-def _write_key(path: Path, key: bytes) -> None:
-    path.touch(mode=0o600)
-    path.write_bytes(key)
-
-
 def _read_pair(folder: Path) -> KeyPair:
     return KeyPair((folder / "own.pem").read_bytes(), (folder / "own.key").read_bytes())
 
 
-def _openssl(folder: str, *arguments: str) -> None:
+def _openssl(folder: str, *arguments: str, given: bytes = b"") -> None:
     try:
-        done = subprocess.run(["openssl", *arguments], cwd=folder, capture_output=True, text=True, check=False)
+        done = subprocess.run(["openssl", *arguments], cwd=folder, input=given, capture_output=True, check=False)
     except FileNotFoundError:
         raise CertificateError(NOT_FOUND) from None
     if done.returncode:
-        lines = done.stderr.strip().splitlines() or ["no reason given"]
+        lines = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
         raise CertificateError(f"openssl {arguments[0]}: {lines[-1]}")

@@ -1,0 +1,117 @@
+"""An address that may be forged gets a bounded multiple of what came from it, until it answers."""
+
+from __future__ import annotations
+
+from dialects import codec
+from dialects import messages as m
+from link.core import Outgoing
+from link.protocol.channel import Channel
+from tests.link.frames import frame, heartbeat
+
+VICTIM = ("192.0.2.7", 14550)
+BEAT = m.Heartbeat(10, 0, 81, 0, 3, 3)
+STATUS = m.SysStatus(*(0,) * 13)
+
+
+def vehicle(*, stream: bool = False, target: tuple[str, int] | None = None, bounded: bool = True) -> Channel:
+    wanted = frozenset({m.Heartbeat.id, m.Ping.id, m.Timesync.id, m.ParamRequestList.id})
+    return Channel("udp", 0, system=1, component=1, stream=stream, target=target, wanted=wanted, bounded=bounded)
+
+
+def told(channel: Channel, message: m.Message = STATUS, times: int = 10_000) -> int:
+    """Bytes of a message that the address gets when it is sent again and again."""
+    outgoing = Outgoing(message)
+    return sum(len(data) for _ in range(times) for data, _, _ in channel.send(outgoing))
+
+
+def asked(channel: Channel, now: float) -> list[m.Message]:
+    found = (codec.decode_frame(int.from_bytes(data[7:10], "little"), data) for data, _ in channel.questions(now))
+    return list(found)
+
+
+def test_one_heartbeat_brings_a_hundred_times_its_size() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    assert len(heartbeat(0)) == 21
+    assert 1900 < told(channel) < 2200
+    channel.receive(heartbeat(1), VICTIM, 1.0)
+    assert 1900 < told(channel) < 2200, "default telemetry to who sends a HEARTBEAT a second is half of that"
+
+
+def test_a_first_request_brings_room_for_all_parameters_once() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    channel.receive(frame(m.ParamRequestList(1, 1), 1), VICTIM, 0.0)
+    assert 11_000 < told(channel) < 12_500
+    channel.receive(frame(m.ParamRequestList(1, 1), 2), VICTIM, 0.0)
+    assert told(channel) < 2500
+
+
+def test_what_was_saved_up_has_a_limit() -> None:
+    channel = vehicle()
+    for number in range(200):
+        channel.receive(heartbeat(number), VICTIM, float(number))
+    assert told(channel) <= 65536
+
+
+def test_heartbeats_and_acknowledgements_always_go_out() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    told(channel)
+    assert told(channel) == 0
+    assert told(channel, BEAT, 10) == 10 * 21
+    assert told(channel, m.CommandAck(400, 0, 0, 0, 255, 190), 10) > 0
+
+
+def test_an_answer_to_ping_or_timesync_lifts_the_limit() -> None:
+    for kind in (m.Ping, m.Timesync):
+        channel = vehicle()
+        channel.receive(heartbeat(0), VICTIM, 0.0)
+        told(channel)
+        ping, timesync = asked(channel, 0.0)
+        assert isinstance(ping, m.Ping)
+        assert isinstance(timesync, m.Timesync)
+        answers = {m.Ping: m.Ping(ping.time_usec, ping.seq, 1, 1), m.Timesync: m.Timesync(7, timesync.ts1)}
+        channel.receive(frame(answers[kind], 1), VICTIM, 0.1)
+        assert told(channel) > 100_000
+        assert asked(channel, 60.0) == []
+
+
+def test_a_guess_and_an_echo_of_the_question_are_no_answers() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    ping, timesync = asked(channel, 0.0)
+    assert isinstance(ping, m.Ping)
+    assert isinstance(timesync, m.Timesync)
+    for number, wrong in enumerate(
+        (m.Ping(ping.time_usec + 1, 1, 1, 1), m.Ping(ping.time_usec, 1, 0, 0), m.Timesync(0, timesync.ts1)), 1
+    ):
+        channel.receive(frame(wrong, number), VICTIM, 0.1)
+    assert told(channel) < 20_000
+
+
+def test_it_asks_five_times_and_then_seldom() -> None:
+    channel = vehicle()
+    assert asked(channel, 0.0) == [], "nobody is there"
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    times = [now / 10 for now in range(600) if asked(channel, now / 10)]
+    assert times[:5] == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert times[5:] == [14.0, 24.0, 34.0, 44.0, 54.0]
+
+
+def test_named_addresses_connections_stations_have_no_limit() -> None:
+    for channel in (vehicle(target=VICTIM), vehicle(stream=True), vehicle(bounded=False)):
+        channel.receive(heartbeat(0), VICTIM, 0.0)
+        assert told(channel) > 100_000
+        assert asked(channel, 0.0) == []
+
+
+def test_a_program_that_handles_no_ping_answers_it() -> None:
+    channel = Channel("udp", 0, system=255, component=190)
+    channel.receive(frame(BEAT, 0, 1, 1), VICTIM, 0.0)
+    channel.receive(frame(m.Ping(77, 3, 0, 0), 1, 1, 1), VICTIM, 0.0)
+    channel.receive(frame(m.Ping(78, 3, 255, 190), 2, 1, 1), VICTIM, 0.0)
+    [answer] = asked(channel, 0.0)
+    assert isinstance(answer, m.Ping)
+    assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (77, 3, 1, 1)
+    assert asked(channel, 0.0) == []
