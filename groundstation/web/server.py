@@ -9,6 +9,7 @@ import argparse
 import asyncio
 import contextlib
 import json
+import logging
 import os
 import socket
 import sys
@@ -19,6 +20,7 @@ from typing import Any
 
 from aiohttp import WSMsgType, web
 
+from groundstation.web.door import REQUEST_WITHIN, Door, FewLines
 from groundstation.web.guard import HEADERS, TOKEN, Guard, WebRequest
 from groundstation.web.tab import Tab
 
@@ -53,6 +55,8 @@ class WebServer:
         self._guard = guard
         self._arguments = arguments
         self._tabs = 0
+        self.door: Door | None = None
+        """Bounds who has connected and asks nothing; None: nobody waits there."""
         self._page, self._script = (
             (Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("page.html", "page.js")
         )
@@ -62,6 +66,8 @@ class WebServer:
 
         @web.middleware
         async def check(request: web.Request, handler: Handler) -> web.StreamResponse:
+            if self.door is not None:
+                self.door.admit(request.transport)
             return self._refuse(request) or await handler(request)
 
         app = web.Application(middlewares=[check])
@@ -158,12 +164,19 @@ async def _add_headers(request: web.Request, response: web.StreamResponse) -> No
 
 async def serve(sock: socket.socket, server: WebServer) -> None:
     """Serve until standard input is closed: the program that has started this process has ended."""
-    runner = web.AppRunner(server.build(), access_log=None, shutdown_timeout=SHUTDOWN)
+    app = server.build()
+    runner = web.AppRunner(
+        app, access_log=None, shutdown_timeout=SHUTDOWN, keepalive_timeout=REQUEST_WITHIN, lingering_time=SHUTDOWN
+    )
     await runner.setup()
-    await web.SockSite(runner, sock).start()
+    assert runner.server is not None
+    server.door = Door(runner.server)
+    loop = asyncio.get_running_loop()
+    listening = await loop.create_server(server.door, sock=sock)
     ended = asyncio.Event()
-    asyncio.get_running_loop().add_reader(0, ended.set)
+    loop.add_reader(0, ended.set)
     await ended.wait()
+    listening.close()
     await runner.cleanup()
 
 
@@ -175,6 +188,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options: Any = parser.parse_args(arguments)
     sock = socket.socket(fileno=options.fd)
     token = os.read(sys.stdin.fileno(), 256).decode().strip()
+    for name in ("aiohttp.server", "asyncio"):
+        logging.getLogger(name).addFilter(FewLines())
     asyncio.run(serve(sock, WebServer(Guard(sock.getsockname()[1], token), options.rest)))
     return 0
 
