@@ -7,7 +7,6 @@ import fcntl
 import os
 import re
 import secrets
-import time
 from pathlib import Path
 
 SHARED, PRIVATE = 0o666, 0o600
@@ -26,13 +25,13 @@ def replace_file(
     same holds after a power failure. `folders_owner`: if root writes, the file belongs to the owner of its folder.
     What a program that was killed meanwhile has left of the same file, which may hold keys, is removed.
     """
-    _remove_leftovers(path)
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
     descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, mode)
     try:
         with os.fdopen(descriptor, "wb") as file:
             with contextlib.suppress(OSError):  # a file system without locks: then only its age tells
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _remove_leftovers(path, temporary, os.fstat(descriptor).st_mtime)
             if folders_owner and os.geteuid() == 0:
                 folder = path.parent.stat()
                 os.fchown(descriptor, folder.st_uid, folder.st_gid)
@@ -49,20 +48,23 @@ def replace_file(
         raise
 
 
-def _remove_leftovers(path: Path) -> None:
-    """Remove temporary files of `path` that nobody writes any more. Never raises."""
+def _remove_leftovers(path: Path, own: Path, now: float) -> None:
+    """Remove temporary files of `path` but `own` that nobody writes any more. Never raises.
+
+    `now`: time of `own`, by the clock of the file system.
+    """
     name = re.compile(rf"\.{re.escape(path.name)}\.[0-9a-f]{{8}}")
     with contextlib.suppress(OSError):
         for each in os.listdir(path.parent):
-            if name.fullmatch(each):
-                _remove_leftover(path.with_name(each))
+            if name.fullmatch(each) and each != own.name:
+                _remove_leftover(path.with_name(each), now)
 
 
-def _remove_leftover(path: Path) -> None:
+def _remove_leftover(path: Path, now: float) -> None:
     with contextlib.suppress(OSError):
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
         try:
-            age = abs(time.time() - os.fstat(descriptor).st_mtime)  # either way: a clock may have been set meanwhile
+            age = abs(now - os.fstat(descriptor).st_mtime)  # either way: a clock may have been set meanwhile
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if age >= WRITING:
                 path.unlink()
