@@ -109,7 +109,7 @@ def test_a_name_that_is_no_text_is_told(words: list[bytes], code: int, says: byt
     assert (done.stdout + done.stderr).count(b"\n") == 1
 
 
-def test_a_log_line_has_no_control_characters_and_forges_no_other() -> None:
+def test_a_log_line_has_no_control_characters_and_forges_none() -> None:
     text = "fleet of a\x1b[2J\x1b]0;b\x07\rc\u202e\n2026-01-01 INFO vehicle: all is well"
     record = logging.LogRecord("link", logging.WARNING, __file__, 1, "%s", (text,), None)
     lines = stdio.PlainFormatter("bridge: %(message)s").format(record).split("\n")
