@@ -6,6 +6,7 @@ their modules imported, when they are used first: importing all of them takes a 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Mapping, MutableMapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeVar
@@ -143,8 +144,9 @@ class VehicleServices:
         from groundstation.vehicles.requests.file_requests import FileRequests
         from link.services.ftp.client import FtpClient
 
-        to, at = self._target
-        return self._add(FileRequests(FtpClient(*self._ids, target_system=to, target_component=at), self.book))
+        (to, at), first = self._target, int.from_bytes(os.urandom(3))
+        client = FtpClient(*self._ids, target_system=to, target_component=at, first=first)
+        return self._add(FileRequests(client, self.book))
 
     @cached_property
     def plans(self) -> PlanRequests:

@@ -19,7 +19,7 @@ class ForeignFtp:
         self._made = made
         self._open: bytes = b""
         self._writing: tuple[str, bytearray] | None = None
-        self._last = b"", b""
+        self._last: tuple[tuple[int, int], bytes] | None = None
 
     def answer(self, payload: bytes) -> Iterator[bytes]:
         """Yield the payloads of the replies."""
@@ -33,9 +33,11 @@ class ForeignFtp:
         if op == 15:
             yield from self._burst(offset, size, reply)
             return
-        if payload != self._last[0]:  # a request that is repeated is answered by the same reply
+        # A request that is repeated is answered by the same reply, and its numbers alone say that it is one.
+        if self._last is None or self._last[0] != (session, sequence):
             result = self._handle(op, data.split(b"\0")[0].decode(), data, offset, size)
-            self._last = payload, reply(NAK, bytes([result])) if isinstance(result, int) else reply(ACK, result)
+            answer = reply(NAK, bytes([result])) if isinstance(result, int) else reply(ACK, result)
+            self._last = (session, sequence), answer
         yield self._last[1]
 
     def _burst(self, offset: int, size: int, reply: Callable[..., bytes]) -> Iterator[bytes]:

@@ -14,7 +14,7 @@ from dialects import messages as m
 from link.core import Outgoing, Received
 from link.services.ftp.download import Download
 from link.services.ftp.job import MAX_SIZE, TRIES, FtpJob, FtpLine, FtpOperation, FtpOutcome, encode_path
-from link.services.ftp.protocol import parse_packet
+from link.services.ftp.protocol import SEQUENCE_MASK, parse_packet
 from link.services.ftp.single import ListFolder, SingleRequest
 from link.services.ftp.upload import Upload
 
@@ -25,11 +25,18 @@ JobFactory = Callable[[FtpLine, bytes], FtpJob]
 class FtpClient:
     """Talks to one vehicle, one job at a time in the order of the requests. Each has a number, rising from 1."""
 
-    def __init__(self, system: int, component: int, *, target_system: int, target_component: int = 1) -> None:
+    def __init__(
+        self, system: int, component: int, *, target_system: int, target_component: int = 1, first: int = 0
+    ) -> None:
+        """`first`: 24 bits from which sequence and session numbers are counted.
+
+        ArduPilot and PX4 take a request for a repeated one, and repeat their last reply, if its sender, session and
+        sequence equal those of the last one: a program that begins where another began reads answers to the other's.
+        """
         self._ids = (system, component)
         self._target = (target_system, target_component)
-        self._sequence = 0
-        self._session = 0
+        self._sequence = first & SEQUENCE_MASK
+        self._session = first >> 16 & 0xFF
         self._count = 0
         self._waiting: deque[tuple[int, bytes, JobFactory]] = deque()
         self._current: tuple[int, FtpLine, FtpJob] | None = None

@@ -56,6 +56,17 @@ def test_list_get_put_remove_and_compare(capsys: Capture, vehicle: ForeignVehicl
     assert "/scripts/b.lua" not in vehicle.files.files
 
 
+def test_each_program_gets_answers_to_its_own_requests(capsys: Capture, vehicle: ForeignVehicle, here: Path) -> None:
+    """The vehicle repeats its last reply to a request that has the numbers of the last one, as autopilots do."""
+    assert vehicle.files is not None
+    vehicle.files.files |= {"/a.bin": b"a", "/b.bin": b"b"}
+    for name in ("/a.bin", "/b.bin"):
+        assert verb(capsys, vehicle, "ftp", "rm", name).code == 0
+        assert name not in vehicle.files.files
+    assert verb(capsys, vehicle, "ftp", "rm", "/a.bin").code == ExitCode.REFUSED
+    assert "1.bin" in verb(capsys, vehicle, "ftp", "ls", "/logs").out
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
