@@ -153,10 +153,11 @@ MISSION_PAUSED = rover.MISSION_STATE_PAUSED
 def decode_text(message: StatusText | RoverStationEvent) -> str:
     """Return the text as UTF-8 (the generated decoder knows only ASCII), with control characters replaced.
 
-    The text goes to a terminal: an escape sequence in it must not reach the screen as one.
+    The text goes to a terminal: an escape sequence in it must not reach the screen as one. PX4 ends a text with a tab
+    if an EVENT says the same.
     """
     raw: bytes = message._text_raw
-    return printable(raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
+    return printable(raw.split(b"\0", 1)[0].rstrip(b"\t\r\n").decode("utf-8", "replace"))
 
 
 def encode_text(text: str, size: int) -> bytes:

@@ -26,3 +26,8 @@ def test_a_long_text_is_cut_between_characters() -> None:
     assert isinstance(read, RoverStationEvent)
     assert decode_text(read) == "neutral: " + "\N{HEAVY BLACK HEART}" * 30
     assert encode_text("\udc80", 9) == b"?"  # half a character, as from a file name that is not UTF-8
+
+
+def test_a_tab_that_ends_a_text_of_px4_is_not_a_part_of_it() -> None:
+    assert decode_text(StatusText(6, b"Armed by external command\t")) == "Armed by external command"
+    assert decode_text(StatusText(6, b"a\tb")) == "a\N{REPLACEMENT CHARACTER}b"

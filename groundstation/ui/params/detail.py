@@ -149,7 +149,10 @@ def _effect(info: ParamInfo) -> list[Part]:
         return _labelled("changes", "read-only", AMBER)
     if info.reboot:
         return _labelled("effect", "after a restart", AMBER)
-    return _labelled("effect", "only while disarmed" if info.not_armed else "at once", AMBER if info.not_armed else DIM)
+    if info.not_armed:
+        return _labelled("effect", "only while disarmed", AMBER)
+    described = bool(info.title or info.text or info.values or info.bits)
+    return _labelled("effect", "at once" if described else "not known", DIM)
 
 
 def _labelled(label: str, text: str, colour: str) -> list[Part]:

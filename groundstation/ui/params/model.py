@@ -110,7 +110,8 @@ class ParamModel:
         if self._ended(page, self.fetch_after):
             self.fetch_after = None
             return (self.fetch(),)
-        if page.known or page.running or page.system in self._fetched:
+        # ArduPilot sends some values by itself: a few that are known are not the list.
+        if page.known + page.missing >= max(1, page.total or 0) or page.running or page.system in self._fetched:
             return ()
         self._fetched.add(page.system)
         return (self.fetch(),)

@@ -103,6 +103,14 @@ def test_numbers_of_requests_rise() -> None:
     assert [model.fetch(), model.fetch()] == [FetchParams(1), FetchParams(2)]
 
 
+def test_a_few_values_that_came_unasked_are_not_the_list() -> None:
+    model = ParamModel(RequestNumbers())
+    some = ParamPage(1, rows(0, 3), 0, 3, 3, 1234, has_defaults=False, running=(), ended=())
+    assert model.show_page(some) == (FetchParams(1),)
+    assert model.show_page(some) == (), "once"
+    assert ParamModel(RequestNumbers()).show_page(page(0, 10)) == ()
+
+
 def test_old_ends_of_other_requests_do_not_end_a_write() -> None:
     model = shown()
     change(model, "5")
