@@ -27,6 +27,7 @@ from groundstation.host_process import HostProcess
 from groundstation.input.pad_mapping import OFF, add_buttons, build_mapping
 from groundstation.recent.recent_file import RecentFile
 from groundstation.recording.options import RecordOptions
+from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
 from link.runtime import stdio
 from link.runtime.whole_file import PRIVATE
 
@@ -50,6 +51,8 @@ def run(arguments: Sequence[str], process: HostProcess | None) -> int:
 def _run(options: argparse.Namespace, names: Sequence[str], process: HostProcess | None) -> int:
     effective = load_settings(options)
     settings = effective.settings
+    if why := style_refusal(settings.style, find_proxy()):
+        raise UsageError(f"--style {why}")
     endpoints = _endpoints(options, effective, names)
 
     def start(log_file: Path | None) -> StationClient:

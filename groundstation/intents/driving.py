@@ -80,3 +80,5 @@ class SetStyle(Intent, frozen=True):
     """Set the drive style: "hold", "latch" or "step"; "next" selects the one after the current style."""
 
     style: str
+    why: str = ""
+    """For the log."""

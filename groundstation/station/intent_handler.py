@@ -181,7 +181,8 @@ class IntentHandler:
 
     def _set_style(self, intent: SetStyle, now: float) -> None:
         if self._operator.sticks.set_style(intent.style):
-            self._log.add(now, "station", f"drive style {self._operator.sticks.style}", Severity.NOTICE)
+            why = f": {intent.why}" if intent.why else ""
+            self._log.add(now, "station", f"drive style {self._operator.sticks.style}{why}", Severity.NOTICE)
 
     def _set_reports_releases(self, intent: ReportKeyReleases, now: float) -> None:
         self._operator.sticks.set_reports_releases()

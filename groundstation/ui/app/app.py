@@ -44,6 +44,7 @@ from groundstation.ui.replay.follower import ReplayFollower
 from groundstation.ui.replay.log_child import LogChild
 from groundstation.ui.terminal import drawn_lines, interpreter, tty_ping
 from groundstation.ui.terminal.console_driver import PING, ConsoleDriver, TerminalClosed
+from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
 from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.terminal.tmux import TmuxSession
 from groundstation.ui.terminal.tty_output import TerminalFile
@@ -87,7 +88,8 @@ class ConsoleApp(App[int]):
         `replay_options` are for `groundstation replay`, which shows logs that are opened here.
         """
         drawn_lines.free_with_widget()
-        self.gate = KeyGate(client, keymap, clock)
+        self._proxy = find_proxy()
+        self.gate = KeyGate(client, keymap, clock, holds_only=style_refusal("another one", self._proxy))
         self._first = first
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
         super().__init__(driver_class=driver)
@@ -326,6 +328,7 @@ class ConsoleApp(App[int]):
                 terminal_stuck=self._terminal is not None and self._terminal.is_stuck(time.monotonic()),
                 replay=self._snapshot.replay is not None,
                 lent=self._log_child.running,
+                style=style_refusal(self._snapshot.operator.style, self._proxy),
                 driver=self._snapshot.lease.driver,
             )
         )
@@ -409,4 +412,4 @@ class ConsoleApp(App[int]):
         if action.intent is None:
             self.perform_action(action)
         else:
-            self._send(action.intent)
+            self._send(self.gate.allow(action.intent))

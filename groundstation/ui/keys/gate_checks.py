@@ -32,6 +32,8 @@ class AppCondition(msgspec.Struct, frozen=True):
     """A log is shown."""
     lent: bool = False
     """The terminal belongs to a log that was opened from here."""
+    style: str = ""
+    """Why the drive style is not for this terminal; empty: it is."""
     driver: str = ""
     """Name of the other screen that drives; empty: this one does."""
 
@@ -57,6 +59,7 @@ GATE_CHECKS: tuple[GateCheck, ...] = (
     _check(lambda now: now.too_small, "the terminal is too small"),
     _check(lambda now: now.terminal_silent, "the terminal does not answer"),
     _check(lambda now: now.terminal_stuck, "the terminal accepts no output"),
+    lambda now: GateClosure(now.style) if now.style else None,
 )
 
 

@@ -12,7 +12,8 @@ import msgspec
 
 from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
 from groundstation.input.keymap import SPLIT, KeyEvent, Keymap
-from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
+from groundstation.input.style import Style
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.screens import SCREENS
@@ -103,7 +104,11 @@ class KeyGate:
     it is closed; this class decides on all other intents.
     """
 
-    def __init__(self, client: StationConnection, keymap: Keymap, clock: Callable[[], float]) -> None:
+    def __init__(
+        self, client: StationConnection, keymap: Keymap, clock: Callable[[], float], *, holds_only: str = ""
+    ) -> None:
+        """`holds_only`: why no style but hold is chosen here; empty: each may be."""
+        self._holds_only = holds_only
         self.keymap = keymap
         self._client = client
         self._clock = clock
@@ -141,11 +146,17 @@ class KeyGate:
                 self._set_closure(OTHER_SCREEN)
             counting = [press for press in read.passing if self._counts(press)]
             intents = self.keymap.build_intents(counting, armed=self._armed, driving=self._driving)
-            passing = [intent for intent in intents if self._passes(intent)]
+            passing = [self.allow(intent) for intent in intents if self._passes(intent)]
             if read.confirmed is not None:
                 passing.append(read.confirmed)
             if passing:
                 self._client.send(*passing)
+
+    def allow(self, intent: AnyIntent) -> AnyIntent:
+        """Return an intent, or the choice of the style hold in place of that of another one."""
+        if self._holds_only and isinstance(intent, SetStyle):
+            return SetStyle(style=Style.HOLD, why=self._holds_only)
+        return intent
 
     def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Handle the stop keys among the keys of a split escape sequence, and no others."""

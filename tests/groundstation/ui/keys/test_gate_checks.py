@@ -26,6 +26,7 @@ WRONG: dict[str, tuple[object, str]] = {
     "too_small": (True, "the terminal is too small"),
     "terminal_silent": (True, "the terminal does not answer"),
     "terminal_stuck": (True, "the terminal accepts no output"),
+    "style": ("latch drives on", "latch drives on"),
 }
 
 
