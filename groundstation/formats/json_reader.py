@@ -102,10 +102,8 @@ class JsonReader(msgspec.Struct, frozen=True):
 
     def check_place(self, latitude: float, longitude: float) -> None:
         """Raise FileFormatError for a position that is not on Earth."""
-        if abs(latitude) > MAX_LATITUDE:
-            self.fail(f"latitude {latitude:.9g} is not in -90 to 90")
-        if abs(longitude) > MAX_LONGITUDE:
-            self.fail(f"longitude {longitude:.9g} is not in -180 to 180")
+        if fault := place_fault(latitude, longitude):
+            self.fail(fault)
 
     def _list(self, name: str) -> list[Any]:
         return self.get(name, list)
@@ -116,3 +114,13 @@ class JsonReader(msgspec.Struct, frozen=True):
         if not is_float32(value):
             self.fail(f"{name} is too large")
         return float(value)
+
+
+def place_fault(latitude: float, longitude: float) -> str:
+    """Return why a position is not on Earth, or an empty text."""
+    if abs(latitude) > MAX_LATITUDE:
+        swapped = "" if abs(longitude) > MAX_LATITUDE else ": latitude comes first"
+        return f"latitude {latitude:.9g} is not in -90 to 90{swapped}"
+    if abs(longitude) > MAX_LONGITUDE:
+        return f"longitude {longitude:.9g} is not in -180 to 180"
+    return ""

@@ -14,8 +14,8 @@ from groundstation.formats.param_docs import MAX_CHOICES, MAX_DOCS, ParamDoc, Pa
 
 MAX_SIZE = 16 * 1024 * 1024
 """Bytes of a decompressed file; PX4's has 1.5 MB."""
-MEMORY = 64 * 1024 * 1024
-"""Bytes that decompression may take; xz -9 needs 65 MB, no vehicle packs with more than its own memory."""
+MEMORY = 80 * 1024 * 1024
+"""Bytes that decompression may take: xz -9 needs 65 MiB, and PX4 packs with it."""
 PARAMETER_TYPE = 1
 """COMP_METADATA_TYPE_PARAMETER."""
 XZ = b"\xfd7zXZ\0"

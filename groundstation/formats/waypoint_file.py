@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 
 from groundstation.formats.errors import FileFormatError
+from groundstation.formats.json_reader import place_fault
 from groundstation.formats.plan import Plan, as_home, home_item, looks_like_home, move_jumps
 from link.services.mission.files import HEADER, PlanFileError, decode_plan
 from link.services.mission.items import DEGREES_SCALE, GLOBAL_FRAMES, LOCAL_SCALE, MissionItem
@@ -20,7 +21,7 @@ _AT_LINE = re.compile(r"line (\d+):? ?")
 def parse_waypoints(text: str, source: str) -> Plan:
     """Parse a file. Raises FileFormatError."""
     try:
-        items = decode_plan(text.removeprefix("\ufeff").encode("ascii", "replace"))
+        items = decode_plan(text.removeprefix("\ufeff").encode("ascii", "replace"), _find_fault)
     except PlanFileError as error:
         raise FileFormatError(f"{source}:{_AT_LINE.sub(lambda found: f'{found[1]}: ', str(error), count=1)}") from error
     if items and looks_like_home(items[0]):
@@ -34,6 +35,12 @@ def format_waypoints(plan: Plan) -> str:
     if plan.home is not None or (items and looks_like_home(items[0])):
         items = (home_item(plan.home), *move_jumps(items, 1))
     return "\n".join([HEADER, *(_line(number, item) for number, item in enumerate(items))]) + "\n"
+
+
+def _find_fault(item: MissionItem) -> str:
+    if item.frame not in GLOBAL_FRAMES:
+        return ""
+    return place_fault(item.x / DEGREES_SCALE, item.y / DEGREES_SCALE)
 
 
 def _line(number: int, item: MissionItem) -> str:

@@ -37,14 +37,19 @@ def encode_plan(items: Sequence[MissionItem]) -> bytes:
     return ("\n".join(lines) + "\n").encode("ascii")
 
 
-def decode_plan(data: bytes) -> Items:
-    """Return the plan of a file. Raises PlanFileError."""
+def decode_plan(data: bytes, find_fault: Callable[[MissionItem], str] = lambda item: "") -> Items:
+    """Return the plan of a file. Raises PlanFileError, also for an item of which `find_fault` says what is wrong."""
     text = data.decode("ascii", "replace")
     header, *lines = text.splitlines() or [""]
     if header.strip() != HEADER:
         raise PlanFileError(f"line 1 is not {HEADER!r}")
     numbered = ((number, line) for number, line in enumerate(lines, start=2) if line.strip() and line[0] != "#")
-    return tuple(_item(number, line) for number, line in numbered)
+    items = []
+    for number, line in numbered:
+        items.append(_item(number, line))
+        if fault := find_fault(items[-1]):
+            raise PlanFileError(f"line {number}: {fault}")
+    return tuple(items)
 
 
 def _line(number: int, item: MissionItem) -> str:

@@ -11,7 +11,7 @@ import pytest
 from dialects.enums import Autopilot
 from groundstation.formats.docs_files import parse_docs, read_docs
 from groundstation.formats.errors import FileFormatError
-from groundstation.formats.metadata_json import MAX_SIZE, parse_general, parse_parameters
+from groundstation.formats.metadata_json import MAX_SIZE, load_json, parse_general, parse_parameters
 from groundstation.formats.param_docs import ParamDoc
 from link.services.metadata import build_metadata
 from vehicle.params import TABLE
@@ -152,3 +152,7 @@ def test_odd_entries_are_left_out_and_the_others_stand() -> None:
 def test_words_of_texts_can_be_found() -> None:
     docs = parse_docs(XML, "x")
     assert docs.search_text("FS_ACTION") == " FAILSAFE ACTION WHAT TO DO ON A FAILSAFE EVENT"
+
+
+def test_metadata_that_is_packed_as_px4_packs_it_is_read() -> None:
+    assert load_json(lzma.compress(b'{"parameters": []}', preset=9 | lzma.PRESET_EXTREME), "x") == {"parameters": []}

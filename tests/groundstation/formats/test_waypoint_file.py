@@ -46,6 +46,19 @@ def test_a_first_item_that_looks_like_home_is_not_taken_for_it() -> None:
     assert plain(parse_waypoints(format_waypoints(Plan(mission=items)), "x").mission) == plain(items)
 
 
+@pytest.mark.parametrize(
+    ("frame", "place", "fault"),
+    [
+        (3, "-131.9052\t215.8052", "latitude -131.9052 is not in -90 to 90"),
+        (0, "149.1652374\t-35.3632621", "latitude 149.165237 is not in -90 to 90: latitude comes first"),
+        (6, "47\t180.1", "longitude 180.1 is not in -180 to 180"),
+    ],
+)
+def test_a_place_that_is_not_on_earth_is_refused(frame: int, place: str, fault: str) -> None:
+    with pytest.raises(FileFormatError, match=f"x:2: {fault}"):
+        parse_waypoints(f"QGC WPL 110\n1\t0\t{frame}\t16\t0\t0\t0\t0\t{place}\t0\t1\n", "x")
+
+
 def test_pymavlink_reads_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("MAVLINK20", raising=False)  # set by other tests, after mavutil has chosen its dialect
     file = tmp_path / "plan.waypoints"
