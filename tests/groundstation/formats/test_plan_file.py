@@ -149,7 +149,10 @@ ITEM = ("mission", "items", 1)
         (broken(*ITEM, "params", 1, value=True), "f.plan: mission: items 2: params[1] is not a number"),
         (broken(*ITEM, "params", 1, value=1e300), "f.plan: mission: items 2: params[1] is too large"),
         (broken(*ITEM, "frame", value=10**400), 'f.plan: mission: items 2: "frame" is too large'),
-        (broken(*ITEM, "params", 4, value=95), "f.plan: mission: items 2: latitude 95 is not in -90 to 90: latitude comes first"),
+        (
+            broken(*ITEM, "params", 4, value=95),
+            "f.plan: mission: items 2: latitude 95 is not in -90 to 90: latitude comes first",
+        ),
         (broken(*ITEM, "params", 5, value=-181), "f.plan: mission: items 2: longitude -181 is not in -180 to 180"),
         (
             broken(*ITEM, "command", value=-1),
