@@ -124,7 +124,7 @@ def is_stop(message: m.Message) -> bool:
     """Return whether this only stops: disarm, safety switch to SAFE, termination, pause, ArduRover's HOLD.
 
     HOLD as our vehicle and ArduRover understand it. Where a stop needs no permission, ask whether this is such a
-    vehicle: the same numbers are a mission of PX4, and GUIDED of ArduCopter (link/fleet/circumstances.py).
+    vehicle: the same numbers are a mission of PX4, and GUIDED of ArduCopter (link/fleet/rights/circumstances.py).
     """
     if holds_by_number(message):
         return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import re
@@ -97,6 +98,8 @@ class FleetConfig(msgspec.Struct, frozen=True):
     """"vehicle", or what the certificate of an operator may do; None: not known."""
     is_proven: bool
     """Both ends show certificates of the fleet, so that no stranger can send."""
+    certificate: bytes = b""
+    """PEM of its own certificate, if the file holds it."""
 
     @property
     def operator_role(self) -> Role | None:
@@ -128,7 +131,7 @@ def load_config(endpoint: Endpoint) -> FleetConfig:
     name, role = str(whose.get("name") or own_name()), whose.get("role")
     if problem := _mismatch(endpoint, whose):
         raise LinkError(f"{endpoint.text}: {endpoint.locator} {problem}")
-    return FleetConfig(config, routers, name, role, _is_proven(config, routers))
+    return FleetConfig(config, routers, name, role, _is_proven(config, routers), _own_certificate(config))
 
 
 def is_private(endpoint: Endpoint) -> bool:
@@ -189,6 +192,13 @@ def _is_proven(config: zenoh.Config, routers: tuple[str, ...]) -> bool:
         for each in ("root_ca_certificate", "connect_certificate", "connect_private_key")
     )
     return certified and all(each.startswith(("tls/", "quic/")) for each in routers)
+
+
+def _own_certificate(config: zenoh.Config) -> bytes:
+    try:
+        return base64.b64decode(_get(config, "transport/link/tls/connect_certificate_base64") or "")
+    except (ValueError, TypeError):
+        return b""
 
 
 def _get(config: zenoh.Config, key: str) -> Any:

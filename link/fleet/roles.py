@@ -12,7 +12,7 @@ from dialects import codec, rover
 from dialects import messages as m
 from dialects.messages import MESSAGES, Message, target_system
 from dialects.traits import COMMANDS, holds_by_number, is_stop, only_asks
-from link.fleet.drive_commands import DRIVE_COMMANDS
+from link.fleet.rights.drive_commands import DRIVE_COMMANDS
 from link.protocol.frame import Frame, payload_of
 from link.signing.role import Role
 

@@ -18,13 +18,14 @@ from dialects.messages import Heartbeat
 from link.endpoint import Endpoint, Side
 from link.fleet.arrivals import PACE, Arrivals
 from link.fleet.brevity import BriefTelemetry
-from link.fleet.circumstances import Circumstances
 from link.fleet.config import VEHICLE_ROLE, FleetConfig, load_config
 from link.fleet.inbox import BATCH, Inbox
 from link.fleet.keys import MAX_KEYS, FleetKeys, KeyReader, Place, new_framer, read_frame
 from link.fleet.presence import Presence
+from link.fleet.rights.circumstances import Circumstances
 from link.fleet.roles import WatchCondition, depends_on_content, needed_role, target_of, watch_condition
 from link.fleet.session import FleetSession
+from link.fleet.validity import warning_of
 from link.protocol.frame import Frame, Header, read_header
 from link.protocol.link_events import CONNECTING
 from link.signing.role import Role
@@ -57,6 +58,7 @@ class FleetTransport:
         self._refused_key = ""
         """The newest key of such a frame that was not reported yet."""
         self._role, self._name = config.operator_role, config.name
+        self._certificate = config.certificate
         me = None if is_vehicle else f"{config.name}/{secrets.token_hex(4)}"
         self._keys = FleetKeys(endpoint.fleet, endpoint.vehicle, me)
         self._session = FleetSession(config, self._keys, self)
@@ -93,6 +95,9 @@ class FleetTransport:
         """Start to connect."""
         self._loop, self._on_receive, self._on_disconnect = loop, on_receive, on_disconnect
         self._session.start()
+        remedy = f"`bridge fleet renew {self._name}` makes a new file"
+        if warning := warning_of(self._name, self._certificate, time.time(), remedy):
+            log.warning("%s: %s", self.endpoint.text, warning)
         self._tick(loop)
 
     def send(self, data: bytes, address: Hashable) -> None:

@@ -11,7 +11,8 @@ from pathlib import Path
 import msgspec
 
 DAYS = 3650
-"""Days that a certificate holds. A rover must not stop on a birthday; fleet.toml withdraws one at any time."""
+"""Days that a certificate holds. A rover must not stop on a birthday; fleet.toml withdraws one at any time, and from 90
+days before the end its owner is warned (link/fleet/validity.py)."""
 NOT_FOUND = "openssl is not installed: sudo apt install openssl"
 
 

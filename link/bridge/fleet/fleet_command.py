@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from link.bridge.fleet.certificates import CertificateError
-from link.bridge.fleet.fleet_file import FILE, read_fleet_file
-from link.bridge.fleet.members import PORT, FleetError, add_member, new_fleet
+from link.bridge.fleet.fleet_file import FILE, ROUTER, read_fleet_file
+from link.bridge.fleet.members import PORT, FleetError, add_member, new_fleet, renew
 from link.fleet.config import VEHICLE_ROLE
 from link.runtime.command_line import CommandLineParser
 from link.runtime.toml_file import TomlError
@@ -20,6 +20,7 @@ examples:
   bridge fleet new farm --host fleet.example.org      makes the folder farm: authority, router, fleet.toml
   bridge fleet add vehicle rover1 --folder farm       makes farm/rover1.json5, to be copied to the rover
   bridge fleet add operator alice --role drive --folder farm
+  bridge fleet renew alice --folder farm              a new certificate for alice, before the old one ends
   bridge router farm/fleet.toml                       on the machine fleet.example.org
 
 roles: watch (see, and stop), drive (also arm, drive, change modes), setup (also parameters, plans, files).
@@ -32,7 +33,7 @@ def run(arguments: Sequence[str]) -> int:
     parser = build_parser()
     options = parser.parse_args(parser.reject_empty(arguments))
     try:
-        lines = _new(options) if options.command == "new" else _add(options)
+        lines = {"new": _new, "add": _add, "renew": _renew}[options.command](options)
     except (FleetError, TomlError, CertificateError) as error:
         parser.exit(2, f"{parser.prog}: {error}\n")
     except OSError as error:
@@ -66,6 +67,14 @@ def _add(options: argparse.Namespace) -> list[str]:
     ]
 
 
+def _renew(options: argparse.Namespace) -> list[str]:
+    folder = options.folder or Path()
+    own = renew(folder / FILE, options.name)
+    if own.name == ROUTER:
+        return [f"{own}: renewed; restart the router"]
+    return [f"{own}: renewed; copy it to {options.name} and to nobody else, mode 0600; fleet.toml stays as it is"]
+
+
 def build_parser() -> CommandLineParser:
     """Return the parser of the command line."""
     parser = CommandLineParser(
@@ -75,7 +84,7 @@ def build_parser() -> CommandLineParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    commands = parser.add_subparsers(dest="command", required=True, metavar="new|add")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="new|add|renew")
     new = commands.add_parser("new", help="make a fleet", allow_abbrev=False)
     new.add_argument("fleet", metavar="FLEET", help="its name")
     new.add_argument(
@@ -87,6 +96,9 @@ def build_parser() -> CommandLineParser:
     )
     new.add_argument("--port", metavar="PORT", type=int, default=PORT, help=f"of the router (default {PORT})")
     new.add_argument("--folder", metavar="DIR", type=Path, help="where to make it (default: the name of the fleet)")
+    again = commands.add_parser("renew", help="give a member, or `router`, a new certificate", allow_abbrev=False)
+    again.add_argument("name", metavar="NAME")
+    again.add_argument("--folder", metavar="DIR", type=Path, help=f"where {FILE} is (default: here)")
     kinds = commands.add_parser("add", help="add a member", allow_abbrev=False).add_subparsers(
         dest="kind", required=True, metavar="vehicle|operator"
     )

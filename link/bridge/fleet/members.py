@@ -25,6 +25,7 @@ from link.bridge.fleet.fleet_file import (
 )
 from link.endpoint import FLEET_NAME, FLEET_NAME_RULE
 from link.fleet.config import VEHICLE_ROLE
+from link.fleet.locator import read_locator
 from link.runtime.whole_file import PRIVATE, SHARED, replace_file
 
 PORT = 7447
@@ -68,6 +69,28 @@ def add_member(path: Path, name: str, role: str) -> Path:
     row = {"certificate": common_name} if role == VEHICLE_ROLE else {"role": role, "certificate": common_name}
     text = add_row(path, "vehicles" if role == VEHICLE_ROLE else "operators", name, row)
     replace_file(path, text.encode(), mode=SHARED)
+    return own
+
+
+def renew(path: Path, name: str) -> Path:
+    """Give a member, or the router, a certificate that holds anew for its whole time; return the file.
+
+    Its name in the certificate stays, so that no other file changes and the router need not restart for a member. The
+    old certificate holds until its own end. Raises FleetError, TomlError, CertificateError and OSError.
+    """
+    fleet = read_fleet_file(path)
+    authority = _read_authority(path.parent)
+    if name == ROUTER_NAME and name not in fleet.names:
+        hosts = [place.host for each in fleet.routers if (place := read_locator(each))]
+        _write_pair(path.parent, ROUTER, ROUTER_KEY, make_member(ROUTER_NAME, authority, hosts))
+        return path.parent / ROUTER
+    operator, vehicle = fleet.operators.get(name), fleet.vehicles.get(name)
+    if operator is None and vehicle is None:
+        raise FleetError(f"{path} has no {name}; it has {', '.join(sorted(fleet.names)) or 'no members'}")
+    role, row = (operator.role, operator.certificate) if operator else (VEHICLE_ROLE, vehicle.certificate)  # type: ignore[union-attr]
+    pair = make_member(row, authority)
+    own = path.parent / f"{name}.json5"
+    replace_file(own, _member_file(fleet, name, role, path.parent, pair), mode=PRIVATE)
     return own
 
 

@@ -8,7 +8,8 @@ import logging
 import os
 import signal
 import socket
-from collections.abc import Sequence
+import time
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ from link.bridge.fleet.members import read_encoded
 from link.bridge.fleet.self_probe import SelfProbe, raise_descriptor_limit
 from link.fleet.config import SETTINGS, apply_settings, load_zenoh
 from link.fleet.router_session import direct
+from link.fleet.validity import warning_of
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 from link.runtime.toml_file import TomlError
@@ -84,6 +86,8 @@ def _run(fleet: FleetFile, folder: Path, links: Sequence[str]) -> None:
         log.info("ready, fleet %s, %s, %s", fleet.fleet, " + ".join(fleet.listen), members)
         if descriptors < ENOUGH_DESCRIPTORS:
             log.warning("may open %d files only: set LimitNOFILE in its unit (docs/fleet.md)", descriptors)
+        for warning in _end_warnings(folder):
+            log.warning("%s", warning)
         probe = SelfProbe(fleet.listen, folder, _end_process)
         probe.start()
         signal.sigwait(SIGNALS)
@@ -93,6 +97,16 @@ def _run(fleet: FleetFile, folder: Path, links: Sequence[str]) -> None:
         log.info("stopped")
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _end_warnings(folder: Path) -> Iterator[str]:
+    """Yield a line for each certificate of the router that ends soon."""
+    for whose, file, remedy in (
+        ("the router", ROUTER, f"bridge fleet renew {ROUTER_NAME}, and restart it"),
+        ("the fleet's authority", AUTHORITY, "make the fleet anew (docs/fleet.md)"),
+    ):
+        if warning := warning_of(whose, (folder / file).read_bytes(), time.time(), remedy):
+            yield warning
 
 
 def _end_process(why: str) -> None:

@@ -10,8 +10,8 @@ from dialects import messages as m
 from dialects import rover
 from dialects.axes import Axes, build_manual_control
 from dialects.messages import Message
-from link.fleet.drive_commands import DRIVE_COMMANDS
 from link.fleet.keys import read_frame
+from link.fleet.rights.drive_commands import DRIVE_COMMANDS
 from link.fleet.roles import needed_role
 from link.protocol.frame import Frame
 from link.signing.role import Role

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 import ssl
 import subprocess
@@ -13,7 +14,7 @@ import pytest
 from link.bridge.fleet.access import build_access
 from link.bridge.fleet.fleet_command import run
 from link.bridge.fleet.fleet_file import read_fleet_file
-from link.bridge.fleet.members import FleetError, add_member, new_fleet
+from link.bridge.fleet.members import FleetError, add_member, new_fleet, renew
 from link.bridge.fleet.router_command import run as run_router
 from link.endpoint import parse_endpoint
 from link.fleet.config import load_config
@@ -73,6 +74,50 @@ def test_router_certificate_has_its_addresses_and_signs_no_more(farm: Path) -> N
     assert "DNS:fleet.example.org, IP Address:10.0.0.1, IP Address:0:0:0:0:0:0:0:1" in text
     assert "TLS Web Server Authentication" in text
     assert "CA:FALSE" in text
+
+
+@pytest.mark.parametrize("name", ["rover1", "alice.b"])
+def test_a_renewed_member_keeps_its_name_and_role(farm: Path, name: str) -> None:
+    own, text = farm.parent / f"{name}.json5", farm.read_text()
+    before, mode = own.read_text(), own.stat().st_mode
+    assert renew(farm, name) == own
+    after = own.read_text()
+    assert (farm.read_text(), own.stat().st_mode) == (text, mode)
+
+    def told(file: str) -> tuple[list[str], list[str]]:
+        whose = re.findall(r'"(?:fleet|name|role)": "(.*)"', file)
+        return whose, re.findall(r'"connect_certificate_base64": "(.*)"', file)
+
+    (whose, [old]), (again, [new]) = told(before), told(after)
+    assert whose == again
+    assert old != new
+    subjects = [subject_of(base64.b64decode(each)) for each in (old, new)]
+    assert subjects[0] == subjects[1]
+
+
+def test_a_renewed_router_has_the_same_addresses(farm: Path) -> None:
+    before = (farm.parent / "router.pem").read_bytes()
+    assert renew(farm, "router") == farm.parent / "router.pem"
+    after = (farm.parent / "router.pem").read_bytes()
+    assert before != after
+    assert names_of(before) == names_of(after)
+
+
+def test_who_is_no_member_is_not_renewed(farm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run(["renew", "mallory", "--folder", str(farm.parent)])
+    assert ended.value.code == 2
+    assert "has no mallory; it has alice.b, rover1" in capsys.readouterr().err
+
+
+def subject_of(pem: bytes) -> bytes:
+    command = ["openssl", "x509", "-noout", "-subject"]
+    return subprocess.run(command, input=pem, check=True, capture_output=True).stdout
+
+
+def names_of(pem: bytes) -> bytes:
+    command = ["openssl", "x509", "-noout", "-ext", "subjectAltName"]
+    return subprocess.run(command, input=pem, check=True, capture_output=True).stdout
 
 
 def test_what_exists_is_not_made_again(farm: Path) -> None:

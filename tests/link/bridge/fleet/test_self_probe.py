@@ -36,6 +36,15 @@ def probe_of(router: RouterProcess, ended: list[str], **times: float) -> SelfPro
     return SelfProbe(read_fleet_file(folder / FILE).listen, folder, ended.append, **times)
 
 
+def freeze(router: RouterProcess) -> None:
+    """Stop a router, and wait until each of its threads stands: until then one may answer."""
+    router.freeze()
+    tasks = Path(f"/proc/{router.process.pid}/task")
+    wait_until(
+        lambda: all((each / "stat").read_text().rpartition(")")[2].split()[0] == "T" for each in tasks.iterdir())
+    )
+
+
 def test_a_router_that_answers_goes_on_for_ever(router: RouterProcess) -> None:
     probe = probe_of(router, [])
     assert [probe.check() for _ in range(5)] == [None] * 5
@@ -46,7 +55,7 @@ def test_a_router_that_answers_goes_on_for_ever(router: RouterProcess) -> None:
 def test_three_probes_in_a_row_without_an_answer_end_it(router: RouterProcess) -> None:
     ended: list[str] = []
     probe, by_itself = (probe_of(router, ended, period=0.01, timeout=0.2) for _ in range(2))
-    router.freeze()
+    freeze(router)
     try:
         assert [probe.check() for _ in range(2)] == [None, None]
         why = probe.check()
@@ -62,7 +71,7 @@ def test_three_probes_in_a_row_without_an_answer_end_it(router: RouterProcess) -
 def test_an_answer_in_between_begins_anew(router: RouterProcess) -> None:
     probe = probe_of(router, [], timeout=1.0)
     for _ in range(2):
-        router.freeze()
+        freeze(router)
         try:
             assert [probe.check() for _ in range(2)] == [None, None]
         finally:

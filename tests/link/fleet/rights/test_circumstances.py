@@ -8,8 +8,8 @@ import pytest
 
 from dialects import messages as m
 from dialects import rover
-from link.fleet.circumstances import Circumstances
 from link.fleet.keys import read_frame
+from link.fleet.rights.circumstances import Circumstances
 from link.protocol.frame import Frame
 from tests.link.fleet.test_roles import command, files, read
 from tests.link.frames import frame
