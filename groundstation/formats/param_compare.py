@@ -8,7 +8,6 @@ import msgspec
 
 from groundstation.formats.param_file import ParamFile
 from link.services.param.client import Param
-from link.services.param.float32 import same_float32
 
 
 class ParamComparison(msgspec.Struct, frozen=True):
@@ -27,7 +26,7 @@ def compare(file: ParamFile, params: Mapping[str, Param], component: int) -> Par
     different = tuple(
         (name, value, params[name])
         for name, value in wanted.items()
-        if name in params and not same_float32(params[name].value, value)
+        if name in params and not params[name].equals(value)
     )
     only_file = tuple(name for name in wanted if name not in params)
     only_vehicle = tuple(name for name in params if name not in wanted)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 import msgspec
 
@@ -18,10 +18,13 @@ from groundstation.formats.errors import FileFormatError, shown
 from groundstation.formats.param_form import ParamForm
 from link.services.param.client import Param
 from link.services.param.float32 import is_float32, same_float32, value_text
-from link.services.param.values import NAME_SIZE, REAL32, name_to_wire
+from link.services.param.values import NAME_SIZE, is_whole, name_to_wire
 
 MAX_LINES = 20_000
 """Lines of a file; ten times the parameters of the largest autopilot. More is not a parameter file."""
+
+MAX_NAMED = 20
+"""Names in a line for people."""
 
 
 class ParamLine(msgspec.Struct, frozen=True):
@@ -67,9 +70,27 @@ def parse_params(text: str, source: str) -> ParamFile:
     return ParamFile(form, tuple(lines.values()))
 
 
+def split_unset(params: Iterable[Param]) -> tuple[list[Param], tuple[str, ...]]:
+    """Return the parameters that a file can hold, and the names of the others: PX4 reports NaN where none is set."""
+    chosen = list(params)
+    unset = tuple(param.name for param in chosen if not math.isfinite(param.value))
+    return [param for param in chosen if math.isfinite(param.value)], unset
+
+
+def unset_text(names: Sequence[str]) -> str:
+    """Return which parameters a file does not have, as the end of a line; empty without any."""
+    return f"; left out, no number: {shortened_list(names)}" if names else ""
+
+
+def shortened_list(names: Sequence[str]) -> str:
+    """Return the first names, and how many more there are."""
+    more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+    return ", ".join(names[:MAX_NAMED]) + more
+
+
 def format_params(params: Iterable[Param], form: ParamForm, *, vehicle: int = 1, component: int = 1) -> str:
-    """Return the text of a file with these parameters, sorted by name. Values that are no numbers are left out."""
-    chosen = sorted((param for param in params if math.isfinite(param.value)), key=lambda param: param.name)
+    """Return the text of a file with these parameters, sorted by name. Their values are finite (`split_unset`)."""
+    chosen = sorted(params, key=lambda param: param.name)
     if form is ParamForm.QGROUNDCONTROL:
         return _header(vehicle) + "".join(
             f"{vehicle}\t{component}\t{_word(param.name)}\t{_full(param)}\t{param.kind}\n" for param in chosen
@@ -157,7 +178,7 @@ def _header(vehicle: int) -> str:
 
 def _full(param: Param) -> str:
     """Return the value as QGroundControl writes it: whole numbers plain, floats with 18 decimals."""
-    if param.kind != REAL32:
+    if is_whole(param.kind):
         return f"{param.value:.0f}"
     (exact,) = struct.unpack("<f", struct.pack("<f", param.value))
     text = f"{exact:.18f}"

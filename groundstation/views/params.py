@@ -159,3 +159,5 @@ class ParamExport(View, frozen=True):
     """Parameters in it."""
     problem: str = ""
     """Why there is none."""
+    left_out: str = ""
+    """Which parameters it does not have, as the end of a line."""

@@ -8,11 +8,11 @@ from dialects.enums import Autopilot
 from groundstation.formats.docs_files import DocsFile
 from groundstation.formats.param_compare import compare
 from groundstation.formats.param_docs import ParamDocs
-from groundstation.formats.param_file import format_params
+from groundstation.formats.param_file import format_params, split_unset, unset_text
 from groundstation.formats.param_form import ParamForm
 from groundstation.station.services.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewSource
-from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of, is_changed
+from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.requests.param_requests import param_type_name
 from groundstation.vehicles.requests.param_writer import MAX_CHANGES
@@ -90,7 +90,7 @@ class ParamViews:
             running=requests.running,
             ended=requests.ended,
             groups=count_groups(params, groups),
-            changed=sum(map(is_changed, params.values())),
+            changed=sum(param.is_changed for param in params.values()),
             missing=len(missing),
             gaps=missing[:MAX_GAPS],
             autopilot=_AUTOPILOTS.get(int(contact.state.autopilot), "other"),
@@ -144,14 +144,14 @@ class ParamViews:
             return ParamExport(request.number, "", 0, "this vehicle does not report defaults: save all")
         groups = groups_of(params)
         page = ParamPageRequest(changed_only=request.changed_only, group=request.group)
-        chosen = choose(params, ParamDocs(), groups, page, ParamRanks())
+        chosen, unset = split_unset(choose(params, ParamDocs(), groups, page, ParamRanks()))
         if not chosen:
             return ParamExport(request.number, "", 0, "there is nothing to save")
         state = contact.state
         text = format_params(chosen, ParamForm(request.form), vehicle=state.system, component=state.component)
         if len(text) > MAX_TEXT:
             return ParamExport(request.number, "", 0, "too many parameters for the screen: groundstation param save")
-        return ParamExport(request.number, text, len(chosen))
+        return ParamExport(request.number, text, len(chosen), left_out=unset_text(unset))
 
     # ---- parts ----
 
@@ -185,7 +185,7 @@ def _row(param: Param, docs: ParamDocs, file: Mapping[str, float]) -> ParamRow:
         value=param.value,
         kind=param_type_name(param.kind),
         default=_default(param, docs),
-        changed=is_changed(param),
+        changed=param.is_changed,
         unit=doc.unit,
         meaning=doc.meaning(param.value),
         file=file.get(param.name),

@@ -16,8 +16,8 @@ from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.state.identity import VehicleIdentity
 from link.core import Outgoing, Received
 from link.services.param.client import ParamClient, ParamOutcome
-from link.services.param.float32 import value_text
-from link.services.param.values import is_bytewise
+from link.services.param.float32 import float32_neighbours, value_text
+from link.services.param.values import is_bytewise, value_fault
 
 if TYPE_CHECKING:
     from groundstation.vehicles.requests.file_requests import FileRequests
@@ -217,6 +217,10 @@ class ParamRequests:
         """Return what a fault means; one of ours (never sent) names the type."""
         known = self.client.params.get(outcome.name)
         if outcome.tries == 0 and known is not None and outcome.wanted is not None:
+            if value_fault(outcome.wanted, known.kind, bytewise=True) is None:  # only the cast to float32 changes it
+                below, above = float32_neighbours(outcome.wanted)
+                wanted = value_text(outcome.wanted)
+                return f"float32 carries {value_text(below)} or {value_text(above)}, not {wanted}"
             return f"its type {param_type_name(known.kind)} cannot hold {value_text(outcome.wanted)}"
         return param_error_text(outcome.fault if outcome.fault is not None else ParamErrorCode.DOES_NOT_EXIST)
 

@@ -13,7 +13,7 @@ from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
 from link.services.param.client import Param
-from link.services.param.float32 import same_float32, value_text
+from link.services.param.float32 import value_text
 
 WILDCARDS = "*?["
 
@@ -37,8 +37,8 @@ async def set_value(session: VerbSession, options: argparse.Namespace, output: O
     name = _name(options.name)
     report = await session.request(lambda number, now: session.services.params.set(number, name, options.value, now))
     known = session.services.params.client.params.get(name)
-    if report.state is RequestState.ACCEPTED:
-        output.line(f"{name} {value_text(options.value)} ({report.detail})")
+    if report.state is RequestState.ACCEPTED and known is not None:
+        output.line(f"{name} {value_text(known.value)} ({report.detail})")
     return finish(session, report, output, param_id=name, param_value=known.value if known else None)
 
 
@@ -95,9 +95,7 @@ def matching(params: Iterable[Param], patterns: Sequence[str]) -> list[Param]:
 
 
 def _print(param: Param, output: Output) -> None:
-    default = "" if param.default is None else f"  # default {value_text(param.default)}"
-    if param.default is not None and same_float32(param.value, param.default):
-        default = ""
+    default = f"  # default {value_text(param.default)}" if param.default is not None and param.is_changed else ""
     output.line(f"{param.name:<16} {value_text(param.value)}{default}")
     output.record(
         param_id=param.name, param_value=param.value, param_type=param_type_name(param.kind), default=param.default

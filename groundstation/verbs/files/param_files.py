@@ -9,7 +9,7 @@ import argparse
 from collections.abc import Sequence
 
 from groundstation.formats.param_compare import compare
-from groundstation.formats.param_file import ParamFile, format_params, parse_params
+from groundstation.formats.param_file import ParamFile, format_params, parse_params, split_unset, unset_text
 from groundstation.formats.param_form import ParamForm
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -19,7 +19,7 @@ from groundstation.verbs.files.param import count, fetch, matching
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
 from link.services.param.client import Param
-from link.services.param.float32 import same_float32, value_text
+from link.services.param.float32 import value_text
 
 
 async def save(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -29,12 +29,13 @@ async def save(session: VerbSession, options: argparse.Namespace, output: Output
     params = matching(session.services.params.client.params.values(), options.patterns)
     if options.changed:
         params = _changed(params)
+    params, unset = split_unset(params)
     state = session.vehicle
     text = format_params(params, ParamForm(options.format), vehicle=state.system, component=state.component)
     write_text(options.file, text)
-    output.note(f"{count(len(params))} of {state.name} saved to {options.file}")
-    output.result(True, state.system, file=options.file, parameters=len(params))
-    return ExitCode.DONE
+    output.note(f"{count(len(params))} of {state.name} saved to {options.file}{unset_text(unset)}")
+    output.result(not unset, state.system, file=options.file, parameters=len(params), left_out=list(unset))
+    return ExitCode.PARTLY if unset else ExitCode.DONE
 
 
 async def diff(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -77,8 +78,12 @@ def only_prints(options: argparse.Namespace) -> bool:
 async def _write(
     session: VerbSession, differing: Sequence[tuple[str, float, Param]], missing: Sequence[str], output: Output
 ) -> int:
-    """Set one parameter after the other."""
+    """Set one parameter after the other. Those that a set cannot carry as they are stay, and are named."""
     params, system = session.services.params, session.vehicle.system
+    lost = [name for name, wanted, _ in differing if not params.client.is_carried(name, wanted)]
+    if lost:
+        output.note(f"left as they are, float32 does not carry all digits of the file: {', '.join(lost)}")
+    differing = [each for each in differing if each[0] not in lost]
     for done, (name, wanted, before) in enumerate(differing):
         report = await session.request(lambda number, now, n=name, v=wanted: params.set(number, n, v, now))  # type: ignore[misc]
         if report.state is not RequestState.ACCEPTED:
@@ -88,8 +93,8 @@ async def _write(
             return ExitCode.PARTLY if done else code
         output.line(f"{name:<16} {value_text(before.value)} -> {value_text(wanted)}")
     output.note(f"{count(len(differing))} set")
-    output.result(not missing, system, changed=len(differing), missing=list(missing))
-    return ExitCode.PARTLY if missing else ExitCode.DONE
+    output.result(not missing and not lost, system, changed=len(differing), missing=list(missing), lost=lost)
+    return ExitCode.PARTLY if missing or lost else ExitCode.DONE
 
 
 async def _fetch_whole(session: VerbSession, output: Output) -> None:
@@ -101,7 +106,7 @@ async def _fetch_whole(session: VerbSession, output: Output) -> None:
 def _changed(params: Sequence[Param]) -> list[Param]:
     if all(param.default is None for param in params):
         raise VerbError(ExitCode.REFUSED, "this vehicle does not report defaults: save without --changed")
-    return [param for param in params if param.default is None or not same_float32(param.value, param.default)]
+    return [param for param in params if param.default is None or param.is_changed]
 
 
 def _compare(file: ParamFile, session: VerbSession) -> tuple[list[tuple[str, float, Param]], list[str]]:

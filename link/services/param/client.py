@@ -16,7 +16,17 @@ from dialects.enums import ParamErrorCode
 from link.core import Outgoing, Received
 from link.services.param.float32 import same_float32
 from link.services.param.listing import ParamListing
-from link.services.param.values import REAL32, from_wire, name_from_wire, name_to_wire, to_wire, value_fault
+from link.services.param.values import (
+    REAL32,
+    from_wire,
+    is_carried,
+    is_whole,
+    name_from_wire,
+    name_to_wire,
+    same_value,
+    to_wire,
+    value_fault,
+)
 
 REPEAT_AFTER = 0.7
 """s without an answer before a set or read is repeated: ArduPilot answers a read in 0.1 s, a radio adds 0.4 s."""
@@ -26,6 +36,8 @@ REFUSED_AFTER = 2
 """Answers with another value before a set counts as rejected: the first may have been sent before the set arrived."""
 NO_INDEX = m.UINT16_MAX
 """`param_index` of an answer without a list index (ArduPilot)."""
+LARGEST_EXACT = 2**24
+"""float32 carries each integer up to here."""
 MAX_PARAMS = 8192
 """Parameters that are kept: five times what the largest autopilot has. More names would be an attack on our memory."""
 HASH_CHECK = "_HASH_CHECK"
@@ -43,6 +55,17 @@ class Param(msgspec.Struct, frozen=True):
     index: int | None
     default: float | None = None
     """None: not known."""
+    rounded: bool = False
+    """An integer that came as float32 and may have been another one there: it is above 2**24."""
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the value is not the default; False where that is not known."""
+        return self.default is not None and not same_value(self.value, self.default, self.kind)
+
+    def equals(self, value: float) -> bool:
+        """Return whether the vehicle would report the same for `value`."""
+        return same_float32(self.value, value) if self.rounded else same_value(self.value, value, self.kind)
 
 
 class ParamOutcome(msgspec.Struct, frozen=True):
@@ -57,13 +80,15 @@ class ParamOutcome(msgspec.Struct, frozen=True):
     """MAV_PARAM_ERROR of the vehicle, or ours where the request cannot be encoded."""
     tries: int = 0
     """How often the request was sent."""
+    kind: int = REAL32
+    """MAV_PARAM_TYPE."""
 
     @property
     def done(self) -> bool:
         """Whether the value was read, or is as wanted."""
         if self.fault is not None or self.value is None:
             return False
-        return self.wanted is None or same_float32(self.value, self.wanted)
+        return self.wanted is None or same_value(self.value, self.wanted, self.kind)
 
 
 class _ParamRequest(msgspec.Struct):
@@ -166,7 +191,7 @@ class ParamClient:
     def set(self, name: str, value: float, now: float) -> None:
         """Set a parameter; replaces an unfinished request for the same one."""
         known = self.params.get(name)
-        fault = value_fault(value, known.kind if known else REAL32)
+        fault = value_fault(value, known.kind if known else REAL32, bytewise=self.bytewise)
         if fault is None:
             self._request(name, value, now)
         else:
@@ -175,6 +200,10 @@ class ParamClient:
     def read(self, name: str, now: float) -> None:
         """Request one parameter."""
         self._request(name, None, now)
+
+    def is_carried(self, name: str, value: float) -> bool:
+        """Return whether a set carries this value of a known parameter as it is (values.is_carried)."""
+        return is_carried(value, self.params[name].kind, bytewise=self.bytewise)
 
     def cancel(self) -> None:
         """Forget the reads and sets under way, without an outcome."""
@@ -226,14 +255,19 @@ class ParamClient:
             return
         value = from_wire(message.param_value, message.param_type, bytewise=self.bytewise)
         index = None if message.param_index == NO_INDEX else message.param_index
-        self._store(Param(name, value, message.param_type, index))
+        rounded = is_whole(message.param_type) and not self.bytewise and abs(value) > LARGEST_EXACT
+        self._store(Param(name, value, message.param_type, index, rounded=rounded))
         if index is not None:
             self._listing.handle_value(index, message.param_count, now)
         request = self._requests.get(name)
         if request is None:
             return
         request.answers += 1
-        if request.wanted is None or same_float32(value, request.wanted) or request.answers >= REFUSED_AFTER:
+        if (
+            request.wanted is None
+            or same_value(value, request.wanted, message.param_type)
+            or request.answers >= REFUSED_AFTER
+        ):
             self._finish(name, value=value)
 
     def _store(self, param: Param) -> None:
@@ -249,7 +283,9 @@ class ParamClient:
         if request is not None:
             known = self.params.get(name)
             now_is = value if value is not None else known.value if fault is not None and known else None
-            self._outcomes.append(ParamOutcome(name, request.wanted, now_is, fault, request.sent))
+            self._outcomes.append(
+                ParamOutcome(name, request.wanted, now_is, fault, request.sent, known.kind if known else REAL32)
+            )
 
     def _send_request(self, name: str, request: _ParamRequest, now: float) -> None:
         if request.wanted is None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 
 from dialects.enums import Autopilot, Capability, ParamErrorCode
-from link.services.param.float32 import is_float32, shortest_float32
+from link.services.param.float32 import is_exact_float32, is_float32, same_float32, shortest_float32
 
 REAL32 = 9
 """MAV_PARAM_TYPE_REAL32."""
@@ -22,6 +23,8 @@ _FORMATS: dict[int, tuple[str, int, int]] = {
     6: ("<i", -0x8000_0000, 0x7FFF_FFFF),
 }
 """MAV_PARAM_TYPE of an integer -> its place in the four bytes (the first ones), smallest, largest."""
+_WHOLE = frozenset({*_FORMATS, 7, 8})
+"""MAV_PARAM_TYPE of integers; UINT64 and INT64 do not fit into four bytes."""
 _FLOAT = struct.Struct("<f")
 _ESCAPED = re.compile(r"\\x([0-9a-f]{2})")
 
@@ -54,16 +57,32 @@ def is_bytewise(autopilot: int, capabilities: int) -> bool:
     return bool(capabilities & Capability.PARAM_BYTEWISE) or autopilot != Autopilot.ARDUPILOT
 
 
-def value_fault(value: float, kind: int) -> ParamErrorCode | None:
+def is_whole(kind: int) -> bool:
+    """Return whether a MAV_PARAM_TYPE is one of integers."""
+    return kind in _WHOLE
+
+
+def same_value(one: float, other: float, kind: int) -> bool:
+    """Return whether two values of a parameter are the same: integers exactly, others as float32."""
+    return one == other if kind in _WHOLE else same_float32(one, other)
+
+
+def is_carried(value: float, kind: int, *, bytewise: bool) -> bool:
+    """Return whether PARAM_SET carries an integer as it is: cast to float32, most above 2**24 become another one."""
+    return kind not in _WHOLE or (bytewise and kind in _FORMATS) or is_exact_float32(value)
+
+
+def value_fault(value: float, kind: int, *, bytewise: bool) -> ParamErrorCode | None:
     """Return why `value` cannot be sent as MAV_PARAM_TYPE `kind`, or None."""
     if not is_float32(value):
         return ParamErrorCode.VALUE_OUT_OF_RANGE
-    if kind not in _FORMATS:
+    if kind not in _WHOLE:
         return None
     if value != round(value):
         return ParamErrorCode.TYPE_MISMATCH
-    _, low, high = _FORMATS[kind]
-    return None if low <= value <= high else ParamErrorCode.VALUE_OUT_OF_RANGE
+    _, low, high = _FORMATS.get(kind, ("", -math.inf, math.inf))
+    fits = low <= value <= high and is_carried(value, kind, bytewise=bytewise)
+    return None if fits else ParamErrorCode.VALUE_OUT_OF_RANGE
 
 
 def from_wire(value: float, kind: int, *, bytewise: bool) -> float:
@@ -72,7 +91,7 @@ def from_wire(value: float, kind: int, *, bytewise: bool) -> float:
     Types that do not fit into four bytes (UINT64, INT64, REAL64) are sent as their value.
     """
     if not bytewise or kind not in _FORMATS:
-        return shortest_float32(value)
+        return value if kind in _WHOLE else shortest_float32(value)
     return float(struct.unpack(_FORMATS[kind][0], _FLOAT.pack(value))[0])
 
 

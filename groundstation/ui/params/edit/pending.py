@@ -20,6 +20,13 @@ class PendingChange(msgspec.Struct, frozen=True):
     value: float
 
     @property
+    def changes_value(self) -> bool:
+        """Whether the values differ: whole numbers exactly, for integers may have more digits than a float32."""
+        if self.value.is_integer() and self.before.is_integer():
+            return self.value != self.before
+        return not same_float32(self.value, self.before)
+
+    @property
     def reverse(self) -> PendingChange:
         """The change that undoes this one."""
         return PendingChange(self.name, self.value, self.before)
@@ -38,7 +45,7 @@ class PendingChanges:
         new = dict(self.by_name)
         for change in changes:
             new.pop(change.name, None)
-            if not same_float32(change.value, change.before):
+            if change.changes_value:
                 new[change.name] = change
         self._step(new)
 

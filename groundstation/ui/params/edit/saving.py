@@ -38,4 +38,4 @@ class ParamSaving:
         if not problem and (reason := save_text(choice.path, view.text)):
             problem = f"{choice.path}: {reason}"
         count = "1 parameter" if view.count == 1 else f"{view.count} parameters"
-        return f"not saved: {problem}" if problem else f"{count} saved to {choice.path}"
+        return f"not saved: {problem}" if problem else f"{count} saved to {choice.path}{view.left_out}"

@@ -170,6 +170,76 @@ def test_integers_of_px4_are_exact(capsys: Capture) -> None:
         assert vehicle.params["A"].value == -2_000_000_001
 
 
+@pytest.mark.parametrize("ftp", [False, True])
+def test_whole_numbers_of_ardupilot_keep_their_digits(capsys: Capture, tmp_path: Path, ftp: bool) -> None:
+    with foreign_vehicle(ARDUPILOT, ftp=ftp) as vehicle:
+        vehicle.params.replace({"OWN_STAT": Param(287454016, 6), "OWN_SERIAL": Param(-2147483648, 6)})
+        assert param(capsys, vehicle, "get").out.split() == ["OWN_SERIAL", "-2147483648", "OWN_STAT", "287454016"]
+        assert param(capsys, vehicle, "get", "OWN_STAT", "--json").records[0]["param_value"] == 287454016
+        file = tmp_path / "own.parm"
+        assert param(capsys, vehicle, "save", str(file)).code == 0
+        assert [line.split() for line in file.read_text().splitlines()] == [
+            ["OWN_SERIAL", "-2147483648.000000"], ["OWN_STAT", "287454016.000000"],
+        ]  # fmt: skip
+        same = param(capsys, vehicle, "set", "OWN_SERIAL", "-2147483648")
+        assert (same.code, same.out) == (0, "OWN_SERIAL -2147483648 (was -2147483648)\n")
+
+
+def test_a_whole_number_that_float32_changes_is_not_sent(capsys: Capture) -> None:
+    with foreign_vehicle(ARDUPILOT) as vehicle:
+        vehicle.params.replace({"OWN_OPTIONS": Param(1, 6), "OWN_FLOAT": Param(1.0)})
+        refused = param(capsys, vehicle, "set", "OWN_OPTIONS", "1073741825")
+        assert refused.code == ExitCode.REFUSED
+        assert "float32 carries 1073741824 or 1073741952, not 1073741825" in refused.err
+        below = param(capsys, vehicle, "set", "OWN_OPTIONS", "-16777217")
+        assert "float32 carries -16777218 or -16777216, not -16777217" in below.err
+        assert vehicle.of("PARAM_SET") == []
+        assert param(capsys, vehicle, "set", "OWN_OPTIONS", "0x40000000").code == 0
+        assert vehicle.params["OWN_OPTIONS"].value == 1073741824
+        rounded = param(capsys, vehicle, "set", "OWN_FLOAT", "16777217")
+        assert (rounded.code, rounded.out) == (0, "OWN_FLOAT 16777216 (was 1)\n")
+
+
+def test_load_names_the_whole_numbers_that_it_cannot_set(capsys: Capture, tmp_path: Path) -> None:
+    file = tmp_path / "own.parm"
+    file.write_text("OWN_OPTIONS 1073741825\nOWN_RATE 4\n")
+    with foreign_vehicle(ARDUPILOT) as vehicle:
+        vehicle.params.replace({"OWN_OPTIONS": Param(1073741824, 6), "OWN_RATE": Param(2.0)})
+        assert "OWN_OPTIONS      1073741825   here 1073741824" in param(capsys, vehicle, "diff", str(file)).out
+        loaded = param(capsys, vehicle, "load", str(file))
+        assert (loaded.code, loaded.out) == (ExitCode.PARTLY, "OWN_RATE         2 -> 4\n")
+        assert "float32 does not carry all digits of the file: OWN_OPTIONS" in loaded.err
+        assert (vehicle.params["OWN_OPTIONS"].value, vehicle.params["OWN_RATE"].value) == (1073741824, 4)
+
+
+def test_a_value_that_the_list_may_have_rounded_is_no_difference(capsys: Capture, tmp_path: Path) -> None:
+    file = tmp_path / "own.parm"
+    file.write_text("OWN_STAT 287454020\n")
+    with foreign_vehicle(ARDUPILOT, ftp=False) as vehicle:
+        vehicle.params.replace({"OWN_STAT": Param(287454020, 6)})
+        assert param(capsys, vehicle, "diff", str(file)).code == 0
+
+
+def test_px4_integers_that_float32_joins_are_different(capsys: Capture, tmp_path: Path) -> None:
+    file = tmp_path / "own.parm"
+    file.write_text("A 1073741825\n")
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.params.replace({"A": Param(1073741824, 6)})
+        assert param(capsys, vehicle, "load", str(file)).out == "A                1073741824 -> 1073741825\n"
+        assert vehicle.params["A"].value == 1073741825
+
+
+def test_save_names_parameters_without_a_value(capsys: Capture, tmp_path: Path) -> None:
+    file = tmp_path / "own.params"
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.params.replace({"OWN_GAIN": Param(0.5), "OWN_UNSET": Param(float("nan")), "OWN_RATE": Param(2.5)})
+        saved = param(capsys, vehicle, "save", str(file), "--format", "mavproxy")
+        assert saved.code == ExitCode.PARTLY
+        assert "2 parameters of" in saved.err
+        assert saved.err.endswith(f"saved to {file}; left out, no number: OWN_UNSET\n")
+        assert [line.split()[0] for line in file.read_text().splitlines()] == ["OWN_GAIN", "OWN_RATE"]
+
+
 def test_a_list_with_a_hole_is_printed_and_the_hole_named(capsys: Capture) -> None:
     with foreign_vehicle(PX4) as vehicle:
         vehicle.params.replace({name: Param(1.0) for name in ("A", "B", "C")})

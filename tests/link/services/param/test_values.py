@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Capability, ParamErrorCode
-from link.services.param.float32 import same_float32, shortest_float32
+from link.services.param.float32 import float32_neighbours, same_float32, shortest_float32
 from link.services.param.values import (
     NAME_SIZE,
     REAL32,
@@ -87,4 +87,31 @@ def test_the_encoding_of_integers(autopilot: int, capabilities: int, bytewise: b
     ],
 )
 def test_values_that_a_type_cannot_hold(value: float, kind: int, fault: ParamErrorCode | None) -> None:
-    assert value_fault(value, kind) is fault
+    assert value_fault(value, kind, bytewise=False) is fault
+    assert value_fault(value, kind, bytewise=True) is fault
+
+
+@pytest.mark.parametrize(
+    ("value", "below", "above"),
+    [
+        (1073741825, 1073741824, 1073741952),
+        (-16777217, -16777218, -16777216),
+        (33554433, 33554432, 33554436),
+        (7, 7, 7),
+    ],
+)
+def test_a_set_cast_to_float32_carries_its_neighbours(value: float, below: float, above: float) -> None:
+    assert float32_neighbours(value) == (below, above)
+    cast = None if below == above else ParamErrorCode.VALUE_OUT_OF_RANGE
+    assert value_fault(value, 6, bytewise=False) is cast
+    assert value_fault(value, 8, bytewise=True) is cast  # INT64 does not fit into the four bytes
+    assert value_fault(value, 6, bytewise=True) is None
+    assert all(value_fault(each, 6, bytewise=False) is None for each in (below, above))
+
+
+def test_whole_numbers_of_four_bytes_keep_all_digits() -> None:
+    assert shortest_float32(287454016.0) == 287454016
+    assert shortest_float32(-2147483648.0) == -2147483648
+    assert shortest_float32(2.0**32 - 256) == 4294967040
+    assert shortest_float32(through_float32(1e20)) == 1e20
+    assert shortest_float32(through_float32(0.45)) == 0.45
