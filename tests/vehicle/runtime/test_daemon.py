@@ -82,7 +82,7 @@ def test_a_log_file_that_cannot_be_had_keeps_nobody_from_driving(tmp_path: Path)
     text = f'endpoints = ["{endpoint}"]\n[motors]\ndriver = "simulated"\n[log]\nfile = "{tmp_path}/none/log"\n'
     config.write_text(text)
     with running(tmp_path, "--config", str(config)) as vehicle:
-        told = []
+        told: list[str] = []
         while not told or "ready" not in told[-1]:
             told.append(vehicle.ready())
         assert f"vehicle: log.file {tmp_path}/none/log: No such file or directory; continuing without it" in told
