@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, Result, VehicleType
+from dialects.enums import Autopilot, Command, Result, SystemState, VehicleType
 from dialects.kinds import VehicleKind, find_kind
 from groundstation.vehicles.requests.command_requests import CommandRequests
 from groundstation.vehicles.requests.mode_requests import ModeRequests
@@ -37,6 +37,10 @@ if TYPE_CHECKING:
     from groundstation.vehicles.requests.param_writer import ParamWriter
     from groundstation.vehicles.requests.plan_requests import PlanRequests
     from groundstation.vehicles.requests.transfer_requests import TransferRequests
+    from groundstation.vehicles.state.vehicle_state import VehicleState
+
+CALIBRATING = "a calibration is under way, try again when it has ended"
+"""Why a vehicle refuses that reports MAV_STATE_CALIBRATING."""
 
 
 class _Service(Protocol):
@@ -248,6 +252,11 @@ class VehicleServices:
 
     def _model(self) -> VehicleKind:
         return find_kind(self.autopilot, self.kind)
+
+    def note_state(self, state: VehicleState) -> None:
+        """Take what its newest HEARTBEAT tells."""
+        self.autopilot, self.kind = state.autopilot, state.kind
+        self.book.busy = CALIBRATING if state.status == SystemState.CALIBRATING else ""
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""

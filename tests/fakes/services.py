@@ -9,7 +9,7 @@ from contextlib import AbstractContextManager
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command
+from dialects.enums import Autopilot, Command, Result
 from link.core import Received
 from tests.fakes.ftp import ForeignFtp
 from tests.fakes.lines import on_line
@@ -161,6 +161,39 @@ class ModeList:
         """Send nothing of its own."""
 
 
+class Px4Calibration:
+    """Calibrations at rest as PX4 does them: accepted at the start, the end in a text; others are refused meanwhile."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.4
+        self.failure = ""
+        """A text in place of the one that it is done."""
+        self._name, self._ends_at = "", 0.0
+
+    def receive(self, vehicle: FakeVehicle, received: Received, now: float) -> None:
+        """Begin what was accepted; FakeVehicle has answered."""
+        message: Any = received.message
+        if vehicle.autopilot != PX4 or not isinstance(message, m.CommandLong) or vehicle.calibrating:
+            return
+        if message.command == Command.PREFLIGHT_CALIBRATION and not vehicle.answers.get(message.command):
+            parts = (message.param1, message.param2, message.param3, message.param5)
+            self._name = next(
+                (each for each, on in zip(("gyro", "mag", "baro", "level"), parts, strict=True) if on), ""
+            )
+            self._ends_at, vehicle.calibrating = now + self.seconds, True
+            vehicle.answers[Command.PREFLIGHT_CALIBRATION] = Result.TEMPORARILY_REJECTED, "motion, retrying.."
+            vehicle.say(f"[cal] calibration started: 2 {self._name}", 6)
+            vehicle.beat()
+
+    def tick(self, vehicle: FakeVehicle, now: float) -> None:
+        """End it."""
+        if vehicle.calibrating and now >= self._ends_at:
+            vehicle.calibrating = False
+            del vehicle.answers[Command.PREFLIGHT_CALIBRATION]
+            vehicle.say(self.failure or f"[cal] calibration done: {self._name}", 2 if self.failure else 6)
+            vehicle.beat()
+
+
 class ForeignVehicle(FakeVehicle):
     """An ArduPilot or PX4 rover with all services."""
 
@@ -171,7 +204,9 @@ class ForeignVehicle(FakeVehicle):
         self.standard_modes: dict[int, int] = {}
         """custom_mode -> MAV_STANDARD_MODE in AVAILABLE_MODES."""
         self.files = ForeignFtp(lambda: self.params.packed() if autopilot == ARDUPILOT else None)
-        parts: list[Part] = [self.missions, self.logs, ModeList(self, ftp=ftp), *([Files(self.files)] if ftp else [])]
+        self.calibration = Px4Calibration()
+        parts: list[Part] = [self.missions, self.logs, self.calibration, ModeList(self, ftp=ftp)]
+        parts += [Files(self.files)] if ftp else []
         super().__init__(autopilot=autopilot, system=system, mode=0, parts=parts)
 
 

@@ -100,6 +100,8 @@ class FakeVehicle:
         self.mode: int = mode if mode is not None else PX4_MANUAL if autopilot == Autopilot.PX4 else Mode.MANUAL
         self.armed = False
         self.locked = False
+        self.calibrating = False
+        """The HEARTBEAT says CALIBRATING."""
         self.deaf = False
         """Nothing arrives."""
         self.cut = False
@@ -184,6 +186,7 @@ class FakeVehicle:
         if not self.beats:
             return
         status = SystemState.EMERGENCY if self.locked else SystemState.ACTIVE if self.armed else SystemState.STANDBY
+        status = SystemState.CALIBRATING if self.calibrating else status
         self.send(m.Heartbeat(self.kind, self.autopilot, self._flags(), self.mode, status, 3))
         if self.driver is not None:
             self.send(m.ControlStatus(1, self.driver, [0] * 10))

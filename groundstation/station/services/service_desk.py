@@ -95,7 +95,7 @@ class ServiceDesk:
         """Repeat what is overdue, give up at last, report what has ended."""
         for contact in self._fleet:
             if contact.services is not None:
-                contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
+                contact.services.note_state(contact.state)
                 pending = self._commander.is_pending(Command.REQUEST_MESSAGE, contact.state)
                 alive, held = contact.state.monitor.is_alive(now), self._is_held(contact, now)
                 contact.services.tick(now, may_query=not pending, alive=alive, held=held)
@@ -187,7 +187,7 @@ class ServiceDesk:
         """Return the services of a vehicle."""
         if contact.services is None:
             contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component), self._texts)
-            contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
+            contact.services.note_state(contact.state)
         return contact.services
 
     def await_end(self, number: int, tell: Callable[[RequestReport], None]) -> None:

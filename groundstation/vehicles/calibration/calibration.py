@@ -14,6 +14,7 @@ import msgspec
 from dialects import messages as m
 from dialects.enums import Autopilot, Command
 from groundstation.vehicles.calibration.compass_calibration import CompassCalibration
+from groundstation.vehicles.calibration.reported_calibration import CALIBRATION_TEXT, is_done
 from groundstation.vehicles.calibration.stick_calibration import RATE, StickCalibration
 from groundstation.vehicles.probes.stream_requests import STREAM_RATES
 from groundstation.views.doctor import STICKS, CalibrationRow
@@ -39,12 +40,14 @@ MAG_CAL_RATE = 4.0
 """Hz of MAG_CAL_PROGRESS and MAG_CAL_REPORT while compasses are calibrated."""
 
 SHORT = frozenset({"level", "gyro", "pressure"})
-"""Kinds that are done when the vehicle has accepted; for the others that is the beginning."""
+"""Kinds that are done when the vehicle has accepted; for the others, and for PX4, that is the beginning."""
 
 STICKS_TEXT = "move all sticks to their ends, centre them, then ENTER"
 
-CALIBRATION_TEXT = "[cal] "
-"""What PX4's texts about a calibration begin with."""
+PX4_KINDS: Mapping[str, str] = {
+    "accel": "accel", "level": "level", "gyro": "gyro", "baro": "pressure", "mag": "compass-px4",
+}  # fmt: skip
+"""What PX4's texts call a calibration -> its kind."""
 
 
 class CalibrationKind(msgspec.Struct, frozen=True):
@@ -112,6 +115,7 @@ class CalibrationState:
         """Take PX4's texts, which say what to do."""
         if text.startswith(CALIBRATION_TEXT):
             self.text = text.removeprefix(CALIBRATION_TEXT)
+            self.done |= {PX4_KINDS[is_done(text)]} if is_done(text) in PX4_KINDS else set()
 
     def confirm_position(self) -> None:
         """Answer that the vehicle lies as asked; nothing happens if it has not asked."""
@@ -154,7 +158,8 @@ class CalibrationState:
     def rows(self, autopilot: int, requests: Iterable[RequestLine]) -> tuple[CalibrationRow, ...]:
         """Return what can be calibrated, and what cannot. `requests` show which ones are done."""
         accepted = [line for line in requests if line.state == "accepted"]
-        self.done |= {line.what.removeprefix(REQUEST) for line in accepted} & SHORT
+        if autopilot != Autopilot.PX4:
+            self.done |= {line.what.removeprefix(REQUEST) for line in accepted} & SHORT
         written = max((line.number for line in accepted if line.what == f"{REQUEST}{WRITE}"), default=0)
         if written > self._written:
             self._written, self.text, self.compass = written, COMPASS_WRITTEN, CompassCalibration()

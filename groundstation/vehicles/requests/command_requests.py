@@ -101,4 +101,11 @@ class CommandRequests:
             elif outcome.number is None:
                 self._book.fail(number, f"after {TRIES} tries")
             else:
-                self._book.refuse(number, result_name(outcome.number).upper().replace(" ", "_"), now)
+                self._book.refuse(number, _refusal(outcome.command, outcome.number), now)
+
+
+def _refusal(command: int, result: int) -> str:
+    """Return a result by name. ArduPilot gives no reason while it still calibrates."""
+    name = result_name(result).upper().replace(" ", "_")
+    later = command == Command.PREFLIGHT_CALIBRATION and result == Result.TEMPORARILY_REJECTED
+    return f"{name}: another calibration may be under way, try again in some seconds" if later else name

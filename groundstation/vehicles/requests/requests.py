@@ -67,6 +67,8 @@ class RequestBook:
         self._changed: dict[int, RequestReport] = {}
         self._reason: tuple[str, float] | None = None
         self._refusal = ""
+        self.busy = ""
+        """Why the vehicle refuses most of what is requested now; "" for no such reason."""
 
     @property
     def running(self) -> tuple[RequestReport, ...]:
@@ -100,8 +102,9 @@ class RequestBook:
         report = self._running.get(number)
         if report is None:
             return
-        if not by_vehicle:
-            self._end(number, RequestState.REFUSED, detail)
+        if not by_vehicle or self.busy:
+            why = f": {self.busy}" if by_vehicle else ""
+            self._end(number, RequestState.REFUSED, f"{detail}{why}")
             return
         self._running[number] = replace(report, detail=detail)
         self._refused[number] = now + REASON_WITHIN

@@ -95,7 +95,7 @@ class VehicleContact:
         self.verified |= received.signed
         self.state.receive(received, now)
         self.details.receive(received, now)
-        self.services.autopilot, self.services.kind = self.state.autopilot, self.state.kind
+        self.services.note_state(self.state)
         if isinstance(received.message, m.StatusText):
             self._handle_text(received.message, received.system, now)
         self.services.receive(received, now)

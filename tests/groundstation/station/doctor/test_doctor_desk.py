@@ -355,6 +355,17 @@ def test_px4_says_in_texts_what_to_do() -> None:
     assert clinic.doctor.calibration == "progress <40>"
 
 
+def test_px4_has_not_calibrated_when_it_has_accepted() -> None:
+    clinic = Clinic(FakeVehicle(autopilot=Autopilot.PX4))
+    clinic.do(Calibrate(1, 1, "gyro"))
+    clinic.run(2.0)
+    gyro = next(row for row in clinic.doctor.calibrations if row.kind == "gyro")
+    assert gyro.state == ""
+    clinic.say("[cal] calibration done: gyro", 6)
+    gyro = next(row for row in clinic.doctor.calibrations if row.kind == "gyro")
+    assert gyro.state == "done"
+
+
 def test_what_is_done_when_it_is_accepted() -> None:
     clinic = Clinic(FakeArduPilot())
     clinic.do(Calibrate(1, 1, "gyro"))

@@ -17,7 +17,7 @@ from tests.ports import free_port
 from tests.waits import wait_until
 
 Capture = pytest.CaptureFixture[str]
-MOTOR_TEST, ACTUATOR_TEST, CHECKS, CALIBRATION = 209, 310, 401, 241
+MOTOR_TEST, ACTUATOR_TEST, CHECKS, CALIBRATION, REBOOT = 209, 310, 401, 241, 246
 
 SAFE = {
     "RC_OVERRIDE_TIME": 0.5, "FS_GCS_ENABLE": 1, "FS_THR_ENABLE": 1, "FS_GCS_TIMEOUT": 5, "MAV_GCS_SYSID": 255,
@@ -123,6 +123,46 @@ def test_a_calibration_that_is_refused(capsys: Capture, rover: ForeignVehicle) -
     run = run_verb(capsys, "calibrate", "gyro", "-e", rover.endpoint, "-v", "1")
     assert run.code == ExitCode.REFUSED
     assert "Gyro cal failed" in run.err
+
+
+def test_px4_has_calibrated_when_it_says_so(capsys: Capture) -> None:
+    with foreign_vehicle(PX4) as vehicle:
+        done = run_verb(capsys, "calibrate", "gyro", "-e", vehicle.endpoint, "-v", "1")
+        assert (done.code, vehicle.calibrating) == (ExitCode.DONE, False), done.err
+        assert "has calibrated: gyros" in done.err
+        vehicle.calibration.failure = "[cal] calibration failed: gyro"
+        failed = run_verb(capsys, "calibrate", "gyro", "-e", vehicle.endpoint, "-v", "1")
+        assert failed.code == ExitCode.REFUSED
+        assert "calibration failed: gyro" in failed.err
+        assert "has calibrated" not in failed.err
+
+
+def test_a_calibration_whose_end_is_not_reported(capsys: Capture) -> None:
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.calibration.failure = "something else"
+        run = run_verb(capsys, "calibrate", "level", "-e", vehicle.endpoint, "-v", "1")
+        assert run.code == ExitCode.NO_ANSWER
+        assert "it has ended, and its text was lost: calibrate again" in run.err
+
+
+def test_a_refusal_while_it_calibrates_says_so(capsys: Capture) -> None:
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.calibrating, vehicle.calibration.seconds = True, 1e6
+        vehicle.calibration._ends_at = float("inf")
+        vehicle.answers[CALIBRATION] = 1, "motion, retrying.."
+        vehicle.answers[REBOOT] = 2, "motion, retrying.."
+        for verb in (("calibrate", "level"), ("reboot",)):
+            run = run_verb(capsys, *verb, "-e", vehicle.endpoint, "-v", "1")
+            assert run.code == ExitCode.REFUSED
+            assert "a calibration is under way, try again when it has ended" in run.err
+            assert "motion" not in run.err
+
+
+def test_ardupilot_gives_no_reason_while_it_calibrates(capsys: Capture, rover: ForeignVehicle) -> None:
+    rover.answers[CALIBRATION] = 1
+    run = run_verb(capsys, "calibrate", "level", "-e", rover.endpoint, "-v", "1")
+    assert run.code == ExitCode.REFUSED
+    assert "TEMPORARILY_REJECTED: another calibration may be under way, try again in some seconds" in run.err
 
 
 MAG_CAL_START, MAG_CAL_ACCEPT, MAG_CAL_CANCEL, INTERVAL = 42424, 42425, 42426, 511
