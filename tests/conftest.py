@@ -18,6 +18,10 @@ from tests import order, suite
 LONG_TIMEOUT = 300
 """s for a test that starts programs or simulates many minutes; a busy machine takes ten times as long."""
 LONG_MARKERS = ("slow", "e2e", "interop")
+MAY_RAISE_PRIORITY = os.geteuid() == 0 and os.getpriority(os.PRIO_PROCESS, 0) == 0
+"""Only root may take a lower priority and go back to the one before."""
+LOW_PRIORITY = 10
+"""nice: a tenth of the processor's time while all workers want it."""
 
 settings.register_profile(
     "mavhelm",
@@ -81,6 +85,13 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.freeze()
         gc.set_threshold(50_000, 20, 20)
         gc.enable()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item) -> None:
+    """Let tests that compute give way to those that wait in real time, which other workers run."""
+    if MAY_RAISE_PRIORITY:
+        os.setpriority(os.PRIO_PROCESS, 0, LOW_PRIORITY if order.gives_way(item) else 0)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

@@ -6,6 +6,7 @@ those that compute, with busy ones. Mixed, they need two thirds of the time.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TypeVar
@@ -44,6 +45,11 @@ def waits(item: pytest.Item) -> bool:
     """Return whether a test starts programs, waits in real time, or is long."""
     folder = item.path.parent.as_posix()
     return any(mark.name in WAITING_MARKERS for mark in item.iter_markers()) or folder.endswith(WAITING_FOLDERS)
+
+
+def gives_way(item: pytest.Item) -> bool:
+    """Return whether a test only computes: it is not late, however slowly it runs. A coroutine draws a screen."""
+    return not waits(item) and not inspect.iscoroutinefunction(getattr(item, "obj", None))
 
 
 def _is_short(item: pytest.Item) -> bool:

@@ -123,7 +123,7 @@ def test_ci_types_the_lines_of_the_readme_and_runs_the_rest() -> None:
     assert any(line.startswith("python3 -m tests.stranger --no-skips ") for line in lines)
     [command] = [line for line in lines if ".venv/bin/pytest" in line]
     rest, again, failed = command.split(" || ")
-    assert rest == ".venv/bin/pytest -n 4 --dist loadgroup --suite rest"
+    assert rest == ".venv/bin/pytest -n 8 --dist loadgroup --suite rest"
     assert (again, failed) == (".venv/bin/python .ci/again", "code=1")
 
 
