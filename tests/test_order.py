@@ -29,9 +29,5 @@ def test_what_waits_is_spread_and_has_begun_before_the_end(few: int, many: int) 
         assert len(mixed) - places[-1] > many * (1 - order.LAST)
 
 
-async def test_a_coroutine_gives_way_to_nothing(request: pytest.FixtureRequest) -> None:
-    assert not order.gives_way(request.node)
-
-
 def test_a_test_that_computes_gives_way(request: pytest.FixtureRequest) -> None:
     assert order.gives_way(request.node)
