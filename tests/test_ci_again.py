@@ -27,7 +27,7 @@ def test_bad():
     [
         (["test_it.py::test_good[a@b]@a group"], 0, "1 passed"),
         (["test_it.py::test_good[a@b]", "test_it.py::test_bad"], 1, "1 failed, 1 passed"),
-        ([f"test_it.py::test_{n}" for n in range(9)], 1, "9 tests have failed"),
+        ([f"test_it.py::test_{n}" for n in range(21)], 1, "21 tests have failed"),
         ([], 1, "0 tests have failed"),
     ],
 )
