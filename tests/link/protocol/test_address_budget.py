@@ -5,6 +5,7 @@ from __future__ import annotations
 from dialects import codec
 from dialects import messages as m
 from link.core import Outgoing
+from link.protocol.address_budget import AddressBudget
 from link.protocol.channel import Channel
 from tests.link.frames import frame, heartbeat
 
@@ -115,3 +116,14 @@ def test_a_program_that_handles_no_ping_answers_it() -> None:
     assert isinstance(answer, m.Ping)
     assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (77, 3, 1, 1)
     assert asked(channel, 0.0) == []
+
+
+def test_a_message_that_is_no_answer_proves_nothing() -> None:
+    budget = AddressBudget()
+    ping, sync = budget.questions(0.0)
+    budget.note_answer(BEAT)
+    assert not budget.proven
+    assert isinstance(ping, m.Ping)
+    assert isinstance(sync, m.Timesync)
+    budget.note_answer(m.Timesync(1, sync.ts1))
+    assert budget.proven
