@@ -79,6 +79,15 @@ def is_on_earth(latitude: float, longitude: float) -> bool:
     return abs(latitude) <= MAX_LATITUDE and abs(longitude) <= MAX_LONGITUDE
 
 
+def place_fault(latitude: float, longitude: float) -> str | None:
+    """Return why degrees are no place on earth, or None; NaN is none."""
+    if not abs(latitude) <= MAX_LATITUDE:
+        return f"latitude {latitude:.9g} is not in -90 to 90"
+    if not abs(longitude) <= MAX_LONGITUDE:
+        return f"longitude {longitude:.9g} is not in -180 to 180"
+    return None
+
+
 def keep_on_earth(place: Place) -> Place:
     """Return a place with its latitude between the poles."""
     return Place(max(-MAX_LATITUDE, min(MAX_LATITUDE, place.latitude)), place.longitude)

@@ -8,7 +8,7 @@ from typing import Any, NoReturn, TypeVar
 import msgspec
 
 from groundstation.formats.errors import FileFormatError
-from link.services.mission.items import MAX_LATITUDE, MAX_LONGITUDE
+from groundstation.geo import MAX_LATITUDE, place_fault
 from link.services.param.float32 import is_float32
 
 T = TypeVar("T")
@@ -102,7 +102,7 @@ class JsonReader(msgspec.Struct, frozen=True):
 
     def check_place(self, latitude: float, longitude: float) -> None:
         """Raise FileFormatError for a position that is not on Earth."""
-        if fault := place_fault(latitude, longitude):
+        if fault := written_place_fault(latitude, longitude):
             self.fail(fault)
 
     def _list(self, name: str) -> list[Any]:
@@ -116,11 +116,8 @@ class JsonReader(msgspec.Struct, frozen=True):
         return float(value)
 
 
-def place_fault(latitude: float, longitude: float) -> str:
-    """Return why a position is not on Earth, or an empty text."""
-    if abs(latitude) > MAX_LATITUDE:
-        swapped = "" if abs(longitude) > MAX_LATITUDE else ": latitude comes first"
-        return f"latitude {latitude:.9g} is not in -90 to 90{swapped}"
-    if abs(longitude) > MAX_LONGITUDE:
-        return f"longitude {longitude:.9g} is not in -180 to 180"
-    return ""
+def written_place_fault(latitude: float, longitude: float) -> str | None:
+    """Return why a position in a file is not on Earth, or None; the two may have changed places."""
+    fault = place_fault(latitude, longitude)
+    swapped = abs(latitude) > MAX_LATITUDE >= abs(longitude)
+    return f"{fault}: latitude comes first" if swapped else fault

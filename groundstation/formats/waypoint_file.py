@@ -6,13 +6,15 @@ for an item, as the rover's own files have it.
 
 from __future__ import annotations
 
+import math
 import re
 
+from dialects.command_places import LOCATED
 from groundstation.formats.errors import FileFormatError
-from groundstation.formats.json_reader import place_fault
+from groundstation.formats.json_reader import written_place_fault
 from groundstation.formats.plan import Plan, as_home, home_item, looks_like_home, move_jumps
 from link.services.mission.files import HEADER, PlanFileError, decode_plan
-from link.services.mission.items import DEGREES_SCALE, GLOBAL_FRAMES, LOCAL_SCALE, MissionItem
+from link.services.mission.items import DEGREES_SCALE, GLOBAL_FRAMES, LOCAL_SCALE, UNSET_COORDINATE, MissionItem
 from link.services.param.float32 import same_float32, shortest_float32
 
 _AT_LINE = re.compile(r"line (\d+):? ?")
@@ -37,10 +39,15 @@ def format_waypoints(plan: Plan) -> str:
     return "\n".join([HEADER, *(_line(number, item) for number, item in enumerate(items))]) + "\n"
 
 
-def _find_fault(item: MissionItem) -> str:
-    if item.frame not in GLOBAL_FRAMES:
-        return ""
-    return place_fault(item.x / DEGREES_SCALE, item.y / DEGREES_SCALE)
+def _find_fault(item: MissionItem, x: float, y: float) -> str | None:
+    """Return what is wrong with the place of an item that has one."""
+    if item.frame not in GLOBAL_FRAMES or item.command not in LOCATED or any(map(_is_unset, (x, y))):
+        return None
+    return written_place_fault(x, y)
+
+
+def _is_unset(degrees: float) -> bool:
+    return math.isnan(degrees) or degrees == UNSET_COORDINATE / DEGREES_SCALE  # as _line() writes it
 
 
 def _line(number: int, item: MissionItem) -> str:

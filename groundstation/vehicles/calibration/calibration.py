@@ -14,7 +14,7 @@ import msgspec
 from dialects import messages as m
 from dialects.enums import Autopilot, Command
 from groundstation.vehicles.calibration.compass_calibration import CompassCalibration
-from groundstation.vehicles.calibration.reported_calibration import CALIBRATION_TEXT, is_done
+from groundstation.vehicles.calibration.reported_calibration import CALIBRATION_TEXT, find_calibrated
 from groundstation.vehicles.calibration.stick_calibration import RATE, StickCalibration
 from groundstation.vehicles.probes.stream_requests import STREAM_RATES
 from groundstation.views.doctor import STICKS, CalibrationRow
@@ -115,7 +115,8 @@ class CalibrationState:
         """Take PX4's texts, which say what to do."""
         if text.startswith(CALIBRATION_TEXT):
             self.text = text.removeprefix(CALIBRATION_TEXT)
-            self.done |= {PX4_KINDS[is_done(text)]} if is_done(text) in PX4_KINDS else set()
+            if (calibrated := find_calibrated(self.text)) in PX4_KINDS:
+                self.done |= {PX4_KINDS[calibrated]}
 
     def confirm_position(self) -> None:
         """Answer that the vehicle lies as asked; nothing happens if it has not asked."""

@@ -22,10 +22,9 @@ GIVE_UP_AFTER = 60.0
 _DONE, _FAILED = "calibration done:", ("calibration failed:", "calibration cancelled", "calibration canceled")
 
 
-def is_done(text: str) -> str:
-    """Return what a text of PX4 reports as calibrated, e.g. "gyro"; "" for any other text."""
-    words = text.removeprefix(CALIBRATION_TEXT)
-    return words.removeprefix(_DONE).strip() if text.startswith(CALIBRATION_TEXT + _DONE) else ""
+def find_calibrated(text: str) -> str:
+    """Return what a text of PX4, without CALIBRATION_TEXT, reports as calibrated, e.g. "gyro"; "" for any other."""
+    return text.removeprefix(_DONE).strip() if text.startswith(_DONE) else ""
 
 
 class ReportedCalibration:

@@ -13,12 +13,13 @@ from dialects.enums import Autopilot, Command
 from dialects.kinds import VehicleKind
 from dialects.mode_tables import HOLD
 from dialects.modes import Mode
+from groundstation.geo import place_fault
 from groundstation.vehicles.requests.command_requests import CommandRequests
 from groundstation.vehicles.requests.mode_requests import ModeRequests
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.state.plan_progress import PlanProgress
 from link.services.command.client import CommandPlace
-from link.services.mission.items import DEGREES_SCALE, MAX_LATITUDE, MAX_LONGITUDE
+from link.services.mission.items import DEGREES_SCALE
 
 GLOBAL, RELATIVE = 0, 3
 """MAV_FRAME_GLOBAL and MAV_FRAME_GLOBAL_RELATIVE_ALT."""
@@ -98,7 +99,7 @@ class MissionRequests:
         self, number: int, command: Command, params: tuple[float, ...], at: tuple[float, float], frame: int, what: str,
         now: float,
     ) -> None:  # fmt: skip
-        fault = place_fault(*at)
+        fault = destination_fault(*at)
         if fault is None:
             place = CommandPlace(frame, *(round(each * DEGREES_SCALE) for each in at))
             self._commands.send(number, command, params, what, now, place)
@@ -106,10 +107,6 @@ class MissionRequests:
             self._book.refuse(number, fault, now, by_vehicle=False)
 
 
-def place_fault(latitude: float, longitude: float) -> str | None:
+def destination_fault(latitude: float, longitude: float) -> str | None:
     """Return why these degrees are no place that a vehicle may drive to, or None."""
-    if not (math.isfinite(latitude) and abs(latitude) <= MAX_LATITUDE):
-        return f"latitude {latitude:.9g} is not in -90 to 90"
-    if not (math.isfinite(longitude) and abs(longitude) <= MAX_LONGITUDE):
-        return f"longitude {longitude:.9g} is not in -180 to 180"
-    return "0, 0 is no place" if (latitude, longitude) == (0, 0) else None
+    return "0, 0 is no place" if (latitude, longitude) == (0, 0) else place_fault(latitude, longitude)

@@ -37,19 +37,18 @@ def encode_plan(items: Sequence[MissionItem]) -> bytes:
     return ("\n".join(lines) + "\n").encode("ascii")
 
 
-def decode_plan(data: bytes, find_fault: Callable[[MissionItem], str] = lambda item: "") -> Items:
+FindFault = Callable[[MissionItem, float, float], str | None]
+"""Takes an item and its two coordinates as the file has them: one that fits no int32 is unset in the item."""
+
+
+def decode_plan(data: bytes, find_fault: FindFault = lambda item, x, y: None) -> Items:
     """Return the plan of a file. Raises PlanFileError, also for an item of which `find_fault` says what is wrong."""
     text = data.decode("ascii", "replace")
     header, *lines = text.splitlines() or [""]
     if header.strip() != HEADER:
         raise PlanFileError(f"line 1 is not {HEADER!r}")
     numbered = ((number, line) for number, line in enumerate(lines, start=2) if line.strip() and line[0] != "#")
-    items = []
-    for number, line in numbered:
-        items.append(_item(number, line))
-        if fault := find_fault(items[-1]):
-            raise PlanFileError(f"line {number}: {fault}")
-    return tuple(items)
+    return tuple(_item(number, line, find_fault) for number, line in numbered)
 
 
 def _line(number: int, item: MissionItem) -> str:
@@ -59,7 +58,7 @@ def _line(number: int, item: MissionItem) -> str:
     return "\t".join(map(str, (*head, *map(repr, item.params), *place, int(item.autocontinue))))
 
 
-def _item(number: int, line: str) -> MissionItem:
+def _item(number: int, line: str, find_fault: FindFault) -> MissionItem:
     fields = line.split()
     if len(fields) != FIELDS:
         raise PlanFileError(f"line {number} has {len(fields)} fields, not {FIELDS}")
@@ -71,7 +70,11 @@ def _item(number: int, line: str) -> MissionItem:
     except ValueError as error:
         raise PlanFileError(f"line {number}: {error}") from error
     scale = DEGREES_SCALE if frame in GLOBAL_FRAMES else LOCAL_SCALE
-    return MissionItem(command, frame, (one, two, three, four), to_int32(x, scale), to_int32(y, scale), z, autocontinue)
+    place = to_int32(x, scale), to_int32(y, scale)
+    item = MissionItem(command, frame, (one, two, three, four), *place, z, autocontinue)
+    if fault := find_fault(item, x, y):
+        raise PlanFileError(f"line {number}: {fault}")
+    return item
 
 
 def _float32(text: str) -> float:

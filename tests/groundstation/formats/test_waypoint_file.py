@@ -59,6 +59,25 @@ def test_a_place_that_is_not_on_earth_is_refused(frame: int, place: str, fault: 
         parse_waypoints(f"QGC WPL 110\n1\t0\t{frame}\t16\t0\t0\t0\t0\t{place}\t0\t1\n", "x")
 
 
+@pytest.mark.parametrize(
+    "rest",
+    [
+        "3\t16\t0\t0\t0\t0\tnan\tnan\t0\t1",  # a waypoint where the vehicle is
+        "3\t183\t1\t1500\t0\t0\t100\t0\t0\t1",  # a command whose parameters 5 and 6 are no place
+        "2\t16\t0\t0\t0\t0\t100\t0\t0\t1",  # no frame with degrees
+    ],
+)
+def test_what_is_no_place_is_not_judged_as_one(rest: str) -> None:
+    plan = parse_waypoints(f"QGC WPL 110\n1\t0\t{rest}\n", "x")
+    assert len(plan.mission) == 1
+    assert plain(parse_waypoints(format_waypoints(plan), "x").mission) == plain(plan.mission)
+
+
+def test_a_coordinate_that_fits_no_integer_is_refused() -> None:
+    with pytest.raises(FileFormatError, match=r"x:2: longitude 215\.8052 is not in -180 to 180"):
+        parse_waypoints("QGC WPL 110\n1\t0\t3\t16\t0\t0\t0\t0\t47\t215.8052\t0\t1\n", "x")
+
+
 def test_pymavlink_reads_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("MAVLINK20", raising=False)  # set by other tests, after mavutil has chosen its dialect
     file = tmp_path / "plan.waypoints"

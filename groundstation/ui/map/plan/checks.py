@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import msgspec
 
-from groundstation.geo import MAX_LATITUDE, MAX_LONGITUDE, LocalFrame, Point
+from groundstation.geo import LocalFrame, Point, place_fault
 from groundstation.ui.map.plan.commands import CIRCLE_IN, CIRCLES, DO_JUMP, POLYGON_IN, has_location
 from groundstation.ui.map.plan.fields import fields_of, range_fault
 from groundstation.ui.map.plan.geometry import (
@@ -81,11 +81,9 @@ def check_fence(point: Point, shapes: Sequence[FenceShape]) -> FenceCheck | None
 
 def item_fault(item: PlanItem) -> str | None:
     """Return why no vehicle can use an item: a position that is not on earth, a parameter that is infinite."""
-    if item.frame in GLOBAL_FRAMES and has_location(item.command) and UNSET not in (item.x, item.y):
-        if abs(item.x) > MAX_LATITUDE * DEGREES_SCALE:
-            return f"latitude {item.x / DEGREES_SCALE:.9g} is not in -90 to 90"
-        if abs(item.y) > MAX_LONGITUDE * DEGREES_SCALE:
-            return f"longitude {item.y / DEGREES_SCALE:.9g} is not in -180 to 180"
+    is_placed = item.frame in GLOBAL_FRAMES and has_location(item.command) and UNSET not in (item.x, item.y)
+    if is_placed and (fault := place_fault(item.x / DEGREES_SCALE, item.y / DEGREES_SCALE)):
+        return fault
     if not math.isfinite(item.z) and not math.isnan(item.z):
         return "the altitude is infinite"
     return "a parameter is infinite" if any(map(math.isinf, item.params)) else None
