@@ -9,6 +9,9 @@ import msgspec
 from groundstation.formats.param_file import ParamFile
 from link.services.param.client import Param
 
+IDENTITY = frozenset(("MAV_SYSID", "SYSID_THISMAV", "MAV_SYS_ID", "MAV_COMP_ID"))
+"""Parameters that say which vehicle it is. No file sets them: the ids of two vehicles would be one."""
+
 
 class ParamComparison(msgspec.Struct, frozen=True):
     """What is the same and what is not, each in the order of the file."""
@@ -18,6 +21,16 @@ class ParamComparison(msgspec.Struct, frozen=True):
     """Name, value of the file, and the parameter of the vehicle."""
     only_file: tuple[str, ...]
     only_vehicle: tuple[str, ...]
+
+    @property
+    def loadable(self) -> tuple[tuple[str, float, Param], ...]:
+        """What is different, without what belongs to one vehicle only."""
+        return tuple(each for each in self.different if each[0] not in IDENTITY)
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        """Names of what is different and belongs to one vehicle only."""
+        return tuple(name for name, _, _ in self.different if name in IDENTITY)
 
 
 def compare(file: ParamFile, params: Mapping[str, Param], component: int) -> ParamComparison:

@@ -225,7 +225,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
              _FORMAT, _YES), watches=True,
         ),
         "load": VerbAction(
-            "set what differs from a file; stop at the first refusal", param_files.load,
+            "set what differs from a file, all but read-only values and the vehicle's id", param_files.load,
             (_FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
             takes_part=True, many=True, only_reads=param_files.only_prints,
         ),

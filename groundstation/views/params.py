@@ -137,6 +137,8 @@ class ParamDiff(View, frozen=True):
     """Name, value on the vehicle, value in the file; at most as many as one write takes."""
     only_vehicle: int = 0
     only_file: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+    """Names that differ and are not taken from a file: read-only, or the vehicle's own id."""
 
 
 class ParamExportRequest(ViewRequest, frozen=True):

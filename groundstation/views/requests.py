@@ -26,6 +26,8 @@ class RequestLine(msgspec.Struct, frozen=True):
     """What it waits for, e.g. the operator's hands on a slow line; "" if it goes on."""
     system: int = 0
     """System id of the vehicle; 0: there was none."""
+    kept: tuple[str, ...] = ()
+    """Parameters that the vehicle keeps as they are."""
 
 
 class RequestsRequest(ViewRequest, frozen=True):

@@ -224,6 +224,7 @@ class ServiceDesk:
             total=report.total,
             service=self._service_of.get(report.number, ""),
             waits=waits,
+            kept=report.kept,
             system=system,
         )
 

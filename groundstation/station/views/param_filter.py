@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
+from groundstation.formats.param_compare import IDENTITY
 from groundstation.formats.param_docs import ParamDocs
 from groundstation.views.params import ParamGroup, ParamPageRequest
 from link.services.param.client import Param
@@ -12,6 +13,11 @@ from link.services.param.values import NAME_SIZE
 
 MIN_TEXT_WORD = 3
 """Letters of a word from which on it is looked for in the texts, too: shorter ones are in most of them."""
+
+
+def is_changed(param: Param) -> bool:
+    """Return whether a parameter is not at its default; False where that is not known, and for the vehicle's id."""
+    return param.is_changed and param.name not in IDENTITY
 
 
 def groups_of(names: Iterable[str]) -> dict[str, str]:
@@ -33,7 +39,7 @@ def count_groups(params: Mapping[str, Param], groups: Mapping[str, str]) -> tupl
     for name, param in params.items():
         count = counts.setdefault(groups[name], [0, 0])
         count[0] += 1
-        count[1] += param.is_changed
+        count[1] += is_changed(param)
     return tuple(ParamGroup(name, *counts[name]) for name in sorted(counts))
 
 
@@ -72,7 +78,7 @@ def choose(
     for name, param in sorted(params.items()):
         if request.group and groups[name] != request.group:
             continue
-        if (wanted is not None and name not in wanted) or (request.changed_only and not param.is_changed):
+        if (wanted is not None and name not in wanted) or (request.changed_only and not is_changed(param)):
             continue
         rank = ranks.rank(name, docs)
         if rank < len(found):

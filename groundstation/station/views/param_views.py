@@ -12,7 +12,7 @@ from groundstation.formats.param_file import format_params, split_unset, unset_t
 from groundstation.formats.param_form import ParamForm
 from groundstation.station.services.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewSource
-from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of
+from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of, is_changed
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.requests.param_requests import param_type_name
 from groundstation.vehicles.requests.param_writer import MAX_CHANGES
@@ -90,7 +90,7 @@ class ParamViews:
             running=requests.running,
             ended=requests.ended,
             groups=count_groups(params, groups),
-            changed=sum(param.is_changed for param in params.values()),
+            changed=sum(map(is_changed, params.values())),
             missing=len(missing),
             gaps=missing[:MAX_GAPS],
             autopilot=_AUTOPILOTS.get(int(contact.state.autopilot), "other"),
@@ -125,7 +125,11 @@ class ParamViews:
         if opened is None or opened.file is None:
             return ParamDiff(contact.state.system, "")
         found = compare(opened.file, self._params(contact), contact.state.component)
-        different = tuple(sorted((name, param.value, wanted) for name, wanted, param in found.different))
+        docs = self._docs(contact)
+        fixed = {name for name, _, _ in found.loadable if docs.get(name).read_only}
+        different = tuple(
+            sorted((name, param.value, wanted) for name, wanted, param in found.loadable if name not in fixed)
+        )
         return ParamDiff(
             contact.state.system,
             opened.name,
@@ -133,6 +137,7 @@ class ParamViews:
             different[:MAX_CHANGES],
             len(found.only_vehicle),
             found.only_file[:MAX_CHANGES],
+            tuple(sorted((*found.own, *fixed)))[:MAX_CHANGES],
         )
 
     def _build_export(self, request: ParamExportRequest, now: float, wall: float) -> ParamExport | None:
@@ -185,7 +190,7 @@ def _row(param: Param, docs: ParamDocs, file: Mapping[str, float]) -> ParamRow:
         value=param.value,
         kind=param_type_name(param.kind),
         default=_default(param, docs),
-        changed=param.is_changed,
+        changed=is_changed(param),
         unit=doc.unit,
         meaning=doc.meaning(param.value),
         file=file.get(param.name),

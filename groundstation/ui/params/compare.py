@@ -28,7 +28,7 @@ class CompareValue(msgspec.Struct, frozen=True):
 
 
 class CompareList(Instrument[CompareValue]):
-    """The counts, then a line for each difference: here → in the file; then what only the file has."""
+    """The counts, then a line for each difference: here → in the file; then what is not taken from the file."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the differences around the cursor."""
@@ -69,5 +69,6 @@ def _rows(value: CompareValue, width: int) -> list[list[Part]]:
             (f"{shortened(value_text(here), half):>{half}} → ", style(DIM, ground)),
             (f"{shortened(value_text(there), half):<{half}}", style(AMBER, ground)),
         ])  # fmt: skip
+    rows += ([(f"   {clean(name):<{NAME}} left out: its own", style(DIM))] for name in diff.left_out)
     rows += ([(f"   {clean(name):<{NAME}} not on the vehicle", style(DIM))] for name in diff.only_file)
     return rows or [[(" the file and the vehicle agree", style(GREEN))]]

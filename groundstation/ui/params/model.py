@@ -229,16 +229,24 @@ class ParamModel:
         value = editor.result()
         if isinstance(value, str):
             return value
+        if self._is_read_only(editor.row.name):
+            return f"{editor.row.name} is read-only"
         self.changes.set([PendingChange(editor.row.name, editor.row.value, value)])
         return None
 
     def change_to_default(self) -> str | None:
         """Make the default of the selected parameter pending; return why that cannot be done."""
         row = self.selected
+        if row is not None and self._is_read_only(row.name):
+            return f"{row.name} is read-only"
         if row is None or row.default is None:
             return "this vehicle does not report the default"
         self.changes.set([PendingChange(row.name, row.value, row.default)])
         return None
+
+    def _is_read_only(self, name: str) -> bool:
+        info = self.infos.get(name)
+        return info is not None and info.read_only
 
     def take_from_file(self, index: int | None = None) -> int:
         """Make the values of the file pending: one difference, or all; return how many."""
@@ -287,9 +295,11 @@ class ParamModel:
         if line is None:
             return
         self._writing = None
-        done = changes if line.state == "accepted" else changes[: line.done]
+        tried = changes if line.state == "accepted" else changes[: line.done]
+        done = [each for each in tried if each.name not in line.kept]
         self.changes.take_written(done)
-        self.last_write = written_text(line, [each.name for each in changes], len(done))
+        left = [each.name for each in changes[len(tried) :]]
+        self.last_write = written_text(line, [each.name for each in done], left)
 
     def _ended(self, page: ParamPage, number: int | None) -> bool:
         """Return whether a request of ours has been accepted."""

@@ -37,12 +37,12 @@ def missing_text(missing: int, gaps: Sequence[int]) -> str:
     return f"{missing} missing (index {indexes}): R asks for them"
 
 
-def written_text(line: RequestLine, names: Sequence[str], done: int) -> str:
-    """Return how a write ended, and after a refusal what stands and what was not tried."""
+def written_text(line: RequestLine, done: Sequence[str], others: Sequence[str]) -> str:
+    """Return how a write ended, and after a refusal what stands and which of the others were not tried."""
     if line.state == "accepted":
-        return f"{line.what}: {done} of {len(names)} confirmed · u makes the old values pending again"
-    stands = f" · set: {_listed(names[:done])}" if done else ""
-    left = names[done + 1 :]
+        return f"{line.what}: {len(done)} of {len(done)} confirmed · u makes the old values pending again"
+    stands = f" · set: {_listed(done)}" if done else ""
+    left = others[1:]
     return f"{line.state}: {line.detail or line.what}{stands}" + (f" · not tried: {_listed(left)}" if left else "")
 
 

@@ -36,9 +36,9 @@ class ParamTransfers:
     def take_all(self) -> None:
         """Make all values of the file changes."""
         count = self._model.take_from_file()
-        self._screen.say(
-            f"{count} values of the file are pending" if count else "no file is compared, or nothing differs"
-        )
+        left_out = self._model.diff.left_out if self._model.diff else ()
+        text = f"{count} values of the file are pending" if count else "no file is compared, or nothing differs"
+        self._screen.say(text + (f"; left out: {', '.join(left_out)}" if left_out else ""))
 
     def open_file(self) -> None:
         """Ask which file to compare with."""

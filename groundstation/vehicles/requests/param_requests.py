@@ -206,9 +206,12 @@ class ParamRequests:
             before = "" if access.before is None else f"was {value_text(access.before)}"
             self._book.accept(access.number, before)
         elif outcome.fault is not None:
+            if outcome.fault == ParamErrorCode.READ_ONLY:
+                self._book.keep(access.number, access.name)
             detail = self._fault_text(outcome)
             self._book.refuse(access.number, detail, now, by_vehicle=outcome.wanted is not None and outcome.tries > 0)
         elif outcome.value is not None:
+            self._book.keep(access.number, access.name)
             self._book.refuse(access.number, f"the vehicle keeps {value_text(outcome.value)}", now)
         else:
             self._book.fail(access.number, f"after {outcome.tries} tries")

@@ -1,4 +1,8 @@
-"""Writes several parameters of one vehicle, one after the other; stops at the first that is not set."""
+"""Writes several parameters of one vehicle, one after the other.
+
+A value that the vehicle keeps as it is, such as a read-only one, stops no other: a file of another vehicle has some.
+Every other refusal would meet the rest, too, and ends the write.
+"""
 
 from __future__ import annotations
 
@@ -23,6 +27,13 @@ class _Write(msgspec.Struct):
     """Number of the set under way."""
     name: str = ""
     """Its parameter."""
+    kept: list[str] = msgspec.field(default_factory=list)
+    """Parameters that the vehicle keeps as they are."""
+
+    @property
+    def tried(self) -> int:
+        """How many have been sent."""
+        return self.total - len(self.left)
 
 
 class ParamWriter:
@@ -57,14 +68,17 @@ class ParamWriter:
         write = self._write
         if write is None or report.number != write.current or not report.state.ended:
             return
-        done = write.total - len(write.left)
-        if report.state is RequestState.ACCEPTED:
-            self._book.advance(write.number, done, write.total)
+        if report.kept:
+            self._book.keep(write.number, *report.kept)
+            write.kept += report.kept
+        if report.state is RequestState.ACCEPTED or report.kept:
+            self._book.advance(write.number, write.tried, write.total)
             self._next(write, now)
             return
         self._write = None
-        self._book.advance(write.number, done - 1, write.total)
-        text = f"{report.reason or f'{write.name}: {report.detail}'} ({done - 1} of {write.total} set)"
+        done = write.tried - 1
+        self._book.advance(write.number, done, write.total)
+        text = f"{report.reason or f'{write.name}: {report.detail}'} ({done - len(write.kept)} of {write.total} set)"
         if report.state is RequestState.NO_ANSWER:
             self._book.fail(write.number, text)
         else:
@@ -73,9 +87,17 @@ class ParamWriter:
     def _next(self, write: _Write, now: float) -> None:
         if not write.left:
             self._write = None
-            self._book.accept(write.number)
+            self._end(write, now)
             return
         name, value = write.left.popleft()
         self._count += 1
         write.current, write.name = -self._count, name
         self._params.set(write.current, name, value, now)
+
+    def _end(self, write: _Write, now: float) -> None:
+        """End a request after its last parameter."""
+        if not write.kept:
+            self._book.accept(write.number)
+            return
+        text = f"kept by the vehicle: {', '.join(write.kept)} ({write.total - len(write.kept)} of {write.total} set)"
+        self._book.refuse(write.number, text, now, by_vehicle=False)

@@ -49,6 +49,8 @@ class RequestReport(msgspec.Struct, frozen=True):
     done: int = 0
     total: int | None = None
     """Items or bytes that were transferred, and all, where known."""
+    kept: tuple[str, ...] = ()
+    """Parameters that the vehicle keeps as they are, e.g. read-only ones. Others may be set all the same."""
 
     @property
     def text(self) -> str:
@@ -92,6 +94,11 @@ class RequestBook:
             return
         if (report.done, report.total, report.detail) != (done, total, detail):
             self._running[number] = self._changed[number] = replace(report, done=done, total=total, detail=detail)
+
+    def keep(self, number: int, *names: str) -> None:
+        """Note parameters that the vehicle keeps as they are; the request goes on."""
+        if (report := self._running.get(number)) is not None:
+            self._running[number] = replace(report, kept=(*report.kept, *names))
 
     def accept(self, number: int, detail: str = "") -> None:
         """End a request as accepted."""

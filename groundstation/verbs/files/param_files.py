@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from groundstation.formats.param_compare import compare
+from groundstation.formats.param_compare import IDENTITY, ParamComparison, compare
 from groundstation.formats.param_file import ParamFile, format_params, parse_params, split_unset, unset_text
 from groundstation.formats.param_form import ParamForm
 from groundstation.vehicles.requests.requests import RequestState
@@ -42,7 +42,8 @@ async def diff(session: VerbSession, options: argparse.Namespace, output: Output
     """Print where a file and the vehicle differ."""
     file = _read(options.file)
     await _fetch_whole(session, output)
-    differing, missing = _compare(file, session)
+    found = _compare(file, session)
+    differing, missing = found.different, found.only_file
     for name, wanted, param in differing:
         output.line(f"{name:<16} {value_text(wanted):<12} here {value_text(param.value)}")
         output.record(param_id=name, file=wanted, vehicle=param.value)
@@ -55,11 +56,14 @@ async def diff(session: VerbSession, options: argparse.Namespace, output: Output
 
 
 async def load(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-    """Set what differs from a file; stops at the first refusal."""
+    """Set what differs from a file, without the vehicle's own id; a value that the vehicle keeps stops no other."""
     file = _read(options.file)
     await session.need_only_vehicle(options.vehicle)
     await _fetch_whole(session, output)
-    differing, missing = _compare(file, session)
+    found = _compare(file, session)
+    differing, missing = found.loadable, found.only_file
+    if found.own:
+        output.note(f"left out, as each vehicle has its own: {', '.join(found.own)}")
     if missing:
         output.note(f"not on the vehicle: {', '.join(missing)}")
     if options.dry_run:
@@ -84,17 +88,23 @@ async def _write(
     if lost:
         output.note(f"left as they are, float32 does not carry all digits of the file: {', '.join(lost)}")
     differing = [each for each in differing if each[0] not in lost]
-    for done, (name, wanted, before) in enumerate(differing):
+    kept: list[str] = []
+    for tried, (name, wanted, before) in enumerate(differing):
         report = await session.request(lambda number, now, n=name, v=wanted: params.set(number, n, v, now))  # type: ignore[misc]
+        if report.kept:
+            kept.append(name)
+            output.note(report.text)
+            continue
         if report.state is not RequestState.ACCEPTED:
-            left = ", ".join(each for each, _, _ in differing[done + 1 :])
+            left, done = ", ".join(each for each, _, _ in differing[tried + 1 :]), tried - len(kept)
             output.note(f"{done} of {len(differing)} are set" + (f"; not tried: {left}" if left else ""))
             code = finish(session, report, output, changed=done, refused=name)
             return ExitCode.PARTLY if done else code
         output.line(f"{name:<16} {value_text(before.value)} -> {value_text(wanted)}")
-    output.note(f"{count(len(differing))} set")
-    output.result(not missing and not lost, system, changed=len(differing), missing=list(missing), lost=lost)
-    return ExitCode.PARTLY if missing or lost else ExitCode.DONE
+    done = len(differing) - len(kept)
+    output.note(f"{count(done)} set" + (f"; kept by the vehicle: {', '.join(kept)}" if kept else ""))
+    output.result(not (missing or lost or kept), system, changed=done, missing=list(missing), lost=lost, kept=kept)
+    return ExitCode.PARTLY if missing or lost or kept else ExitCode.DONE
 
 
 async def _fetch_whole(session: VerbSession, output: Output) -> None:
@@ -106,13 +116,12 @@ async def _fetch_whole(session: VerbSession, output: Output) -> None:
 def _changed(params: Sequence[Param]) -> list[Param]:
     if all(param.default is None for param in params):
         raise VerbError(ExitCode.REFUSED, "this vehicle does not report defaults: save without --changed")
-    return [param for param in params if param.default is None or param.is_changed]
+    others = (param for param in params if param.name not in IDENTITY)
+    return [param for param in others if param.default is None or param.is_changed]
 
 
-def _compare(file: ParamFile, session: VerbSession) -> tuple[list[tuple[str, float, Param]], list[str]]:
-    """Return what differs (name, value of the file, parameter of the vehicle), and what the vehicle lacks."""
-    found = compare(file, session.services.params.client.params, session.vehicle.component)
-    return list(found.different), list(found.only_file)
+def _compare(file: ParamFile, session: VerbSession) -> ParamComparison:
+    return compare(file, session.services.params.client.params, session.vehicle.component)
 
 
 def _read(path: str) -> ParamFile:

@@ -26,7 +26,7 @@ EXAMPLES: tuple[tuple[str, str], ...] = (
     ("groundstation param save rover.params --changed --format qgc", "those not at their default, for QGroundControl"),
     ("groundstation param diff rover.param", "where a file and the vehicle differ"),
     ("groundstation param load rover.param --dry-run", "what would be set"),
-    ("groundstation param load rover.param", "set it; stops at the first refusal"),
+    ("groundstation param load rover.param", "set it, all but read-only values and the vehicle's id"),
     ("groundstation param store", "the vehicle stores all values"),
     ("groundstation param reset --yes", "all go back to their defaults; there is no undo"),
     ("groundstation modes", "the modes of the vehicle; > marks the current one"),

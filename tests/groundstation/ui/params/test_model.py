@@ -7,7 +7,7 @@ from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.params.edit.pending import MAX_UNDO
 from groundstation.ui.params.model import ParamModel
 from groundstation.ui.params.scope import CHANGED
-from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
+from groundstation.views.params import ParamInfo, ParamInfos, ParamPage, ParamPageRequest, ParamRow
 from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.examples import param_page
 
@@ -121,6 +121,27 @@ def test_old_ends_of_other_requests_do_not_end_a_write() -> None:
     assert list(model.pending) == ["P000"], "it was not set"
     assert model.status == "no answer: after 8 tries"
     assert model.may_write, "and can be written again"
+
+
+def test_a_kept_value_is_not_written_and_stays_pending() -> None:
+    model = shown()
+    change(model, "5")
+    model.move(1)
+    change(model, "6")
+    model.write()
+    line = RequestLine(1, "refused", "set 2 parameters", "kept by the vehicle: P000", 2, 2, kept=("P000",))
+    model.show_page(page(0, 10, ended=(line,)))
+    assert list(model.pending) == ["P000"]
+    assert model.last_write == "refused: kept by the vehicle: P000 · set: P001"
+    assert model.changes.undo()
+    assert model.pending["P001"].value == 1, "what was set can be undone"
+
+
+def test_a_read_only_value_is_not_changed() -> None:
+    model = shown()
+    model.show_infos(ParamInfos(1, (ParamInfo("P000", 0.0, "REAL32", read_only=True),)))
+    assert change(model, "5") == "P000 is read-only"
+    assert model.pending == {}
 
 
 def test_the_examples_have_changes() -> None:

@@ -41,8 +41,9 @@ class Kind:
     words: str
 
 
-OURS = Kind(None, "FS_GCS_ENABLE", "no action", 1.0, 0.0, "DRIVE_TYPE", "not tried: FS_GCS_ENABLE")
-FOREIGN = ("FS_ACTION", "rtl", 2.0, 1.0, "STAT_BOOTCNT", "STAT_BOOTCNT is read-only (1 of 2 set) · set: FS_ACTION")
+OURS = Kind(None, "FS_GCS_ENABLE", "no action", 1.0, 0.0, "ACRO_TURN_RATE", "not tried: FS_GCS_ENABLE")
+FOREIGN = ("FS_ACTION", "rtl", 2.0, 1.0, "STAT_BOOTCNT",
+           "kept by the vehicle: STAT_BOOTCNT (1 of 2 set) · set: FS_ACTION")  # fmt: skip
 
 
 @dataclass(frozen=True)

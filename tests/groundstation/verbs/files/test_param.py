@@ -117,17 +117,39 @@ def test_save_diff_and_load(capsys: Capture, vehicle: ForeignVehicle, tmp_path: 
     assert (vehicle.params["FS_TIMEOUT"].value, vehicle.params["RC_OPTIONS"].value) == (1.5, 32)
 
 
-def test_load_stops_at_the_first_refusal_and_says_what_stands(
-    capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path
-) -> None:
+def test_a_read_only_value_stops_no_other_of_a_file(capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path) -> None:
     file = tmp_path / "a.param"
     file.write_text("FS_ACTION 1\nSTAT_BOOTCNT 0\nRC_OPTIONS 1\n")
     loaded = param(capsys, vehicle, "load", str(file))
     assert loaded.code == ExitCode.PARTLY
-    assert loaded.out == "FS_ACTION        2 -> 1\n"
+    assert loaded.out == "FS_ACTION        2 -> 1\nRC_OPTIONS       32 -> 1\n"
     assert '"STAT_BOOTCNT is read-only"' in loaded.err
+    assert "2 parameters set; kept by the vehicle: STAT_BOOTCNT" in loaded.err
+    assert vehicle.params["RC_OPTIONS"].value == 1
+
+
+def test_what_the_type_cannot_hold_ends_a_load(capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path) -> None:
+    file = tmp_path / "a.param"
+    file.write_text("FS_TIMEOUT 2\nFS_ACTION 1.5\nRC_OPTIONS 1\n")
+    loaded = param(capsys, vehicle, "load", str(file))
+    assert loaded.code == ExitCode.PARTLY
     assert "1 of 3 are set; not tried: RC_OPTIONS" in loaded.err
     assert vehicle.params["RC_OPTIONS"].value == 32
+
+
+def test_the_id_of_a_vehicle_is_not_loaded_from_a_file(
+    capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path
+) -> None:
+    vehicle.params.update({"SYSID_THISMAV": Param(1, 3, 1), "MAV_SYS_ID": Param(1, 6), "MAV_SYSID": Param(1, 1, 2)})
+    file = tmp_path / "other.param"
+    file.write_text("SYSID_THISMAV 2\nMAV_SYS_ID 2\nMAV_SYSID 2\nFS_ACTION 1\n")
+    loaded = param(capsys, vehicle, "load", str(file))
+    assert (loaded.code, loaded.out) == (0, "FS_ACTION        2 -> 1\n")
+    assert "left out, as each vehicle has its own: SYSID_THISMAV, MAV_SYS_ID, MAV_SYSID" in loaded.err
+    assert {vehicle.params[name].value for name in ("SYSID_THISMAV", "MAV_SYS_ID", "MAV_SYSID")} == {1}
+    if vehicle.autopilot == ARDUPILOT:
+        assert param(capsys, vehicle, "save", str(file), "--changed", "--yes").code == 0
+        assert "MAV_SYSID" not in file.read_text(), "an id is no setting that was changed"
 
 
 def test_a_file_of_another_vehicle_names_what_is_not_here(

@@ -132,9 +132,9 @@ def test_each_reason_is_there_once() -> None:
 
 def test_what_a_refusal_leaves() -> None:
     line = RequestLine(1, "refused", "set 3 parameters", "B: read-only (1 of 3 set)", 1, 3)
-    assert written_text(line, ["A", "B", "C"], 1) == "refused: B: read-only (1 of 3 set) · set: A · not tried: C"
+    assert written_text(line, ["A"], ["B", "C"]) == "refused: B: read-only (1 of 3 set) · set: A · not tried: C"
     names = [f"P{number}" for number in range(7)]
-    assert written_text(line, names, 6).endswith("set: P0, P1, P2, P3 and 2 more")
+    assert written_text(line, names[:6], names[6:]).endswith("set: P0, P1, P2, P3 and 2 more")
 
 
 def test_undo_and_redo() -> None:
