@@ -13,6 +13,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from dialects import rover
+from dialects.enums import LACKING
 
 _LINE = re.compile(r"^(?:# (?P<enum>[A-Z]\w*)|(?P<name>[A-Z]\w*) = (?P<value>-?\d+))$", re.MULTILINE)
 _END = "_ENUM_END"
@@ -33,7 +34,7 @@ def enum_names(enum: str) -> Mapping[int, str]:
 
     The part that a name shares with that of the enum is left out: "GCS" and not "MAV_TYPE_GCS".
     """
-    names = _added.get(enum, {}) | _enums().get(enum, {})
+    names = _added.get(enum, {}) | LACKING.get(enum, {}) | _enums().get(enum, {})
     return {value: _short(name, enum) for value, name in sorted(names.items())}
 
 

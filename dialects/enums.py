@@ -100,6 +100,7 @@ class Result(IntEnum):
     LONG_ONLY = rover.MAV_RESULT_COMMAND_LONG_ONLY
     INT_ONLY = rover.MAV_RESULT_COMMAND_INT_ONLY
     UNSUPPORTED_FRAME = 9  # pymavlink 2.4.50 lacks the name
+    NOT_IN_CONTROL = 10  # pymavlink 2.4.50 lacks the name
 
 
 class Severity(IntEnum):
@@ -368,7 +369,26 @@ def command_name(command: int) -> str:
     return entry.name.removeprefix("MAV_CMD_") if entry else f"command {command}"
 
 
+_RESULT_NAMES: dict[int, str] = {
+    **{result: result.name for result in Result},
+    Result.LONG_ONLY: "COMMAND_LONG_ONLY",
+    Result.INT_ONLY: "COMMAND_INT_ONLY",
+    Result.UNSUPPORTED_FRAME: "COMMAND_UNSUPPORTED_MAV_FRAME",
+}
+
+LACKING: dict[str, dict[int, str]] = {
+    "MAV_RESULT": {number: f"MAV_RESULT_{name}" for number, name in _RESULT_NAMES.items()},
+    "MAV_CMD": {command: f"MAV_CMD_{command.name}" for command in Command},
+    "MAV_PARAM_ERROR": {ParamErrorCode.TYPE_MISMATCH: "MAV_PARAM_ERROR_TYPE_MISMATCH"},
+}
+"""Enum -> value -> name as in common.xml, some of which pymavlink 2.4.50 lacks."""
+
+
 def result_name(result: int) -> str:
     """Return the name of a `MAV_RESULT` in lower case, e.g. "denied"; "result 99" for an unknown one."""
-    entry = rover.enums["MAV_RESULT"].get(result)
-    return entry.name.removeprefix("MAV_RESULT_").replace("_", " ").lower() if entry else f"result {result}"
+    return _RESULT_NAMES.get(result, f"result {result}").replace("_", " ").lower()
+
+
+def result_token(result: int) -> str:
+    """Return the name of a `MAV_RESULT` without its prefix, e.g. "TEMPORARILY_REJECTED"; "RESULT_99"."""
+    return _RESULT_NAMES.get(result, f"RESULT_{result}")

@@ -153,11 +153,22 @@ MISSION_PAUSED = rover.MISSION_STATE_PAUSED
 def decode_text(message: StatusText | RoverStationEvent) -> str:
     """Return the text as UTF-8 (the generated decoder knows only ASCII), with control characters replaced.
 
+    A text in chunks is joined before it is decoded: groundstation/vehicles/state/chunked_texts.py.
+    """
+    raw: bytes = message._text_raw
+    return decode_bytes(raw.split(b"\0", 1)[0])
+
+
+def decode_bytes(raw: bytes) -> str:
+    """Return the bytes of a text as UTF-8 in one line: white space is a blank, none is at the end.
+
     The text goes to a terminal: an escape sequence in it must not reach the screen as one. PX4 ends a text with a tab
     if an EVENT says the same.
     """
-    raw: bytes = message._text_raw
-    return printable(raw.split(b"\0", 1)[0].rstrip(b"\t\r\n").decode("utf-8", "replace"))
+    return printable(raw.rstrip(b"\t\r\n").decode("utf-8", "replace").translate(_BLANKS))
+
+
+_BLANKS = dict.fromkeys(map(ord, "\t\r\n"), " ")
 
 
 def encode_text(text: str, size: int) -> bytes:

@@ -10,12 +10,13 @@ from collections.abc import Callable, Iterator
 from typing import BinaryIO
 
 import msgspec
+from msgspec.structs import replace
 
 from dialects.enums import Severity
-from dialects.field_values import field_value
 from dialects.messages import GlobalPositionInt, GpsRawInt, StatusText
 from groundstation.export.sample import Sample
 from groundstation.geo import FIX_2D, read_place
+from groundstation.vehicles.state.chunked_texts import TextJoiner, TextKey
 
 PAUSE = 10_000_000
 """us without a position that end a segment: a line across them would show a way that nobody knows."""
@@ -75,6 +76,9 @@ class Tracks:
         """System id -> its track."""
         self.remarks: list[Remark] = []
         self.count = 0
+        self._joiner = TextJoiner()
+        self._open: dict[TextKey, int] = {}
+        """Texts of which chunks may follow, and the place of their remarks."""
 
     def add(self, sample: Sample) -> None:
         """Take a message that has a position, or a warning."""
@@ -111,5 +115,14 @@ class Tracks:
         message = sample.message
         assert isinstance(message, StatusText)
         track = self.of.get(sample.system)
-        if message.severity <= Severity.WARNING and not message.chunk_seq and track is not None and track.last:
-            self.remarks.append(Remark(sample.system, field_value(message, "text"), track.last))
+        text = self._joiner.add(message, sample.system, sample.component, sample.microseconds / 1e6)
+        for gone in self._joiner.pop_overdue(sample.microseconds / 1e6):
+            self._open.pop(gone.key, None)
+        at = self._open.pop(text.key, None)
+        if at is not None:
+            self.remarks[at] = replace(self.remarks[at], text=text.text)
+        elif text.severity <= Severity.WARNING and track is not None and track.last:
+            at = len(self.remarks)
+            self.remarks.append(Remark(sample.system, text.text, track.last))
+        if at is not None and not text.complete:
+            self._open[text.key] = at

@@ -13,15 +13,19 @@ import msgspec
 
 from dialects import messages as m
 from dialects.enum_names import enum_names
-from dialects.enums import Command, Failsafe, ModeFlag, Severity, SystemState, VehicleType
+from dialects.enums import Command, Failsafe, ModeFlag, Severity, SystemState, VehicleType, result_name
 from dialects.kinds import VehicleKind, find_kind
 from dialects.messages import MESSAGES, Message, decode_text, printable
 from dialects.modes import custom_mode_of
 from groundstation.vehicles.readings.values import flag_words
+from groundstation.vehicles.state.chunked_texts import ChunkedText, TextJoiner, TextKey
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
 
 MAX_EVENTS = 20_000
 """Kept; beyond that only those of severity WARNING and worse are, up to twice as many."""
+
+MAX_TEXT = 120
+"""Characters kept of a text."""
 
 LOST_AFTER = 3.5
 """s between two HEARTBEATs of a vehicle after which its link was lost."""
@@ -142,13 +146,19 @@ class EventFinder(msgspec.Struct):
     beating: dict[tuple[int, int], _Vehicle] = msgspec.field(default_factory=dict)
     """System and component -> the vehicle that its HEARTBEATs are of."""
 
+    joiner: TextJoiner = msgspec.field(default_factory=TextJoiner)
+    joined: dict[TextKey, tuple[ChunkedText, LogEvent]] = msgspec.field(default_factory=dict)
+    """Texts of which chunks may follow, and their events."""
+
     def handle(self, found: Found) -> None:
         """Add the events of one message."""
         handler = _HANDLERS.get(type(found.message))
         if handler is None and type(found.message).id == STATION_EVENT:
             handler = _station_event
         for kind, severity, text in handler(self, found) if handler else ():
-            self.events.add(LogEvent(found.time, found.offset, kind, severity, printable(text)[:120], found.system))
+            self.events.add(
+                LogEvent(found.time, found.offset, kind, severity, printable(text)[:MAX_TEXT], found.system)
+            )
 
     def repeat(self, system: int, component: int, time: float) -> bool:
         """Note that a HEARTBEAT came again as it was. Returns False if that is an event: after a silence."""
@@ -208,8 +218,25 @@ def _changes(known: _Vehicle, silence: float, mode: str, *, armed: bool) -> Part
 
 
 def _status_text(finder: EventFinder, found: Found) -> Parts:
-    more = "… " if found.message.chunk_seq else ""
-    yield "TEXT", int(found.message.severity), more + decode_text(found.message)
+    """Yield a text. One in chunks becomes an event with its first chunk, which each later one completes."""
+    message: m.StatusText = found.message
+    text = finder.joiner.add(message, found.system, found.component, found.time)
+    if message.id == 0:
+        yield "TEXT", text.severity, text.text
+        return
+    for gone in finder.joiner.pop_overdue(found.time):
+        if finder.joined.get(gone.key, (None, None))[0] is gone:
+            del finder.joined[gone.key]
+    known, event = finder.joined.get(text.key, (None, None))
+    if known is text and event is not None:
+        changed = event._replace(text=text.text[:MAX_TEXT])
+        finder.events.replace(event, changed)
+    else:
+        changed = LogEvent(found.time, found.offset, "TEXT", text.severity, text.text[:MAX_TEXT], found.system)
+        finder.events.add(changed)
+    finder.joined[text.key] = text, changed
+    if text.complete:
+        del finder.joined[text.key]
 
 
 def _failsafe(finder: EventFinder, found: Found) -> Parts:
@@ -245,8 +272,7 @@ def _ack(finder: EventFinder, found: Found) -> Parts:
     if name is not None:
         result = int(found.message.result)
         severity = Severity.INFO if result in (0, 5) else Severity.WARNING
-        answer = enum_names("MAV_RESULT").get(result, f"result {result}").lower().replace("_", " ")
-        yield "ACK", severity, f"{name}: {answer}"
+        yield "ACK", severity, f"{name}: {result_name(result)}"
 
 
 def _reached(finder: EventFinder, found: Found) -> Parts:
@@ -255,10 +281,9 @@ def _reached(finder: EventFinder, found: Found) -> Parts:
 
 def _station_event(finder: EventFinder, found: Found) -> Parts:
     message = found.message
-    raw = message._text_raw.split(b"\0", 1)[0]
     kind = enum_names("ROVER_STATION_EVENT_KIND").get(int(message.kind), "")
     tag = "KEY" if kind.startswith("KEYS") else "CMD" if kind == "ACTION" else "LINK" if "LINK" in kind else "GCS"
-    yield tag, int(message.severity), raw.decode("utf-8", "replace")
+    yield tag, int(message.severity), decode_text(message)
 
 
 _HANDLERS: dict[type[Message], Callable[[EventFinder, Found], Parts]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 
 from dialects import messages as m
 from dialects.enums import Severity
@@ -49,7 +49,7 @@ from groundstation.vehicles.demand.drive_gate import drive_refusal
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.readings.motor_outputs import is_turn
-from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.message_log import MessageLog, VehicleText
 from groundstation.views.doctor import DoctorRequest
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
@@ -210,7 +210,8 @@ class Station:
             if self.rests:  # it ends at once; its beginning is found by a tick, which looks at all vehicles
                 self._update_rest(now)
         elif isinstance(received.message, m.StatusText):
-            self._handle_statustext(received.message, received.component, contact, now)
+            said = self.log.handle_statustext(received.message, received.system, now, received.component)
+            self._handle_texts(said, now)
         if contact is self.fleet.selected:
             self._timesync.receive(received, now)
         self._outbox += handle_request(received, now, (self._system, COMPONENT))
@@ -219,7 +220,7 @@ class Station:
     def tick(self, now: float) -> None:
         """Send what is due and handle what has timed out."""
         self._expire_lease(now)
-        self.log.expire(now)
+        self._handle_texts(self.log.expire(now), now)
         self.fleet.update(now)
         self._display.tick(now)
         self._commander.tick(now)
@@ -451,12 +452,13 @@ class Station:
         selected = self.fleet.selected
         self._operator_log.tick(self.operator.sent_demand, selected.state.latency if selected else None, now)
 
-    def _handle_statustext(self, message: m.StatusText, component: int, contact: Contact, now: float) -> None:
-        system = contact.state.system
-        text = self.log.handle_statustext(message, system, now, component)
-        if text is not None:
-            contact.state.handle_text(text)
-            self.fleet.signing.handle_text(system, text)
-            self._commander.handle_statustext(system, text, message.severity, now)
-            self.services.handle_text(contact, text, message.severity, now)
-            self._doctor.handle_text(contact, text, now)
+    def _handle_texts(self, texts: Iterable[VehicleText], now: float) -> None:
+        for each in texts:
+            contact = self.fleet.get(each.system)
+            if contact is None:
+                continue
+            contact.state.handle_text(each.text)
+            self.fleet.signing.handle_text(each.system, each.text)
+            self._commander.handle_statustext(each.system, each.text, each.severity, now)
+            self.services.handle_text(contact, each.text, each.severity, now)
+            self._doctor.handle_text(contact, each.text, now)

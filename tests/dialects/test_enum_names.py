@@ -18,6 +18,12 @@ def test_every_value_of_the_official_definition_has_its_name(enum: str) -> None:
             assert entry.name.endswith(names[value]), value
 
 
+def test_values_that_pymavlink_lacks_have_names() -> None:
+    assert [enum_names("MAV_RESULT")[number] for number in (6, 9, 10)] == [
+        "CANCELLED", "COMMAND_UNSUPPORTED_MAV_FRAME", "NOT_IN_CONTROL",
+    ]  # fmt: skip
+
+
 def test_the_part_shared_with_the_enum_is_left_out() -> None:
     assert enum_names("MAV_TYPE")[6] == "GCS"
     assert enum_names("GPS_FIX_TYPE")[3] == "3D_FIX"

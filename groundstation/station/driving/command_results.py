@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from dialects.enums import Command, Result, Severity, result_name
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.vehicles.demand.stop_commands import DANGEROUS
+from groundstation.vehicles.state.reason_texts import REASON_WITHIN, ReasonTexts
 from groundstation.vehicles.state.message_log import MessageLog
 from link.services.command.client import CommandOutcome
-
-REASON_WITHIN = 1.0
-"""s between a refusal and the vehicle's STATUSTEXT that explains it; either may arrive first."""
 
 SHOWN_FOR = 20.0
 """s for which a refusal is shown; after that what was wrong may have changed, and the log keeps it."""
 
 ARM = "arm"
 """What every refusal to arm starts with."""
+
+
+class _Refusal(NamedTuple):
+    text: str
+    at: float
+    reason: str = ""
+
+
+_NOTHING = _Refusal("", -math.inf)
 
 
 class CommandResults:
@@ -27,8 +35,8 @@ class CommandResults:
         self._log = log
         self._labels: dict[tuple[int, int], str] = {}
         """System id and command -> what the newest command of that kind is called in texts."""
-        self._refusals: dict[int, tuple[str, float]] = {}
-        self._reasons: dict[int, tuple[str, float]] = {}
+        self._refusals: dict[int, _Refusal] = {}
+        self._reasons: dict[int, ReasonTexts] = {}
 
     def set_label(self, system: int, command: Command, label: str) -> None:
         """Set what a command to this vehicle is called in texts."""
@@ -39,9 +47,9 @@ class CommandResults:
 
         `ready_at`: when the vehicle's pre-arm checks were passed; a refusal to arm before that holds no more.
         """
-        text, at = self._refusals.get(system, ("", -math.inf))
+        text, at, reason = self._refusals.get(system, _NOTHING)
         outdated = text.startswith(ARM) and ready_at is not None and ready_at > at
-        return None if outdated or now - at > SHOWN_FOR else text
+        return None if outdated or now - at > SHOWN_FOR else f"{text}: {reason}" if reason else text
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
         """Log how a command ended."""
@@ -65,19 +73,18 @@ class CommandResults:
     def add_refusal(self, system: int, text: str, now: float, result: int | None = None) -> None:
         """Log a refusal, and keep it with the vehicle's reason. `result`: MAV_RESULT of its COMMAND_ACK."""
         self._log.add(now, "ack", text, Severity.WARNING, origin=LogOrigin(system, result=result))
-        reason = self._reasons.get(system)
-        if reason is not None and now - reason[1] <= REASON_WITHIN and ": " not in text:
-            text = f"{text}: {reason[0]}"
-        self._refusals[system] = (text, now)
+        self._refusals[system] = _Refusal(text, now)
+        self._explain(system, now)
 
     def handle_statustext(self, system: int, text: str, severity: int, now: float) -> None:
-        """Keep a warning of the vehicle: it may explain a refusal just before or after it."""
-        if severity > Severity.WARNING:
-            return
-        self._reasons[system] = (text, now)
-        refusal = self._refusals.get(system)
-        if refusal is not None and now - refusal[1] <= REASON_WITHIN and ": " not in refusal[0]:
-            self._refusals[system] = (f"{refusal[0]}: {text}", refusal[1])
+        """Keep a text of the vehicle: it may explain a refusal just before or after it."""
+        self._reasons.setdefault(system, ReasonTexts()).add(text, severity, now)
+        self._explain(system, now)
+
+    def _explain(self, system: int, now: float) -> None:
+        refusal, texts = self._refusals.get(system, _NOTHING), self._reasons.get(system)
+        if texts is not None and now - refusal.at <= REASON_WITHIN and ": " not in refusal.text:
+            self._refusals[system] = refusal._replace(reason=texts.explain(refusal.at))
 
     def _label(self, outcome: CommandOutcome) -> str:
         first = outcome.params[0]

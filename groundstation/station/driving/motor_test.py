@@ -14,7 +14,7 @@ import math
 import msgspec
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, Result, result_name
+from dialects.enums import Autopilot, Command, Result, result_token
 from groundstation.input.key_repeat import REPEAT_WINDOW_MAX, KeyTrace, RepeatWindows
 from groundstation.intents.setup import TurnMotor
 from groundstation.station.driving.operator import OperatorSession
@@ -182,7 +182,7 @@ class MotorTester:
             system = received.system
             self.tested[system] = self.tested.get(system, frozenset()) | {run.number}
         elif message.result != Result.IN_PROGRESS:
-            self.stop(f"refused: {result_name(message.result).upper()}", now)
+            self.stop(f"refused: {result_token(message.result)}", now)
 
     def handle_text(self, text: str, now: float) -> None:
         """Add the vehicle's reason to a refusal that has just been shown."""

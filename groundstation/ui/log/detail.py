@@ -27,11 +27,12 @@ RESULTS = (
     ("FAILED", "valid, but it failed: put the reason right first"),
     ("IN_PROGRESS", "being executed, the end follows"),
     ("CANCELLED", "cancelled before its end"),
-    ("LONG_ONLY", "only accepted as COMMAND_LONG"),
-    ("INT_ONLY", "only accepted as COMMAND_INT"),
-    ("UNSUPPORTED_FRAME", "the frame of the position is not supported"),
+    ("COMMAND_LONG_ONLY", "only accepted as COMMAND_LONG"),
+    ("COMMAND_INT_ONLY", "only accepted as COMMAND_INT"),
+    ("COMMAND_UNSUPPORTED_MAV_FRAME", "the frame of the position is not supported"),
+    ("NOT_IN_CONTROL", "valid, but this ground station is not in control"),
 )
-"""MAV_RESULT 0 to 9: names as in dialects.enums.Result, and meanings after common.xml."""
+"""MAV_RESULT 0 to 10: names as in dialects.enums.result_token, and meanings after common.xml."""
 
 PLACES = {"you": "you, at this ground station", "line": "the : line of this ground station"}
 """Label of a line without a vehicle -> its source."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from dialects.enums import Command, Result, command_name, result_name
+from dialects.enums import Command, Result, command_name, result_token
 from groundstation.vehicles.requests.requests import RequestBook
 from link.core import Outgoing, Received
 from link.services.command.client import TRIES, CommandClient, CommandOutcome, CommandPlace
@@ -106,6 +106,6 @@ class CommandRequests:
 
 def _refusal(command: int, result: int) -> str:
     """Return a result by name. ArduPilot gives no reason while it still calibrates."""
-    name = result_name(result).upper().replace(" ", "_")
+    name = result_token(result)
     later = command == Command.PREFLIGHT_CALIBRATION and result == Result.TEMPORARILY_REJECTED
     return f"{name}: another calibration may be under way, try again in some seconds" if later else name

@@ -12,7 +12,7 @@ import msgspec
 from msgspec.structs import replace
 
 from dialects import messages as m
-from dialects.enums import Command, Result, result_name
+from dialects.enums import Command, Result, result_token
 from dialects.kinds import VehicleKind, find_kind
 from dialects.modes import set_mode_params
 from groundstation.vehicles.requests.command_requests import CommandRequests
@@ -131,7 +131,7 @@ class ModeRequests:
         if outcome.number is None:
             self._book.fail(change.number, f"after {TRIES} tries")
         else:
-            self._book.refuse(change.number, result_name(outcome.number).upper().replace(" ", "_"), now)
+            self._book.refuse(change.number, result_token(outcome.number), now)
 
     def _give_up(self, now: float) -> None:
         """End a change that was accepted and is not confirmed in time."""

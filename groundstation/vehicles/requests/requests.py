@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
+from typing import NamedTuple
 
 import msgspec
 from msgspec.structs import replace
 
-from dialects.enums import Severity
+from groundstation.vehicles.state.reason_texts import MORE_WITHIN, REASON_WITHIN, ReasonTexts
 
-REASON_WITHIN = 1.0
-"""s between a refusal and the vehicle's STATUSTEXT that explains it; either may arrive first."""
 FIRST_STEP = -1_000_000
 """Numbers from here down are steps of other requests: their reports go to nobody else."""
 MAX_REQUESTS = 1000
@@ -59,15 +58,22 @@ class RequestReport(msgspec.Struct, frozen=True):
         return ", ".join(part for part in parts if part)
 
 
+class _Refusal(NamedTuple):
+    at: float
+    until: float
+
+
 class RequestBook:
     """The requests to one vehicle, and its texts that explain refusals."""
 
     def __init__(self) -> None:
         self._running: dict[int, RequestReport] = {}
-        self._refused: dict[int, float] = {}
-        """Refusals that wait for a reason, until when."""
+        self._refused: dict[int, _Refusal] = {}
+        """Refusals that wait for a reason."""
         self._changed: dict[int, RequestReport] = {}
-        self._reason: tuple[str, float] | None = None
+        self._reasons = ReasonTexts()
+        self._texts_before: dict[int, int] = {}
+        """Number of a request -> how many texts the vehicle had said when it began."""
         self._refusal = ""
         self.busy = ""
         """Why the vehicle refuses most of what is requested now; "" for no such reason."""
@@ -85,6 +91,7 @@ class RequestBook:
             self._changed[number] = replace(report, state=RequestState.REFUSED, detail=detail)
             return False
         self._running[number] = self._changed[number] = report
+        self._texts_before[number] = self._reasons.count
         return True
 
     def advance(self, number: int, done: int, total: int | None, detail: str = "") -> None:
@@ -114,9 +121,8 @@ class RequestBook:
             self._end(number, RequestState.REFUSED, f"{detail}{why}")
             return
         self._running[number] = replace(report, detail=detail)
-        self._refused[number] = now + REASON_WITHIN
-        if self._reason is not None and now - self._reason[1] <= REASON_WITHIN:
-            self._give_reason(self._reason[0])
+        said = self._reasons.explain(now, self._texts_before[number])
+        self._refused[number] = _Refusal(now, now + (MORE_WITHIN if said else REASON_WITHIN))
 
     def fail(self, number: int, detail: str) -> None:
         """End a request without an answer; `detail` names the tries."""
@@ -139,15 +145,17 @@ class RequestBook:
             self._refusal = ""
 
     def handle_text(self, text: str, severity: int, now: float) -> None:
-        """Take a STATUSTEXT of the vehicle. A warning explains the refusals around it."""
-        if severity <= Severity.WARNING:
-            self._reason = (text, now)
-            self._give_reason(text)
+        """Take a STATUSTEXT of the vehicle. It may explain the refusals around it, and others may follow it."""
+        if self._reasons.add(text, severity, now):
+            for number, each in self._refused.items():
+                self._refused[number] = each._replace(until=min(each.until, now + MORE_WITHIN))
 
     def tick(self, now: float) -> None:
-        """End the refusals for which no reason has come."""
-        for number, until in list(self._refused.items()):
+        """End the refusals for which no further reason is waited."""
+        for number, (at, until) in list(self._refused.items()):
             if now >= until:
+                reason = self._reasons.explain(at, self._texts_before[number])
+                self._running[number] = replace(self._running[number], reason=reason)
                 self._end(number, RequestState.REFUSED, self._running[number].detail)
 
     def pop_changes(self) -> list[RequestReport]:
@@ -155,14 +163,10 @@ class RequestBook:
         changed, self._changed = self._changed, {}
         return list(changed.values())
 
-    def _give_reason(self, text: str) -> None:
-        for number in list(self._refused):
-            self._running[number] = replace(self._running[number], reason=text)
-            self._end(number, RequestState.REFUSED, self._running[number].detail)
-
     def _end(self, number: int, state: RequestState, detail: str) -> None:
         report = self._running.pop(number, None)
         self._refused.pop(number, None)
+        self._texts_before.pop(number, None)
         if report is not None:
             self._changed[number] = replace(report, state=state, detail=detail)
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import islice, takewhile
+from typing import NamedTuple
 
 import msgspec
 
 from dialects.enums import Severity
-from dialects.messages import StatusText, decode_text, printable
+from dialects.messages import StatusText, printable
 from groundstation.snapshot import LogLine
 from groundstation.snapshot.log_origin import LogOrigin
+from groundstation.vehicles.state.chunked_texts import ChunkedText, TextJoiner
 from groundstation.views.log import LogPage, LogRequest
 
 MAX_LINES = 2000
@@ -30,15 +32,6 @@ STATE = "state"
 OPERATOR = "you"
 """Label of what the operator did."""
 
-CHUNK = 50
-"""Bytes of text in one STATUSTEXT (common.xml)."""
-
-MAX_CHUNKS = 8
-"""Chunks joined to one text; longer texts are cut."""
-
-CHUNK_TIMEOUT = 2.0
-"""s after which an incomplete text is shown without its missing chunks."""
-
 
 class _Line(msgspec.Struct):
     time: float
@@ -53,22 +46,12 @@ class _Line(msgspec.Struct):
     count: int = 1
 
 
-class _Chunks(msgspec.Struct):
-    """An incomplete text."""
+class VehicleText(NamedTuple):
+    """A whole text of a vehicle, or one with a gap where chunks were lost."""
 
-    started: float
+    system: int
+    text: str
     severity: int
-    parts: dict[int, str]
-    origin: LogOrigin
-    last: int | None = None
-
-    @property
-    def complete(self) -> bool:
-        return self.last is not None and len(self.parts) > self.last
-
-    @property
-    def text(self) -> str:
-        return "".join(self.parts[number] for number in sorted(self.parts))
 
 
 class MessageLog:
@@ -80,7 +63,7 @@ class MessageLog:
         self.name_of: Callable[[int], str] = lambda system: ""
         """Returns the name of the vehicle with a system id, "" where it has none."""
         self._lines: deque[_Line] = deque(maxlen=MAX_LINES)
-        self._chunks: dict[tuple[int, int], _Chunks] = {}
+        self._joiner = TextJoiner()
         self._number = 0
         self._state = 0
 
@@ -107,32 +90,25 @@ class MessageLog:
             self._number += 1
             self._lines.append(_Line(now, severity, label, text, self._number, self._state, origin, now))
 
-    def handle_statustext(self, message: StatusText, system: int, now: float, component: int = 0) -> str | None:
-        """Handle a STATUSTEXT. Returns the text when all its chunks have arrived."""
-        severity, origin = int(message.severity), LogOrigin(system, component)
-        if message.id == 0:  # an extension field: 0 means "not one of several chunks"
-            self.add(now, "vehicle", decode_text(message), severity, origin=origin)
-            return decode_text(message)
-        key = (system, int(message.id))
-        if key not in self._chunks and len(self._chunks) >= MAX_CHUNKS:
-            self.expire(now, everything=True)
-        chunks = self._chunks.setdefault(key, _Chunks(now, severity, {}, origin))
-        part = decode_text(message)
-        chunks.parts[min(int(message.chunk_seq), MAX_CHUNKS - 1)] = part
-        if len(message._text_raw.split(b"\0", 1)[0]) < CHUNK or message.chunk_seq >= MAX_CHUNKS - 1:
-            chunks.last = min(int(message.chunk_seq), MAX_CHUNKS - 1)
-        if not chunks.complete:
-            return None
-        del self._chunks[key]
-        self.add(now, "vehicle", chunks.text, chunks.severity, origin=chunks.origin)
-        return chunks.text
+    def handle_statustext(
+        self, message: StatusText, system: int, now: float, component: int = 0
+    ) -> tuple[VehicleText, ...]:
+        """Handle a STATUSTEXT. Returns the texts that are whole now, and those for which it waits no more."""
+        found = self._joiner.add(message, system, component, now)
+        finished = list(self._joiner.pop_overdue(now))
+        return self._add_texts([*finished, found] if found.complete else finished, now)
 
-    def expire(self, now: float, *, everything: bool = False) -> None:
-        """Log the incomplete texts whose other chunks are overdue."""
-        for key, chunks in list(self._chunks.items()):
-            if everything or now - chunks.started > CHUNK_TIMEOUT:
-                del self._chunks[key]
-                self.add(now, "vehicle", chunks.text + " ...", chunks.severity, origin=chunks.origin)
+    def expire(self, now: float) -> tuple[VehicleText, ...]:
+        """Log the texts whose other chunks are overdue, and return them."""
+        return self._add_texts(self._joiner.pop_overdue(now), now)
+
+    def _add_texts(self, found: Iterable[ChunkedText], now: float) -> tuple[VehicleText, ...]:
+        texts = []
+        for each in found:
+            system, component, _ = each.key
+            self.add(now, "vehicle", each.text, each.severity, origin=LogOrigin(system, component))
+            texts.append(VehicleText(system, each.text, each.severity))
+        return tuple(texts)
 
     def build_lines(self, now: float, wall: float) -> tuple[LogLine, ...]:
         """Return the NEWEST lines, oldest first; `now` and `wall` are the same moment on both clocks.

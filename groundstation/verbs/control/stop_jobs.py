@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from dialects.enums import Command, Result, result_name
+from dialects.enums import Command, Result, result_token
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.arming import CONFIRM_WITHIN
 from groundstation.station.driving.commander import STOP_RETRY
@@ -165,4 +165,4 @@ class EmergencyJob(msgspec.Struct):
 def refusal_words(outcome: CommandOutcome) -> str:
     """Return the MAV_RESULT of a refusal, e.g. "FAILED (4)"."""
     number = outcome.number or 0
-    return f"{result_name(number).upper().replace(' ', '_')} ({number})"
+    return f"{result_token(number)} ({number})"

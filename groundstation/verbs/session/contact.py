@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Protocol
 
 from dialects import messages as m
@@ -9,7 +10,7 @@ from dialects.enums import Command
 from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.services import VehicleServices
-from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.message_log import MessageLog, VehicleText
 from groundstation.vehicles.state.vehicle_details import VehicleDetails
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.session.in_control import is_in_control, other_driver
@@ -97,7 +98,9 @@ class VehicleContact:
         self.details.receive(received, now)
         self.services.note_state(self.state)
         if isinstance(received.message, m.StatusText):
-            self._handle_text(received.message, received.system, now)
+            self._handle_texts(
+                self.texts.handle_statustext(received.message, received.system, now, received.component), now
+            )
         self.services.receive(received, now)
         self.client.receive(received, now)
         self._advance(now)
@@ -111,6 +114,7 @@ class VehicleContact:
 
     def tick(self, now: float) -> None:
         """Repeat what is overdue."""
+        self._handle_texts(self.texts.expire(now), now)
         self.client.tick(now)
         self._advance(now)
         self.operator.tick(self.client, now, may_query=not self.services.commands.is_waiting(Command.REQUEST_MESSAGE))
@@ -132,8 +136,7 @@ class VehicleContact:
         running = {report.number for report in book.running}
         self._jobs = [job for job in self._jobs if job.number in running]
 
-    def _handle_text(self, message: m.StatusText, system: int, now: float) -> None:
-        text = self.texts.handle_statustext(message, system, now)
-        if text is not None:
-            self.state.handle_text(text)
-            self.services.handle_text(text, message.severity, now)
+    def _handle_texts(self, texts: Iterable[VehicleText], now: float) -> None:
+        for each in texts:
+            self.state.handle_text(each.text)
+            self.services.handle_text(each.text, each.severity, now)

@@ -13,6 +13,7 @@ import time
 from collections.abc import Sequence
 
 from dialects import messages as m
+from groundstation.vehicles.state.chunked_texts import TextJoiner
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.session import VerbSession
@@ -113,6 +114,7 @@ class _Answer:
         self._session = session
         self.key = key
         self._signers = signers
+        self._joiner = TextJoiner()
         self.confirmed: str | None = None
         """How it was confirmed, in its own words."""
         self.refusal: str | None = None
@@ -132,7 +134,7 @@ class _Answer:
         message = received.message
         if received.system != self._session.vehicle.system or not isinstance(message, m.StatusText):
             return
-        text = m.decode_text(message)
+        text = self._joiner.add(message, received.system, received.component, now).text  # also if a chunk is missing
         if self.key.fingerprint in text:
             self.confirmed = text
         elif "sign" in text.lower():

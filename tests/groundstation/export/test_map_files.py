@@ -117,3 +117,11 @@ def test_kml_has_longitude_latitude_and_height(kml: ET.Element) -> None:
     text = kml[0][2][3][0][1].text or ""
     found = [tuple(map(float, each.split(","))) for each in text.split()]
     assert found == [(longitude / 1e7, latitude / 1e7, 584.0) for latitude, longitude in POINTS]
+
+
+def test_a_warning_in_chunks_is_one_remark(tmp_path: Path) -> None:
+    raw = b"x" * 49 + "ü and the end".encode()
+    chunks = [sent(15, m.StatusText(3, each, 9, number)) for number, each in enumerate((raw[:50], raw[50:]))]
+    root = gpx_of(tmp_path, drive() + b"".join(chunks))
+    named = [each.text for point in root.iter(f"{{{GPX}}}wpt") for each in point if each.tag == f"{{{GPX}}}name"]
+    assert named[1:] == ["x" * 49 + "ü and the end"]

@@ -225,3 +225,18 @@ def test_an_event_whose_stamp_damage_hit_stands_where_it_was() -> None:
     data = bytearray(log.data)
     data[at + 3] ^= 0x04
     assert (19.9, "TEXT", "here") in events_of(indexed(bytes(data)))
+
+
+def test_chunks_of_a_text_are_one_event_of_its_first_moment() -> None:
+    log, raw = drive_log(20), b"x" * 49 + "ü and the end".encode()
+    log.time = 20.0
+    for number, chunk in enumerate((raw[:50], raw[50:])):
+        log.add(m.StatusText(4, chunk, 9, number))
+        log.time += 0.1
+    log.add(m.StatusText(4, b"lost ".ljust(50, b"."), 10, 0))
+    log.add(m.StatusText(4, b"its middle", 10, 2))
+    found = [each for each in events_of(indexed(bytes(log.data))) if each[1] == "TEXT" and each[0] >= 20]
+    assert found == [
+        (20.0, "TEXT", "x" * 49 + "ü and the end"),
+        (20.2, "TEXT", f"{'lost '.ljust(50, '.')} [...] its middle"),
+    ]

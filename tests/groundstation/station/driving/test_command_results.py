@@ -58,6 +58,18 @@ def test_a_reason_after_the_refusal_counts_and_a_later_text_not() -> None:
     assert cockpit.view.refusal == "arm denied: wheel blocked"
 
 
+def test_the_reason_of_a_refusal_may_be_a_notice() -> None:
+    vehicle = FakeVehicle()
+    vehicle.answers[ARM] = Result.FAILED
+    cockpit = cockpit_with(vehicle)
+    cockpit.do(Arm(held=1.0))
+    cockpit.run(0.3)
+    vehicle.send(m.StatusText(5, b"No Mission. Can't set AUTO."))
+    vehicle.send(m.StatusText(4, b"Mode change failed"))
+    cockpit.run(1.0)
+    assert cockpit.view.refusal == "arm failed: No Mission. Can't set AUTO.; Mode change failed"
+
+
 def test_acceptance_clears_the_refusal() -> None:
     vehicle = FakeVehicle()
     vehicle.answers[ARM] = Result.TEMPORARILY_REJECTED

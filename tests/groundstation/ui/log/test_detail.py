@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from msgspec.structs import replace
 
-from dialects.enums import Result, Severity
+from dialects.enums import Result, Severity, result_token
 from groundstation.snapshot import LogLine
 from groundstation.ui.log.detail import RESULTS, SEVERITY_MEANINGS, describe, result_text
 from groundstation.ui.log.filter import SEVERITY_NAMES
@@ -93,15 +93,20 @@ def test_repeats_have_their_number_and_times() -> None:
 
 
 def test_the_names_are_those_of_the_dialect() -> None:
-    assert [name for name, _ in RESULTS] == [each.name for each in Result]
     assert list(range(len(RESULTS))) == list(Result)
+    assert [name for name, _ in RESULTS] == [result_token(each) for each in Result]
     assert list(SEVERITY_NAMES) == [each.name for each in Severity]
     assert len(SEVERITY_MEANINGS) == len(Severity)
 
 
 @pytest.mark.parametrize(
     ("number", "text"),
-    [(2, "DENIED (2): a parameter is wrong"), (6, "(6): cancelled"), (99, "a result without a name (99)")],
+    [
+        (2, "DENIED (2): a parameter is wrong"),
+        (6, "CANCELLED (6): cancelled"),
+        (10, "NOT_IN_CONTROL (10): valid"),
+        (99, "a result without a name (99)"),
+    ],
 )
 def test_each_result_has_a_name_and_a_meaning(number: int, text: str) -> None:
     assert text in result_text(number)

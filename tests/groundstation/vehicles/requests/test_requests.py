@@ -29,7 +29,7 @@ def test_a_text_before_or_behind_a_refusal_explains_it(said: float) -> None:
     assert report.text == 'set A to 2: refused, permission denied, "A not changed: disarm first"'
 
 
-@pytest.mark.parametrize(("said", "severity"), [(8.9, WARNING), (11.1, WARNING), (10.0, Severity.NOTICE)])
+@pytest.mark.parametrize(("said", "severity"), [(8.9, WARNING), (11.1, WARNING), (10.0, Severity.DEBUG)])
 def test_an_old_or_harmless_text_explains_nothing(said: float, severity: int) -> None:
     book = RequestBook()
     book.begin(1, "set A to 2")
@@ -42,6 +42,46 @@ def test_an_old_or_harmless_text_explains_nothing(said: float, severity: int) ->
         book.tick(now)
     [report] = ended(book)
     assert report.reason == ""
+
+
+NOTICE, INFO = Severity.NOTICE, Severity.INFO
+
+
+@pytest.mark.parametrize(
+    ("texts", "reason"),
+    [
+        (
+            [("No Mission. Can't set AUTO.", NOTICE), ("Flight mode change failed", WARNING)],
+            "No Mission. Can't set AUTO.; Flight mode change failed",
+        ),
+        ([("Requested rate for message ID 30 too fast", INFO)], "Requested rate for message ID 30 too fast"),
+        ([("EKF3 IMU0 is using GPS", INFO), ("Arm: Compass", WARNING), ("Arm: Compass", WARNING)], "Arm: Compass"),
+    ],
+    ids=["ArduPilot: AUTO without a mission", "ArduPilot: a rate", "information beside a warning"],
+)
+@pytest.mark.parametrize("before", [True, False], ids=["texts first", "refusal first"])
+def test_the_reason_may_be_no_warning(texts: list[tuple[str, int]], reason: str, *, before: bool) -> None:
+    book = RequestBook()
+    book.begin(1, "mode AUTO")
+    if not before:
+        book.refuse(1, "FAILED", 10.0)
+    for text, severity in texts:
+        book.handle_text(text, severity, 10.1)
+    if before:
+        book.refuse(1, "FAILED", 10.2)
+    for tenth in range(100, 120):
+        book.tick(tenth / 10)
+    [report] = ended(book)
+    assert report.text == f'mode AUTO: refused, FAILED, "{reason}"'
+
+
+def test_a_text_from_before_the_request_explains_nothing() -> None:
+    book = RequestBook()
+    book.handle_text("Calibration done", NOTICE, 9.8)
+    book.begin(1, "x")
+    book.refuse(1, "DENIED", 10.0)
+    book.tick(11.0)
+    assert [report.reason for report in ended(book)] == [""]
 
 
 def test_a_request_runs_until_its_reason_is_waited_for() -> None:

@@ -99,26 +99,78 @@ def test_escape_sequences_never_get_through() -> None:
     assert "gone" in line.text
 
 
+def texts(log: MessageLog) -> list[str]:
+    return [line.text for line in log.build_lines(9.0, 9.0)]
+
+
 def test_chunks_are_joined_in_their_order() -> None:
     log = MessageLog()
-    assert log.handle_statustext(said(b"a" * 50, 9, 0), 1, 0.0) is None
-    assert log.handle_statustext(said(b"tail", 9, 2), 1, 0.1) is None
-    assert log.handle_statustext(said(b"b" * 50, 9, 1), 1, 0.2) == "a" * 50 + "b" * 50 + "tail"
+    assert log.handle_statustext(said(b"a" * 50, 9, 0), 1, 0.0) == ()
+    assert log.handle_statustext(said(b"tail", 9, 2), 1, 0.1) == ()
+    [text] = log.handle_statustext(said(b"b" * 50, 9, 1), 1, 0.2)
+    assert text == (1, "a" * 50 + "b" * 50 + "tail", 6)
     assert len(log.build_lines(1.0, 1.0)) == 1
 
 
-def test_a_lost_chunk_is_not_waited_for_for_ever() -> None:
+def test_a_lost_chunk_leaves_a_gap_where_it_was() -> None:
+    log = MessageLog()
+    log.handle_statustext(said(b"1 begin ".ljust(50, b"b"), 91, 0, 3), 1, 0.0)
+    log.handle_statustext(said(b" end", 91, 2, 3), 1, 0.1)
+    assert log.expire(1.0) == ()
+    assert log.expire(3.0) == ((1, f"{'1 begin '.ljust(50, 'b')} [...] end", 3),)
+    assert texts(log) == [f"{'1 begin '.ljust(50, 'b')} [...] end"]
+    assert log.expire(6.0) == ()
+
+
+def test_gaps_at_the_ends_are_shown() -> None:
     log = MessageLog()
     log.handle_statustext(said(b"a" * 50, 9, 0), 1, 0.0)
-    log.expire(1.0)
-    assert log.build_lines(1.0, 1.0) == ()
+    log.handle_statustext(said(b"tail", 10, 1), 1, 0.0)
     log.expire(3.0)
-    assert log.build_lines(3.0, 3.0)[0].text == "a" * 50 + " ..."
+    assert texts(log) == ["a" * 50 + " [...]", "[...] tail"]
+
+
+def test_a_character_cut_by_a_chunk_is_whole() -> None:
+    log, raw = MessageLog(), b"2 ".ljust(49, b"x") + "üy".encode()
+    log.handle_statustext(said(raw[:50], 92, 0), 1, 0.0)
+    log.handle_statustext(said(raw[50:], 92, 1), 1, 0.0)
+    assert texts(log) == ["2 ".ljust(49, "x") + "üy"]
+
+
+def test_a_character_cut_by_a_gap_is_left_out() -> None:
+    log, raw = MessageLog(), b"x" * 49 + "ü".encode() * 50
+    for number in (0, 2):
+        log.handle_statustext(said(raw[50 * number :][:50], 93, number), 1, 0.0)
+    log.expire(3.0)
+    assert texts(log) == ["x" * 49 + " [...] " + "ü" * 24]
+
+
+def test_tabs_and_line_ends_are_blanks() -> None:
+    log = MessageLog()
+    log.handle_statustext(said(b"Takeoff\tdetected\nnow\t"), 1, 0.0)
+    assert texts(log) == ["Takeoff detected now"]
+
+
+def test_two_components_with_one_text_id_are_kept_apart() -> None:
+    log = MessageLog()
+    for component, letter in ((1, b"a"), (191, b"b")):
+        log.handle_statustext(said(letter * 50, 7, 0), 1, 0.0, component)
+    for component, letter in ((1, b"A"), (191, b"B")):
+        log.handle_statustext(said(letter, 7, 1), 1, 0.0, component)
+    assert texts(log) == ["a" * 50 + "A", "b" * 50 + "B"]
+
+
+def test_a_text_that_reuses_an_id_joins_no_older_one() -> None:
+    log = MessageLog()
+    log.handle_statustext(said(b"a" * 50, 7, 0), 1, 0.0)
+    log.handle_statustext(said(b"b" * 50, 7, 0), 1, 0.5)
+    log.handle_statustext(said(b"tail", 7, 1), 1, 0.5)
+    assert texts(log) == ["a" * 50 + " [...]", "b" * 50 + "tail"]
 
 
 def test_chunks_of_a_flood_are_bounded() -> None:
     log = MessageLog()
     for number in range(1, 3000):
         log.handle_statustext(said(b"a" * 50, number, number % 256), number % 250 + 1, 0.0)
-    assert len(log._chunks) <= 8
+    assert len(log._joiner._open) <= 8
     assert len(log.build_lines(0.0, 0.0)) <= MAX_LINES

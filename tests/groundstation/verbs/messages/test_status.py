@@ -76,6 +76,17 @@ def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) ->
     assert records[0]["time"].endswith("Z")
 
 
+def test_a_text_that_lost_a_chunk_is_printed_with_a_gap(capsys: Capture) -> None:
+    contact = VehicleContact((254, 190), 1, (1, 1), 0.0)
+    printer = ChangePrinter(contact, Output("status", as_json=False, quiet=True), lambda now: {}, lambda now: {})
+    contact.receive(received(m.StatusText(3, b"PreArm: ".ljust(50, b"b"), 91, 0)), 1.0)
+    contact.receive(received(m.StatusText(3, b" end", 91, 2)), 1.0)
+    contact.tick(3.5)
+    printer.print_changes(3.5)
+    assert capsys.readouterr().out[10:] == f"Vehicle 1: error: {'PreArm: '.ljust(50, 'b')} [...] end\n"
+    assert contact.state.build_view(3.5).prearm_reason.endswith("[...] end")
+
+
 def test_plain_prints_changes_in_place_of_a_screen(capsys: Capture) -> None:
     with foreign_vehicle() as vehicle:
         vehicle.mode = 4
