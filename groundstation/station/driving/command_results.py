@@ -8,8 +8,8 @@ from typing import NamedTuple
 from dialects.enums import Command, Result, Severity, result_name
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.vehicles.demand.stop_commands import DANGEROUS
-from groundstation.vehicles.state.reason_texts import REASON_WITHIN, ReasonTexts
 from groundstation.vehicles.state.message_log import MessageLog
+from groundstation.vehicles.state.reason_texts import REASON_WITHIN, ReasonTexts
 from link.services.command.client import CommandOutcome
 
 SHOWN_FOR = 20.0
