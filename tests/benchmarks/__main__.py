@@ -15,6 +15,7 @@ from typing import Any
 from tests.benchmarks import (
     bridge,
     bridge_stations,
+    calls,
     cost,
     document,
     fleet,
@@ -72,6 +73,7 @@ BENCHMARKS: dict[str, tuple[Benchmark, str]] = {
     "strangers": (strangers.run, "CPU, demands and stops of a vehicle that strangers flood"),
     "verb": (verb.run, "verbs of the command line, by their own link and through a station"),
     "recording": (recording.run, "what recording costs the station at 1000 messages/s"),
+    "calls": (calls.run, "functions that a key, a view and a snapshot call, counted in virtual time"),
     "replay": (replay.run, "a log of 1 GB: first snapshot, index, jumps, memory"),
 }
 """Name -> its function, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""
