@@ -130,10 +130,15 @@ def _key(drive: Drive) -> dict[str, Walk]:
     station, world, now = drive.station, drive.world, drive.world.now
     frames: list[bytes] = []
     before = tuple(drive.motors.outputs)
+
+    def deliver() -> None:
+        for frame in frames:
+            world.far.receive(frame, "near", now)
+
     walks = {
         INTENT: walk(lambda: station.handle_intent(DriveKeyDown("u", 1, -1), now)),
         SEND: walk(lambda: frames.extend(world.near.pop_frames(now, "far"))),
-        MOTORS: walk(lambda: [world.far.receive(frame, "near", now) for frame in frames]),
+        MOTORS: walk(deliver),
     }
     if not frames or tuple(drive.motors.outputs) == before:
         raise BenchmarkError("the key did not reach the motors")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import msgspec
+
 from dialects.enums import Autopilot
 from groundstation.formats.docs_files import DocsFile
 from groundstation.formats.param_compare import compare
@@ -22,6 +24,7 @@ from groundstation.views.params import (
     ParamDiffRequest,
     ParamExport,
     ParamExportRequest,
+    ParamGroup,
     ParamInfo,
     ParamInfoRequest,
     ParamInfos,
@@ -29,7 +32,7 @@ from groundstation.views.params import (
     ParamPageRequest,
     ParamRow,
 )
-from link.services.param.client import Param
+from link.services.param.client import Param, ParamClient
 
 MAX_ROWS = 200
 """Rows of one page: more than the largest terminal shows."""
@@ -41,7 +44,61 @@ MAX_TEXT = 200_000
 """Characters of a file, less than a packet of the pipe; QGroundControl's form of 1235 parameters has 60,000."""
 PERIOD = 0.25
 """Least s between two views of a kind."""
+KEPT_PAGES = 8
+"""Pages that are kept while nothing changes: one for each screen, and some that were scrolled over."""
 _AUTOPILOTS = {int(Autopilot.ARDUPILOT): "ardupilot", int(Autopilot.PX4): "px4"}
+
+
+class _Sources(msgspec.Struct, frozen=True):
+    """What a ParamSummary is made of."""
+
+    client: ParamClient | None
+    version: int
+    """Of the client's parameters."""
+    docs: ParamDocs
+    file: Mapping[str, float]
+
+    def is_same(self, other: _Sources) -> bool:
+        """Return whether nothing has changed. Texts and files are replaced as a whole."""
+        same = self.client is other.client and self.docs is other.docs and self.file is other.file
+        return same and self.version == other.version
+
+
+class _Rows(msgspec.Struct, frozen=True):
+    """Rows of one page."""
+
+    rows: tuple[ParamRow, ...]
+    first: int
+    matching: int
+
+
+class ParamSummary:
+    """What a page says of all parameters, and the rows of the newest pages. Made anew when one of its sources changes.
+
+    `file`: values to compare with. A page is built four times a second, and parameters change seldom.
+    """
+
+    def __init__(self, params: Mapping[str, Param], docs: ParamDocs, file: Mapping[str, float]) -> None:
+        self._params, self._docs, self._file = params, docs, file
+        self._group_of = groups_of(params)
+        self._ranks = ParamRanks()
+        self._pages: dict[ParamPageRequest, _Rows] = {}
+        self.groups: tuple[ParamGroup, ...] = count_groups(params, self._group_of)
+        self.changed = sum(map(is_changed, params.values()))
+        self.has_defaults = any(_default(each, docs) is not None for each in params.values())
+
+    def page(self, request: ParamPageRequest) -> _Rows:
+        """Return the rows of a request."""
+        if (kept := self._pages.get(request)) is not None:
+            return kept
+        if len(self._pages) >= KEPT_PAGES:
+            self._pages.clear()
+        chosen = choose(self._params, self._docs, self._group_of, request, self._ranks)
+        first = max(0, min(request.first, len(chosen) - 1))
+        shown = chosen[first : first + min(request.rows, MAX_ROWS)]
+        made = _Rows(tuple(_row(each, self._docs, self._file) for each in shown), first, len(chosen))
+        self._pages[request] = made
+        return made
 
 
 class ParamViews:
@@ -51,7 +108,8 @@ class ParamViews:
         self._fleet = fleet
         self._desk = desk
         self._files = files
-        self._ranks = ParamRanks()
+        self._made_of = _Sources(None, 0, ParamDocs(), {})
+        self._summary = ParamSummary({}, self._made_of.docs, self._made_of.file)
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -74,29 +132,37 @@ class ParamViews:
         if contact.services is not None and params and not contact.services.params.fetching:
             contact.services.metadata.want()
         missing = client.missing if client else ()
-        groups = groups_of(params)
-        chosen = choose(params, docs, groups, request, self._ranks)
-        first = max(0, min(request.first, len(chosen) - 1))
-        system, file = contact.state.system, self._file_values(contact)
+        summary = self._summarize(contact, docs)
+        page = summary.page(request)
+        system = contact.state.system
         requests = self._desk.requests_of("params", system)
         return ParamPage(
             system=system,
-            rows=tuple(_row(each, docs, file) for each in chosen[first : first + min(request.rows, MAX_ROWS)]),
-            first=first,
-            matching=len(chosen),
+            rows=page.rows,
+            first=page.first,
+            matching=page.matching,
             known=len(params),
             total=client.total if client else None,
-            has_defaults=any(_default(each, docs) is not None for each in params.values()),
+            has_defaults=summary.has_defaults,
             running=requests.running,
             ended=requests.ended,
-            groups=count_groups(params, groups),
-            changed=sum(map(is_changed, params.values())),
+            groups=summary.groups,
+            changed=summary.changed,
             missing=len(missing),
             gaps=missing[:MAX_GAPS],
             autopilot=_AUTOPILOTS.get(int(contact.state.autopilot), "other"),
             texts=self._texts(contact, docs),
             file=contact.services.param_file.name if contact.services else "",
         )
+
+    def _summarize(self, contact: Contact, docs: ParamDocs) -> ParamSummary:
+        """Return the summary, as it was made before if none of its sources has changed."""
+        client = contact.services.params.client if contact.services else None
+        made_of = _Sources(client, client.version if client else 0, docs, self._file_values(contact))
+        if not made_of.is_same(self._made_of):
+            self._made_of = made_of
+            self._summary = ParamSummary(client.params if client else {}, docs, made_of.file)
+        return self._summary
 
     def _texts(self, contact: Contact, docs: ParamDocs) -> str:
         """Return where the texts come from, or why there are none."""

@@ -126,7 +126,9 @@ class ParamClient:
         self._repeat_after = repeat_after
         self._max_tries = tries
         self.params: dict[str, Param] = {}
-        """All known parameters, by name."""
+        """All known parameters, by name; changed only here."""
+        self.version = 0
+        """Grows with each change of `params`, so that what was made of them can be kept meanwhile."""
         self._listing = ParamListing(self._target)
         self._requests: dict[str, _ParamRequest] = {}
         self._outbox: list[Outgoing] = []
@@ -154,11 +156,13 @@ class ParamClient:
     def load(self, params: Iterable[Param]) -> None:
         """Take all parameters from another source, such as a file of the vehicle. Others are forgotten."""
         self.params = {param.name: param for param in params}
+        self.version += 1
         self._listing.finish(len(self.params))
 
     def forget(self) -> None:
         """Forget all values: the vehicle may have restarted with others."""
         self.params.clear()
+        self.version += 1
         self._listing.forget()
 
     @property
@@ -276,7 +280,9 @@ class ParamClient:
         if known is not None:
             index = known.index if param.index is None else param.index
             param = replace(param, index=index, default=known.default)
-        self.params[param.name] = param
+        if param != known:
+            self.params[param.name] = param
+            self.version += 1
 
     def _finish(self, name: str, *, value: float | None = None, fault: int | None = None) -> None:
         request = self._requests.pop(name, None)

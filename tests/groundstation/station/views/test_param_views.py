@@ -142,3 +142,21 @@ def test_a_file_that_no_packet_holds_is_refused() -> None:
     found = view(drive, ParamExportRequest(1, "qgc"), ParamExport)
     assert (found.text, found.count) == ("", 0)
     assert "groundstation param save" in found.problem
+
+
+def test_kept_rows_are_made_anew_for_each_thing_that_changes() -> None:
+    drive = fetched()
+    request = ParamPageRequest("FS_TIMEOUT", rows=1)
+    kept = [view(drive, request, ParamPage).rows for _ in range(2)]
+    assert kept[0] is kept[1]
+    drive.tell(WriteParams(2, 1, (("FS_TIMEOUT", 2.5),)))
+    end_of(drive, 2)
+    assert view(drive, request, ParamPage).rows[0].value == 2.5
+    drive.tell(CompareParams(3, 1, "a.param", "FS_TIMEOUT 3\n"))
+    end_of(drive, 3)
+    assert view(drive, request, ParamPage).rows[0].file == 3.0
+    drive.until(lambda: view(drive, request, ParamPage).rows[0].unit == "s", 20.0)
+    drive.tell(FetchParams(4))
+    for first in range(40):
+        view(drive, ParamPageRequest(first=first, rows=1), ParamPage)
+    assert view(drive, request, ParamPage).rows[0].value == 2.5, "also after many others"

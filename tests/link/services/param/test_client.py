@@ -128,3 +128,14 @@ def test_values_of_other_vehicles_do_not_count() -> None:
     client.fetch(0.0)
     client.receive(from_vehicle(m.ParamValue(b"A", 1.0, REAL32, 1, 0), system=2), 0.1)
     assert client.params == {}
+
+
+def test_version_grows_with_each_change_of_parameters_only() -> None:
+    client = ParamClient(255, 190, target_system=1)
+    versions = []
+    for value in (1.0, 1.0, 2.0):
+        client.receive(from_vehicle(m.ParamValue(b"A", value, REAL32, 1, 0)), 0.1)
+        versions.append(client.version)
+    client.load([*client.params.values()])
+    client.forget()
+    assert [*versions, client.version] == [1, 1, 2, 4]
