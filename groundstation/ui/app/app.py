@@ -112,6 +112,7 @@ class ConsoleApp(App[int]):
             lambda file, at: self._log_child.open(self._snapshot, file, at),
             dialect,
             numbers=RequestNumbers(first_request),
+            came_from=lambda: self._navigator.before,
         )
         self._kept = context.kept
         self.drive = DriveScreen(context)

@@ -65,10 +65,10 @@ class ScreenNavigator:
             return
         before = self._current
         self.go_back()
-        if row is not ROOT:
-            self._app.push_screen(load_screen(row)(self._context))
         if row is not before:
             self._current, self._before = row, before
+        if row is not ROOT:
+            self._app.push_screen(load_screen(row)(self._context))
 
     def open_before(self) -> None:
         """Open the screen that was shown before this one."""
@@ -190,6 +190,11 @@ class ScreenNavigator:
     def current(self) -> str:
         """Id of that screen."""
         return self._current.id
+
+    @property
+    def before(self) -> ScreenRow:
+        """The screen that was shown before that one."""
+        return self._before
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the views that the visible screen needs."""

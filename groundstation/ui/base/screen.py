@@ -17,7 +17,7 @@ from textual.widget import Widget
 from groundstation.actions import OperatorAction
 from groundstation.input.keymap import Keymap
 from groundstation.intents.union import AnyIntent
-from groundstation.screens import find_screen
+from groundstation.screens import SCREENS, ScreenRow, find_screen
 from groundstation.ui.base.chrome import CHROME, InstrumentRow
 from groundstation.ui.base.question import ANSWER_WITHIN, Question
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
@@ -55,6 +55,8 @@ class ScreenContext(msgspec.Struct, frozen=True):
     """Numbers for requests to the station."""
     kept: dict[type, Any] = msgspec.field(default_factory=dict)
     """What screens keep while they are closed, by its class."""
+    came_from: Callable[[], ScreenRow] = lambda: SCREENS[0]
+    """Returns the screen that was shown before this one."""
 
     def keep(self, kind: type[Kept], *args: Any) -> Kept:
         """Return the object of this class that lives as long as the app: a screen itself ends when it is closed.

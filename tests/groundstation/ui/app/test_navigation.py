@@ -114,7 +114,7 @@ WAYS: list[tuple[list[str], str]] = [
     (["f7", "right_square_bracket"], TABS[TABS.index("links") + 1]),
     (["ctrl+g", "escape"], "drive"), (["ctrl+g", "x"], "drive"),
     (["f6", "ctrl+g", "escape"], "log"), (["f6", "f6"], "log"), (["question_mark", "f6"], "log"),
-    (["f6", "question_mark", "escape"], "drive"),
+    (["f6", "question_mark", "escape"], "log"),
 ]  # fmt: skip
 """Keys that are pressed on Drive, and the screen that is open then."""
 
