@@ -16,8 +16,11 @@ import pytest
 Each = TypeVar("Each")
 
 WAITING_MARKERS = ("e2e", "interop", "tmux", "slow", "xdist_group")
-WAITING_FOLDERS = ("groundstation/verbs", "groundstation/connect", "groundstation/disk", "vehicle/cli", "link/bridge")
-"""Folders below tests/ whose tests start programs or talk to sockets."""
+WAITING_FOLDERS = (
+    "groundstation/verbs", "groundstation/connect", "groundstation/disk", "link/bridge", "vehicle/cli",
+    "vehicle/motors",
+)  # fmt: skip
+"""Folders below tests/ whose tests start programs, talk to sockets or to a controller behind a line."""
 LAST = 0.85
 """Share of the suite by which the last waiting test has begun: a long one at the end would run alone."""
 

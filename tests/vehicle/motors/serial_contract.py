@@ -21,13 +21,15 @@ from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty, recorded
 from tests.waits import Waits
 from vehicle.control_loop import ControlLoop
-from vehicle.motors import MotorError, Motors, arming_check
+from vehicle.motors import MotorError, Motors, arming_check, roboclaw
 from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.sensors import NoSensors
 
 MARGIN = 0.25
 """s more than its timeout that a controller may take here, and what the machine makes it wait: others work on it."""
 
+PATIENT_TRIES = 40
+"""2 s for the thread at the other end to answer, where a test is not about silence: the machine may be late."""
 
 KINDS: dict[str, tuple[Callable[[], Any], dict[str, Any], float]] = {
     "roboclaw": (RoboClaw, {"timeout": 0.5, "reply_time": 0.05}, 1 / 32767),
@@ -65,7 +67,8 @@ class SerialContract(MotorsContract):
             yield line
 
     @pytest.fixture
-    def bench(self, line: OnPty) -> Bench:
+    def bench(self, line: OnPty, monkeypatch: pytest.MonkeyPatch) -> Bench:
+        monkeypatch.setattr(roboclaw, "TRIES", PATIENT_TRIES)
         _, settings, tolerance = KINDS[self.kind]
         motors: Any = open_motors(self.kind, {"port": line.path, **settings})
         frames = recorded(motors.port)
