@@ -11,6 +11,8 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import msgspec
+
 from dialects.enums import Severity, StationEventKind
 from dialects.messages import printable
 from groundstation.connect.desk import ConnectDesk
@@ -223,7 +225,8 @@ class StationHost:
     def _send_snapshot(self, now: float) -> None:
         self._station.surroundings.addresses = self._addresses.find(now)
         wall = time.time() - (asyncio.get_running_loop().time() - now)  # of the same moment as `now`
-        self._last_snapshot = self._station.snapshot(now, wall)
+        shown = self._station.snapshot(now, wall)
+        self._last_snapshot = msgspec.structs.replace(shown, number=self._last_snapshot.number + 1)
         for text in self._lasting_alerts.new_in(self._last_snapshot):
             log.warning(text)
         self.screens.show(self._last_snapshot, now)

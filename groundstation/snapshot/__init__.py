@@ -255,6 +255,7 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """Everything the screen shows."""
 
     number: int = 0
+    """Counted from 1 by the process that sends it; 0: nothing was sent yet."""
     uptime: float = 0.0
     endpoints: tuple[str, ...] = ()
     addresses: tuple[str, ...] = ()

@@ -105,7 +105,13 @@ class Station:
         self.params = HeardParams()
         self._timesync = TimesyncClient(system)
         self._doctor = DoctorDesk(
-            self.fleet, self.services, self._queries, self._links, self.operator, (system, COMPONENT)
+            self.fleet,
+            self.services,
+            self._queries,
+            self._links,
+            self.operator,
+            (system, COMPONENT),
+            lambda now: self.snapshot(now, now),
         )
         self._display = DriveDisplay(self.fleet, self.operator, self._timesync, system)
         self._vehicle = VehicleBuilder(self._commander, self.driving, self._handover, self._display)
@@ -156,7 +162,6 @@ class Station:
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
         self._outbox: list[Outgoing] = []
-        self._snapshot_count = 0
         self._active_at = now
         """When something was under way last."""
         self.rests = False
@@ -240,6 +245,7 @@ class Station:
         self._charts.tick(now)
         self._detail.tick(now)
         self._update_rest(now)
+        self._doctor.examine_if_due(now)
 
     @property
     def looked_at(self) -> frozenset[int] | None:
@@ -404,11 +410,12 @@ class Station:
         )
 
     def snapshot(self, now: float, wall: float) -> Snapshot:
-        """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""
-        self._snapshot_count += 1
+        """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks.
+
+        It has no effect. Whoever sends it counts it (`Snapshot.number`).
+        """
         selected = self.fleet.selected
-        snapshot = Snapshot(
-            number=self._snapshot_count,
+        return Snapshot(
             uptime=now - self._started,
             endpoints=self.surroundings.endpoints,
             addresses=() if selected else self.surroundings.addresses,
@@ -433,8 +440,6 @@ class Station:
             transfers=self.services.progress,
             rests=self.rests,
         )
-        self._doctor.look(snapshot, now)
-        return snapshot
 
     def _expire_lease(self, now: float) -> None:
         """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.

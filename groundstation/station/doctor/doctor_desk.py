@@ -62,14 +62,15 @@ class DoctorDesk:
         links: LinkStats,
         operator: OperatorSession,
         ids: tuple[int, int],
+        shown: Callable[[float], Snapshot],
     ) -> None:
+        """`shown` builds the snapshot of a moment: the doctor judges what the screens show."""
         self._fleet, self._services, self._queries = fleet, services, queries
-        self._links, self._ids = links, ids
+        self._links, self._ids, self._shown = links, ids, shown
         self.tester = MotorTester(fleet, operator, ids)
         self.faults = 0
         """How many links of the chain stop the operator."""
         self._reports: dict[int, VehicleReport] = {}
-        self._snapshot = Snapshot()
         self._request = DoctorRequest()
         self._rows: tuple[DoctorRow, ...] = ()
         self._due = -math.inf
@@ -125,9 +126,8 @@ class DoctorDesk:
         calibrations = (report.calibration.messages_to_send() for report in self._reports.values())
         return self.tester.messages_to_send() + outbox + [each for messages in calibrations for each in messages]
 
-    def look(self, snapshot: Snapshot, now: float) -> None:
-        """Examine the chain, if that is due."""
-        self._snapshot = snapshot
+    def examine_if_due(self, now: float) -> None:
+        """Examine the chain, once a second. Called when everything else of a tick is done."""
         if now >= self._due:
             self._due = now + PERIOD
             self._rows = self._examine(now)
@@ -179,7 +179,7 @@ class DoctorDesk:
         contact = self._fleet.selected
         system = 0 if contact is None else contact.state.system
         facts = collect(
-            self._snapshot,
+            self._shown(now),
             contact,
             self._reports.get(system),
             self._links,
@@ -193,7 +193,7 @@ class DoctorDesk:
     def _build(self, request: DoctorRequest, now: float, wall: float) -> DoctorView:
         if request != self._request:
             self._request, self._due = request, -math.inf
-        self.look(self._snapshot, now)
+        self.examine_if_due(now)
         contact = self._fleet.selected
         if contact is None:
             return DoctorView(rows=self._rows)
@@ -212,7 +212,7 @@ class DoctorDesk:
             ),
             checked=checked,
             checked_ago=report.checks.checked_ago(now),
-            motors=self._motor_rows(contact, report),
+            motors=self._motor_rows(contact, report, now),
             motor_limit=min(THROTTLE_MAX, report.params.values.get("MOT_TEST_MAX", 30.0) / 100),
             test=self.tester.view,
             calibrations=report.calibration.rows(contact.state.autopilot, requests),
@@ -238,8 +238,8 @@ class DoctorDesk:
         functions = servo_functions(contact.drive.params.values)
         return motors_of(state.autopilot, state.drive_info, functions, rover_dialect=state.has_rover_dialect)
 
-    def _motor_rows(self, contact: Contact, report: VehicleReport) -> tuple[MotorRow, ...]:
-        vehicle = self._snapshot.vehicle
+    def _motor_rows(self, contact: Contact, report: VehicleReport, now: float) -> tuple[MotorRow, ...]:
+        vehicle = self._shown(now).vehicle
         values = {output.name: output.value for output in vehicle.outputs} if vehicle is not None else {}
         tested = self.tester.tested.get(contact.state.system, frozenset())
         return tuple(

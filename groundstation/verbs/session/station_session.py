@@ -59,7 +59,6 @@ class StationSession:
     @property
     def doctor(self) -> DoctorView:
         """The chain now."""
-        self._station.snapshot(self._now, time.time())
         view = self._station.views.build(self._request, self._now, time.time())
         assert isinstance(view, DoctorView)
         return view

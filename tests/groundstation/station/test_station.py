@@ -5,11 +5,14 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
+from dialects.codec import encode_payload
 from groundstation.intents.driving import HOLD_TIME
 from groundstation.intents.session import LEASE_TIMEOUT, REST_PERIOD, RenewLease
 from groundstation.intents.vehicle import Arm, Disarm
+from groundstation.snapshot import Snapshot
 from groundstation.station.driving.driven import DEMAND_MEMORY
 from groundstation.station.station import REST_AFTER, TICK_PERIOD
+from tests.fakes.rover import FakeArduPilot
 from tests.groundstation.cockpits import Cockpit, armed_cockpit
 
 
@@ -36,6 +39,24 @@ def test_a_ground_station_is_no_vehicle() -> None:
     cockpit.vehicle.tick = lambda now: cockpit.vehicle.send(m.Heartbeat(6, 8, 0, 0, 4, 3))  # type: ignore[method-assign]
     cockpit.run(2.0)
     assert cockpit.station.fleet.system_ids == ()
+
+
+def test_a_snapshot_changes_nothing() -> None:
+    seen: list[Snapshot] = []
+    sent: list[list[tuple[float, bytes]]] = []
+    for looked in (False, True):
+        cockpit = Cockpit(FakeArduPilot())
+        cockpit.run(2.0)
+        cockpit.vehicle.send(m.StatusText(4, b"PreArm: Compass not calibrated"))
+        for _ in range(30):
+            cockpit.run(0.1)
+            for _ in range(3 if looked else 0):
+                assert cockpit.snapshot == cockpit.snapshot
+        seen.append(cockpit.snapshot)
+        sent.append([(at, encode_payload(message)) for at, message in cockpit.world.near.sent])
+    assert seen[0] == seen[1]
+    assert sent[0] == sent[1]
+    assert seen[0].faults, "the doctor has found what is wrong without it"
 
 
 def test_round_trip_and_loss_are_shown() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from msgspec.structs import replace
+
 from groundstation.intents.union import AnyIntent
 from tests.groundstation.ui.examples import Recorder
 from tests.test_stops import Drive
@@ -13,6 +15,7 @@ class LiveStation:
     def __init__(self, drive: Drive) -> None:
         self.drive = drive
         self.screen = Recorder(self.handle)
+        self._offered = 0
 
     def handle(self, *intents: AnyIntent) -> None:
         """Let the station handle them at once."""
@@ -23,4 +26,5 @@ class LiveStation:
         self.drive.run(seconds)
         now = self.drive.world.now
         self.drive.station.views.send_due(self.screen.offer_view, now, 0.0)
-        self.screen.offer(self.drive.station.snapshot(now, 0.0))
+        self._offered += 1
+        self.screen.offer(replace(self.drive.station.snapshot(now, 0.0), number=self._offered))

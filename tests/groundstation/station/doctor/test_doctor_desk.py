@@ -37,7 +37,6 @@ class Clinic(Cockpit):
     @property
     def doctor(self) -> DoctorView:
         """The view now."""
-        self.station.snapshot(self.now, self.now)
         return _view(self.station.views.build(REQUEST, self.now, self.now))
 
     def row(self, name: str) -> DoctorRow:
@@ -56,8 +55,7 @@ def _view(view: object) -> DoctorView:
 
 
 def examined(drive: Drive) -> DoctorView:
-    """The view of the real rover now; the program takes a snapshot ten times a second."""
-    drive.station.snapshot(drive.world.now, 0)
+    """The view of the real rover now."""
     return _view(drive.station.views.build(REQUEST, drive.world.now, 0))
 
 
