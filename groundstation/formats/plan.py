@@ -11,12 +11,17 @@ from typing import Any
 import msgspec
 from msgspec.structs import replace
 
-from dialects.enums import Autopilot, Command, MissionType
-from link.services.mission.items import DEGREES_SCALE, Items, MissionItem, to_int32
+from dialects.command_places import PLACELESS
+from dialects.enums import Autopilot, Command, FenceItem, MissionType
+from link.services.mission.items import DEGREES_SCALE, FRAME_MISSION, Items, MissionItem, to_int32
 from link.services.param.float32 import shortest_float32
 
 GLOBAL = 0
 """MAV_FRAME_GLOBAL."""
+
+
+_KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
+_FENCE_COMMANDS = frozenset(FenceItem) - {FenceItem.RALLY_POINT}
 
 
 class PlannedHome(msgspec.Struct, frozen=True):
@@ -43,6 +48,18 @@ class Plan(msgspec.Struct, frozen=True):
         """Return one of the three."""
         return {MissionType.MISSION: self.mission, MissionType.FENCE: self.fence, MissionType.RALLY: self.rally}[kind]
 
+    @property
+    def kinds(self) -> tuple[MissionType, ...]:
+        """Those of the three that have items."""
+        return tuple(kind for kind in _KINDS if self.of(kind))
+
+
+def kind_of(command: int) -> MissionType:
+    """Return what an item belongs to by its command, whatever list it stands in."""
+    if command in _FENCE_COMMANDS:
+        return MissionType.FENCE
+    return MissionType.RALLY if command == FenceItem.RALLY_POINT else MissionType.MISSION
+
 
 def keeps_home(autopilot: int) -> bool:
     """Return whether item 0 of a mission on this autopilot is home."""
@@ -50,10 +67,16 @@ def keeps_home(autopilot: int) -> bool:
 
 
 def for_vehicle(plan: Plan, kind: MissionType, autopilot: int) -> Items:
-    """Return the items to upload."""
-    if kind is not MissionType.MISSION or not keeps_home(autopilot) or not plan.mission:
+    """Return the items to upload.
+
+    A command without a place goes in MAV_FRAME_MISSION: PX4 refuses it in another frame, which ArduPilot's files have.
+    """
+    if kind is not MissionType.MISSION:
         return plan.of(kind)
-    return (home_item(plan.home), *move_jumps(plan.mission, 1))
+    items = tuple(replace(item, frame=FRAME_MISSION) if item.command in PLACELESS else item for item in plan.mission)
+    if not keeps_home(autopilot) or not items:
+        return items
+    return (home_item(plan.home), *move_jumps(items, 1))
 
 
 def from_vehicle(items: Items, kind: MissionType, autopilot: int) -> Plan:

@@ -9,18 +9,17 @@ import json
 import math
 from typing import Any
 
-from dialects.enums import Command, FenceItem
+from dialects.enums import Command, FenceItem, MissionType
 from groundstation.formats.errors import shown
 from groundstation.formats.json_reader import JsonReader, load_object
-from groundstation.formats.plan import Plan, PlannedHome
+from groundstation.formats.plan import Plan, PlannedHome, kind_of
 from link.services.mission.items import (
     DEGREES_SCALE,
-    FRAME_MISSION,
     GLOBAL_FRAMES,
-    LOCAL_SCALE,
     UNSET_COORDINATE,
     Items,
     MissionItem,
+    coordinate_scale,
     to_int32,
 )
 from link.services.param.float32 import shortest_float32
@@ -41,7 +40,9 @@ def parse_plan(text: str, source: str) -> Plan:
     root = JsonReader(load_object(text, source, "plan"), source)
     if root.get("fileType", str) != "Plan":
         root.fail(f'"fileType" is {shown(str(root.value["fileType"]))}, not "Plan"')
+    _check_version(root, 1)
     mission = root.at("mission")
+    _check_version(mission, 2)
     items = mission.items("items", MAX_ITEMS)
     home = mission.numbers("plannedHomePosition", 3) if "plannedHomePosition" in mission.value else None
     settings = {name: value for name, value in mission.value.items() if name in _SETTINGS}
@@ -57,7 +58,7 @@ def parse_plan(text: str, source: str) -> Plan:
 def _mission_items(item: JsonReader) -> list[tuple[int | None, MissionItem]]:
     """Return a simple item with its doJumpId, or those that a survey has written out."""
     kind = item.get("type", str)
-    if kind == "SimpleItem":
+    if kind in ("SimpleItem", "missionItem"):  # the second before 3.3
         return [_simple_item(item)]
     style = item.value.get("TransectStyleComplexItem")
     if kind == "ComplexItem" and isinstance(style, dict) and "Items" in style:
@@ -65,22 +66,47 @@ def _mission_items(item: JsonReader) -> list[tuple[int | None, MissionItem]]:
     return item.fail(f"{shown(str(item.value.get('complexItemType', kind)))} has no items that can be uploaded")
 
 
+def _check_version(part: JsonReader, newest: int) -> None:
+    """Refuse a part of a version that is newer than what is known here."""
+    if "version" in part.value and part.whole("version", MAX_ITEMS) > newest:
+        part.fail(f'"version" is {shown(str(part.value["version"]))}, and {newest} is the newest that is known here')
+
+
 def _simple_item(item: JsonReader) -> tuple[int | None, MissionItem]:
     frame, command = item.whole("frame", 255), item.whole("command", 65535)
-    one, two, three, four, x, y, z = item.numbers("params", 7, empty=math.nan)
+    if (kind := kind_of(command)) is not MissionType.MISSION:
+        item.fail(f"command {command} belongs to {_PLACES[kind]}, not to a mission")
+    one, two, three, four, x, y, z = _params(item)
     return (
         item.whole("doJumpId", 65535) if "doJumpId" in item.value else None,
-        MissionItem(command, frame, (one, two, three, four), *_place(item, frame, x, y), _zero(z),
+        MissionItem(command, frame, (one, two, three, four), *_place(item, command, frame, x, y), _zero(z),
                     item.value.get("autoContinue", True) is True),
     )  # fmt: skip
 
 
-def _place(item: JsonReader, frame: int, x: float, y: float) -> tuple[int, int]:
+_PLACES = {MissionType.FENCE: "geoFence", MissionType.RALLY: "rallyPoints"}
+
+
+def _params(item: JsonReader) -> list[float]:
+    """Return the seven parameters.
+
+    QGroundControl before 3.3 wrote the last three as `coordinate`, and at first the others as param1 to param4
+    (MissionItem.cc, _convertJsonV1ToV2 and _convertJsonV2ToV3).
+    """
+    if "coordinate" not in item.value:
+        return item.numbers("params", 7, empty=math.nan)
+    if "params" in item.value:
+        params = item.numbers("params", 4, empty=math.nan)
+    else:
+        params = [item.number(f"param{number}") for number in range(1, 5)]
+    return [*params, *item.numbers("coordinate", 3, empty=math.nan)]
+
+
+def _place(item: JsonReader, command: int, frame: int, x: float, y: float) -> tuple[int, int]:
     """Return `x` and `y` of MISSION_ITEM_INT."""
-    if frame == FRAME_MISSION:
-        return to_int32(_zero(x), 1), to_int32(_zero(y), 1)
-    if frame not in GLOBAL_FRAMES:
-        return to_int32(_zero(x), LOCAL_SCALE), to_int32(_zero(y), LOCAL_SCALE)
+    scale = coordinate_scale(command, frame)
+    if scale != DEGREES_SCALE:
+        return to_int32(_zero(x), scale), to_int32(_zero(y), scale)
     if not math.isnan(x) and not math.isnan(y):
         item.check_place(x, y)
     return to_int32(x, DEGREES_SCALE), to_int32(y, DEGREES_SCALE)
@@ -102,13 +128,13 @@ def _jumps_by_index(items: list[tuple[int | None, MissionItem]]) -> Items:
 
 
 def _fence(fence: JsonReader) -> Items:
+    _check_version(fence, 2)
     found: list[MissionItem] = []
+    if fence.value.get("polygon"):  # version 1: one polygon to stay in
+        found += _corners(fence, FenceItem.POLYGON_INCLUSION)
     for polygon in fence.items("polygons", MAX_ITEMS):
-        corners = polygon.items_of_numbers("polygon", 2)
-        if len(corners) < 3:
-            polygon.fail("a polygon needs at least three corners")
-        kind = FenceItem.POLYGON_INCLUSION if polygon.get("inclusion", bool) else FenceItem.POLYGON_EXCLUSION
-        found += [_point(polygon, kind, corner, float(len(corners))) for corner in corners]
+        inside = polygon.get("inclusion", bool)
+        found += _corners(polygon, FenceItem.POLYGON_INCLUSION if inside else FenceItem.POLYGON_EXCLUSION)
     for circle in fence.items("circles", MAX_ITEMS):
         kind = FenceItem.CIRCLE_INCLUSION if circle.get("inclusion", bool) else FenceItem.CIRCLE_EXCLUSION
         shape = circle.at("circle")
@@ -119,7 +145,15 @@ def _fence(fence: JsonReader) -> Items:
     return tuple(found)
 
 
+def _corners(shape: JsonReader, kind: FenceItem) -> list[MissionItem]:
+    corners = shape.items_of_numbers("polygon", 2)
+    if len(corners) < 3:
+        shape.fail("a polygon needs at least three corners")
+    return [_point(shape, kind, corner, float(len(corners))) for corner in corners]
+
+
 def _rally(rally: JsonReader) -> Items:
+    _check_version(rally, 2)
     points = rally.items_of_numbers("points", 3)
     return tuple(_point(rally, FenceItem.RALLY_POINT, point[:2], 0.0, point[2]) for point in points)
 
@@ -171,8 +205,7 @@ def _item_json(number: int, item: MissionItem) -> dict[str, Any]:
     params = [_float32(value) for value in item.params]
     if item.command == Command.DO_JUMP and math.isfinite(item.params[0]):
         params[0] = int(item.params[0]) + 1
-    scale = {True: DEGREES_SCALE, False: LOCAL_SCALE}[item.frame in GLOBAL_FRAMES]
-    scale = 1 if item.frame == FRAME_MISSION else scale
+    scale = coordinate_scale(item.command, item.frame)
     place = [None if each == UNSET_COORDINATE else _number(each / scale) for each in (item.x, item.y)]
     fields: dict[str, Any] = {
         "autoContinue": item.autocontinue,

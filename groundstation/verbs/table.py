@@ -89,7 +89,7 @@ def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
     name = kind.name.lower()
     return {
         "show": VerbAction(f"print the {name}", made(plan.show, kind), watches=True, many=True),
-        "get": VerbAction(f"download the {name} into a file: .plan, or .waypoints for a mission", made(plan.get, kind),
+        "get": VerbAction(f"download the {name} into a file: .plan or .waypoints", made(plan.get, kind),
                           (_FILE, _YES), watches=True),
         "put": VerbAction(f"upload the {name} of a file", made(plan.put, kind), (_FILE,), aliases=("set",),
                           takes_part=True, many=True),

@@ -78,12 +78,12 @@ class FileKeys:
 
     async def _write(self, path: Path, replace: bool) -> None:
         try:
-            await save_plan(path, self._model.document, replace=replace)
+            lost = await save_plan(path, self._model.document, replace=replace)
         except MapFileError as error:
             self._screen.say(str(error))
             return
         self._model.file = path.name
-        self._screen.say(f"saved {path}")
+        self._screen.say(f"saved {path}" + (f"; {lost}" if lost else ""))
 
     def _path(self, name: str) -> Path:
         return self._folder / Path(name.strip()).expanduser()

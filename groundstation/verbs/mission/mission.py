@@ -6,8 +6,10 @@ import argparse
 from collections.abc import Awaitable, Callable, Iterable
 from itertools import zip_longest
 
+from dialects.command_places import PLACELESS
 from dialects.enums import Command, MissionType
 from groundstation.formats.plan import for_vehicle, keeps_home
+from groundstation.plan_key import Key, item_key
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
@@ -21,8 +23,6 @@ Run = Callable[[VerbSession, argparse.Namespace, Output], Awaitable[int]]
 
 LAST_ITEM = 65_534
 """Largest number of an item: the sequence number has 16 bits, and 65535 means that none is current."""
-_SAME_FRAMES = {5: 0, 6: 3, 11: 10}
-"""MAV_FRAME_..._INT -> the frame of the same meaning that vehicles answer with."""
 
 
 def item_number(text: str) -> int:
@@ -84,9 +84,11 @@ def check(kind: MissionType) -> Run:
         there = await download(session, kind)
         first = 1 if kind is MissionType.MISSION and keeps_home(session.vehicle.autopilot) else 0
         differing = _differing(wanted[first:], there[first:], first)
-        for number, here, vehicle in differing:
+        for number, here, vehicle, fields in differing:
             output.line(f"{number:>4}  here     {here}\n{number:>4}  vehicle  {vehicle}")
-            output.record(seq=number, here=here, vehicle=vehicle)
+            if fields:
+                output.line(f"{number:>4}  differs  {', '.join(fields)}")
+            output.record(seq=number, here=here, vehicle=vehicle, differs=fields)
         name = session.vehicle.name
         if differing:
             differ = "differs" if len(differing) == 1 else "differ"
@@ -98,22 +100,38 @@ def check(kind: MissionType) -> Run:
     return run
 
 
-def _differing(here: Iterable[MissionItem], there: Iterable[MissionItem], first: int) -> list[tuple[int, str, str]]:
-    """Return the items that are not equal: number, the one of the file and the one of the vehicle."""
+def _differing(
+    here: Iterable[MissionItem], there: Iterable[MissionItem], first: int
+) -> list[tuple[int, str, str, list[str]]]:
+    """Return the items that are not equal: number, that of the file, that of the vehicle, what differs."""
     pairs = enumerate(zip_longest(here, there), first)
-    return [(number, _text(one), _text(two)) for number, (one, two) in pairs if _content(one) != _content(two)]
+    return [
+        (number, _text(one), _text(two), _compare(one, two)) for number, (one, two) in pairs if _key(one) != _key(two)
+    ]
 
 
 def _text(item: MissionItem | None) -> str:
     return "--" if item is None else describe_item(item)
 
 
-def _content(item: MissionItem | None) -> tuple[object, ...] | None:
-    """Return what a vehicle keeps of an item; numbers as float32, and texts, because NaN equals nothing."""
-    if item is None:
-        return None
-    numbers = (str(shortest_float32(each)) for each in (*item.params, item.z))
-    return item.command, _SAME_FRAMES.get(item.frame, item.frame), item.x, item.y, *numbers
+def _key(item: MissionItem | None) -> Key | None:
+    return None if item is None else item_key(item, located=item.command not in PLACELESS)
+
+
+def _compare(here: MissionItem | None, there: MissionItem | None) -> list[str]:
+    """Return the fields that differ with both values, e.g. "param3 0 here, 2 there"; [] where one is missing."""
+    one, two = _key(here), _key(there)
+    if one is None or two is None:
+        return []
+    return [
+        f"{name} {_number(value)} here, {_number(two[name])} there"
+        for name, value in one.items()
+        if name in two and two[name] != value
+    ]
+
+
+def _number(value: float | None) -> str:
+    return "not set" if value is None else f"{shortest_float32(value):.10g}" if isinstance(value, float) else str(value)
 
 
 def enable_fence(on: bool) -> Run:

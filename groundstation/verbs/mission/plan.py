@@ -11,7 +11,7 @@ from typing import Any
 from dialects.enums import MissionType, command_name
 from groundstation.formats.plan import Plan, for_vehicle, from_vehicle
 from groundstation.formats.plan_file import format_plan, parse_plan
-from groundstation.formats.waypoint_file import format_waypoints, parse_waypoints
+from groundstation.formats.waypoint_file import format_waypoints, lost_values, parse_waypoints
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.local_file import check_new_file, read_text, write_text
@@ -49,14 +49,15 @@ def get(kind: MissionType) -> Run:
 
     async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
         check_new_file(options.file, overwrite=options.yes)
-        if _is_waypoints(options.file) and kind is not MissionType.MISSION:
-            raise VerbError(ExitCode.USAGE, f"{options.file}: only a .plan can hold a {plan_name(kind)}")
         items = await download(session, kind)
         plan = from_vehicle(items, kind, session.vehicle.autopilot)
         write_text(options.file, (format_waypoints if _is_waypoints(options.file) else format_plan)(plan))
         count = len(plan.of(kind))
         output.note(f"{count_text(count)} of {session.vehicle.name} saved to {options.file}")
-        output.result(True, session.vehicle.system, file=options.file, items=count)
+        lost = lost_values(plan) if _is_waypoints(options.file) else ""
+        if lost:
+            output.note(f"{options.file}: {lost}")
+        output.result(True, session.vehicle.system, file=options.file, items=count, lost=lost or None)
         return ExitCode.DONE
 
     return run
@@ -67,6 +68,8 @@ def put(kind: MissionType) -> Run:
 
     async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
         plan = read_plan(options.file, kind)
+        if others := _other_kinds(plan, kind):
+            output.note(f"{options.file} has {others}, too")
         await session.need_only_vehicle(options.vehicle)
         items = for_vehicle(plan, kind, session.vehicle.autopilot)
         return await _change(
@@ -82,8 +85,20 @@ def read_plan(path: str, kind: MissionType) -> Plan:
     parse = parse_waypoints if _is_waypoints(path) else parse_plan
     plan = parse(read_text(path), path)
     if not plan.of(kind):
-        raise VerbError(ExitCode.DIFFERS, f"{path}: no {plan_name(kind)} in it; `clear` removes the vehicle's")
+        others = _other_kinds(plan, kind)
+        hint = f"but {others}" if others else "`clear` removes the vehicle's"
+        raise VerbError(ExitCode.DIFFERS, f"{path}: no {plan_name(kind)} in it; {hint}")
     return plan
+
+
+def _other_kinds(plan: Plan, kind: MissionType) -> str:
+    """Return what else a file holds, and the verb for it, e.g. "a fence of 4 items (`fence put`)"."""
+    texts = [f"{_A[each]} of {count_text(len(plan.of(each)))} (`{_VERBS[each]} put`)" for each in plan.kinds]
+    return " and ".join(text for each, text in zip(plan.kinds, texts, strict=True) if each is not kind)
+
+
+_A = {MissionType.MISSION: "a mission", MissionType.FENCE: "a fence", MissionType.RALLY: "rally points"}
+_VERBS = {MissionType.MISSION: "mission", MissionType.FENCE: "fence", MissionType.RALLY: "rally"}
 
 
 def clear(kind: MissionType) -> Run:

@@ -2,7 +2,7 @@
 
     python -m groundstation.verbs.mission.plan_converter read FILE             PlanDocument to stdout
     python -m groundstation.verbs.mission.plan_converter layer FILE            LayerDocument to stdout
-    python -m groundstation.verbs.mission.plan_converter write FILE [replace]  PlanDocument from stdin
+    python -m groundstation.verbs.mission.plan_converter write FILE [replace]  PlanDocument from stdin; what it loses
 
 The screen's process does not load the dialect, and a large or damaged file must not hold up its event loop, which
 renews the lease. Errors are one line on stderr, with exit code 2.
@@ -22,7 +22,7 @@ from groundstation.formats.geojson_layer import parse_layer, thin
 from groundstation.formats.layer import LayerDocument
 from groundstation.formats.plan import Plan, PlannedHome
 from groundstation.formats.plan_file import format_plan, parse_plan
-from groundstation.formats.waypoint_file import format_waypoints, parse_waypoints
+from groundstation.formats.waypoint_file import format_waypoints, lost_values, parse_waypoints
 from groundstation.geo import Place
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.local_file import check_new_file, read_text, write_text
@@ -56,23 +56,32 @@ def read_layer(path: str) -> bytes:
     return msgspec.msgpack.encode(LayerDocument(thin(shapes, MAX_DRAWN), total))
 
 
-def write(path: str, data: bytes, *, replace: bool) -> None:
-    """Write plans to a file, whole or not at all. Raises VerbError."""
+def write(path: str, data: bytes, *, replace: bool) -> str:
+    """Write plans to a file, whole or not at all; return what it cannot hold. Raises VerbError, FileFormatError."""
     document = msgspec.msgpack.decode(data, type=PlanDocument)
     at = document.home
     home = None if at is None else PlannedHome(at.latitude, at.longitude, document.home_altitude)
     mission, fence, rally = map(_from_screen, document.plans)
     plan = Plan(mission, fence, rally, home)
     suffix = _suffix(path)
-    if suffix in WAYPOINT_SUFFIXES and (fence or rally):
-        raise VerbError(ExitCode.USAGE, f"{path}: fence and rally points fit into a .plan only")
     if suffix not in (*WAYPOINT_SUFFIXES, *GEOJSON_SUFFIXES, ".plan"):
         raise VerbError(ExitCode.USAGE, f"{path}: name it .plan, .waypoints or .geojson")
     check_new_file(path, overwrite=replace)
     if suffix in GEOJSON_SUFFIXES:
         write_text(path, format_geojson(plan))
-    else:
-        write_text(path, (format_waypoints if suffix in WAYPOINT_SUFFIXES else format_plan)(plan))
+        return ""
+    if suffix in WAYPOINT_SUFFIXES:
+        write_text(path, _format_waypoints(path, plan))
+        return lost_values(plan)
+    write_text(path, format_plan(plan))
+    return ""
+
+
+def _format_waypoints(path: str, plan: Plan) -> str:
+    try:
+        return format_waypoints(plan)
+    except FileFormatError as error:
+        raise FileFormatError(f"{path}: {error}") from None
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -82,7 +91,7 @@ def main(arguments: Sequence[str]) -> int:
         if action in READERS:
             sys.stdout.buffer.write(READERS[action](path))
         else:
-            write(path, sys.stdin.buffer.read(), replace="replace" in options)
+            sys.stdout.write(write(path, sys.stdin.buffer.read(), replace="replace" in options))
     except (VerbError, FileFormatError) as error:
         sys.stderr.write(f"{error}\n")
         return ExitCode.USAGE

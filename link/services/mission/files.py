@@ -15,7 +15,7 @@ from dialects.enums import MissionResult, MissionType
 from link.services.ftp.files import BytesContent, Content, Entry, NotReadyError, Query
 from link.services.ftp.protocol import FtpError
 from link.services.mission.commit import PlanChange
-from link.services.mission.items import DEGREES_SCALE, GLOBAL_FRAMES, LOCAL_SCALE, Items, MissionItem, to_int32
+from link.services.mission.items import Items, MissionItem, coordinate_scale, to_int32
 from link.services.mission.server import MissionServer
 
 HEADER = "QGC WPL 110"
@@ -52,7 +52,7 @@ def decode_plan(data: bytes, find_fault: FindFault = lambda item, x, y: None) ->
 
 
 def _line(number: int, item: MissionItem) -> str:
-    scale = DEGREES_SCALE if item.frame in GLOBAL_FRAMES else LOCAL_SCALE
+    scale = coordinate_scale(item.command, item.frame)
     place = (f"{item.x / scale:.7f}", f"{item.y / scale:.7f}", repr(item.z))
     head = (number, 0, item.frame, item.command)
     return "\t".join(map(str, (*head, *map(repr, item.params), *place, int(item.autocontinue))))
@@ -69,7 +69,7 @@ def _item(number: int, line: str, find_fault: FindFault) -> MissionItem:
         autocontinue = bool(int(fields[11]))
     except ValueError as error:
         raise PlanFileError(f"line {number}: {error}") from error
-    scale = DEGREES_SCALE if frame in GLOBAL_FRAMES else LOCAL_SCALE
+    scale = coordinate_scale(command, frame)
     place = to_int32(x, scale), to_int32(y, scale)
     item = MissionItem(command, frame, (one, two, three, four), *place, z, autocontinue)
     if fault := find_fault(item, x, y):

@@ -9,6 +9,7 @@ from enum import Enum, IntEnum
 import msgspec
 
 from dialects import messages as m
+from dialects.command_places import PLACELESS
 from dialects.enums import MissionResult, MissionType
 
 DEGREES_SCALE = 1e7
@@ -41,7 +42,7 @@ class MissionItem(msgspec.Struct, frozen=True):
     params: tuple[float, float, float, float]
     """Parameters 1..4; NaN: the vehicle's default."""
     x: int
-    """Latitude in 1e-7 degrees, or north in 1e-4 m, by frame."""
+    """Latitude in 1e-7 degrees, or north in 1e-4 m, by frame; parameter 5 of a command without a place."""
     y: int
     z: float
     """Altitude, m."""
@@ -174,7 +175,7 @@ def item_request(message: m.MissionItem | m.MissionItemInt) -> ItemRequest | Non
 def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
     """Return the item of either message. Floats beyond int32 become UNSET_COORDINATE."""
     if isinstance(message, m.MissionItem):
-        scale = DEGREES_SCALE if message.frame in GLOBAL_FRAMES else LOCAL_SCALE
+        scale = coordinate_scale(message.command, message.frame)
         x, y = to_int32(message.x, scale), to_int32(message.y, scale)
     else:
         x, y = message.x, message.y
@@ -187,6 +188,17 @@ def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
         z=message.z,
         autocontinue=bool(message.autocontinue),
     )
+
+
+def coordinate_scale(command: int, frame: int) -> float:
+    """Return what a degree, a metre or a plain parameter 5 or 6 is multiplied by to give `x` and `y`.
+
+    The command decides first: a parameter that is no place stays as it is in each frame
+    (https://mavlink.io/en/services/mission.html#frames_mission_items).
+    """
+    if frame == FRAME_MISSION or command in PLACELESS:
+        return 1
+    return DEGREES_SCALE if frame in GLOBAL_FRAMES else LOCAL_SCALE
 
 
 def to_int32(value: float, scale: float) -> int:

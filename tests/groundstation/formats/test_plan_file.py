@@ -115,6 +115,40 @@ def test_home_is_item_0_on_ardupilot_only(autopilot: int, first: int, target: fl
     assert (again.home is not None) == bool(first)
 
 
+def test_plans_of_qgroundcontrol_before_3_3_are_read() -> None:
+    plan = document()
+    plan["mission"]["items"] = [
+        {"autoContinue": True, "command": 16, "coordinate": [-31.9052, 115.8053, 0], "doJumpId": 1, "frame": 3,
+         "params": [0, 0, 0, None], "type": "SimpleItem"},
+        {"autoContinue": True, "command": 178, "coordinate": [0, 0, 0], "id": 2, "frame": 2,
+         "param1": 1, "param2": 3, "param3": -1, "param4": 0, "type": "missionItem"},
+    ]  # fmt: skip
+    plan["geoFence"] = {"polygon": [[-31.90, 115.80], [-31.90, 115.81], [-31.91, 115.81]], "version": 1}
+    plan["rallyPoints"] = {"points": [[-31.9, 115.8, 2]], "version": 1}
+    read = parse_plan(as_text(plan), "x")
+    assert (read.mission[0].x, read.mission[0].y) == (-319052000, 1158053000)
+    assert math.isnan(read.mission[0].params[3])
+    assert read.mission[1].params == (1, 3, -1, 0)
+    assert [(item.command, item.params[0]) for item in read.fence] == [(FenceItem.POLYGON_INCLUSION, 3.0)] * 3
+    assert len(read.rally) == 1
+
+
+@pytest.mark.parametrize(("part", "known"), [(None, 1), ("mission", 2), ("geoFence", 2), ("rallyPoints", 2)])
+def test_a_newer_version_is_refused(part: str | None, known: int) -> None:
+    plan = document()
+    (plan if part is None else plan[part])["version"] = known + 1
+    where = "x" if part is None else f"x: {part}"
+    with pytest.raises(FileFormatError, match=f'^{where}: "version" is .*{known} is the newest that is known here'):
+        parse_plan(as_text(plan), "x")
+
+
+def test_a_fence_in_a_mission_is_refused() -> None:
+    plan = document()
+    plan["mission"]["items"][0]["command"] = 5001
+    with pytest.raises(FileFormatError, match="items 1: command 5001 belongs to geoFence, not to a mission"):
+        parse_plan(as_text(plan), "x")
+
+
 def broken(*path: Any, value: Any = None, drop: bool = False) -> str:
     plan = document()
     inside: Any = plan

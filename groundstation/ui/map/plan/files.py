@@ -30,9 +30,10 @@ async def open_layer(path: Path) -> LayerDocument:
     return msgspec.msgpack.decode(await _convert(b"", "layer", str(path)), type=LayerDocument)
 
 
-async def save_plan(path: Path, document: PlanDocument, *, replace: bool = False) -> None:
-    """Write plans to a file, whole or not at all. Raises MapFileError."""
-    await _convert(msgspec.msgpack.encode(document), "write", str(path), *(["replace"] if replace else []))
+async def save_plan(path: Path, document: PlanDocument, *, replace: bool = False) -> str:
+    """Write plans to a file, whole or not at all; return what the format cannot hold. Raises MapFileError."""
+    told = await _convert(msgspec.msgpack.encode(document), "write", str(path), *(["replace"] if replace else []))
+    return told.decode()
 
 
 async def _convert(data: bytes, *arguments: str) -> bytes:

@@ -8,7 +8,8 @@ from typing import Any
 
 import msgspec
 
-from groundstation.ui.map.plan.commands import DO_JUMP, POLYGONS
+from groundstation import plan_key
+from groundstation.ui.map.plan.commands import DO_JUMP, POLYGONS, has_location
 from groundstation.views.plan import PlanItem
 
 Items = tuple[PlanItem, ...]
@@ -47,9 +48,8 @@ class PlanDiff(msgspec.Struct, frozen=True):
 
 
 def item_key(item: PlanItem) -> tuple[Any, ...]:
-    """Return what two equal items have in common: all NaNs are equal."""
-    numbers = (None if math.isnan(value) else value for value in (*item.params, item.z))
-    return (item.command, item.frame, item.x, item.y, item.autocontinue, *numbers)
+    """Return what two items that are the same for a vehicle have in common."""
+    return tuple(plan_key.item_key(item, located=has_location(item.command)).values())
 
 
 def compare(rows: Rows, base: Items) -> PlanDiff:

@@ -75,6 +75,26 @@ def test_check_compares_by_content(capsys: Capture, tmp_path: Path) -> None:
         assert other.code == ExitCode.DIFFERS
         assert [each["seq"] for each in other.records] == [2]
         assert "1=5" in other.records[0]["vehicle"]
+        assert other.records[0]["differs"] == ["param1 0 here, 5 there"]
+
+
+@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+def test_check_finds_equal_what_was_just_put(capsys: Capture, tmp_path: Path, autopilot: int) -> None:
+    file = tmp_path / "a.waypoints"
+    lines = [  # home, a waypoint, a loiter, DO_CHANGE_SPEED with the frame of ArduPilot's tools
+        "0\t1\t0\t16\t0\t0\t0\t0\t-35.1\t149.1\t0\t1", "1\t0\t3\t16\t0.1\t0\t0\t0\t-35.2\t149.1\t0.1\t1",
+        "2\t0\t3\t19\t5\t0\t0\t0\t-35.3\t149.1\t0\t1", "3\t0\t3\t178\t1\t0.3\t-1\t0\t0\t0\t0\t1",
+    ]  # fmt: skip
+    file.write_text("\n".join(["QGC WPL 110", *lines]))
+    with foreign_vehicle(autopilot) as vehicle:
+        assert run(capsys, vehicle, "mission", "put", str(file)).code == 0
+        speed = vehicle.missions.items[0][-1]
+        assert (speed.command, speed.frame) == (178, 2)
+        for item in vehicle.missions.items[0]:  # as ArduPilot answers
+            item.param3 = 1.0 if item.command == 19 else item.param3
+            item.frame, item.autocontinue = (0 if item.command == 178 else item.frame), 1
+        same = run(capsys, vehicle, "mission", "check", str(file))
+        assert (same.code, same.out) == (0, ""), same.err
 
 
 def test_the_fence_is_switched_on_and_off(capsys: Capture) -> None:

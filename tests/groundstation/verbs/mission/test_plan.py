@@ -11,7 +11,7 @@ import pytest
 from groundstation.verbs.common.exit_codes import ExitCode
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
-from tests.groundstation.formats.test_waypoint_file import MISSION_PLANNER
+from tests.groundstation.formats.test_waypoint_file import FENCE, MISSION_PLANNER
 from tests.groundstation.verbs.verb_runs import VerbRun, run_until_answered, run_verb
 
 Capture = pytest.CaptureFixture[str]
@@ -63,6 +63,26 @@ def test_a_mission_of_mission_planner(capsys: Capture, vehicle: ForeignVehicle, 
     assert jump.param1 == (1 if vehicle.autopilot == ARDUPILOT else 0)
 
 
+def test_a_fence_of_mavproxy(capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path) -> None:
+    file, back = tmp_path / "fence.txt", tmp_path / "back.waypoints"
+    file.write_text(FENCE)
+    assert verb(capsys, vehicle, "fence", "put", str(file)).code == 0
+    assert [each.command for each in vehicle.missions.items[1]] == [5001] * 3
+    assert 0 not in vehicle.missions.items or not vehicle.missions.items[0]
+    assert verb(capsys, vehicle, "fence", "get", str(back)).code == 0
+    assert verb(capsys, vehicle, "fence", "check", str(back)).code == 0
+
+
+def test_values_that_waypoints_cannot_hold_are_named(
+    capsys: Capture, vehicle: ForeignVehicle, plan_file: str, tmp_path: Path
+) -> None:
+    assert verb(capsys, vehicle, "mission", "put", plan_file).code == 0
+    saved = verb(capsys, vehicle, "mission", "get", str(tmp_path / "a.waypoints"))
+    assert saved.code == 0
+    assert "values that are not set (NaN), 0 in this file" in saved.err
+    assert "nan" not in (tmp_path / "a.waypoints").read_text()
+
+
 def test_show_and_clear(capsys: Capture, vehicle: ForeignVehicle, plan_file: str) -> None:
     verb(capsys, vehicle, "fence", "put", plan_file)
     shown = verb(capsys, vehicle, "fence", "show")
@@ -112,11 +132,16 @@ def test_files_that_cannot_be_used(capsys: Capture, vehicle: ForeignVehicle, tmp
     empty = document()
     empty["rallyPoints"]["points"] = []
     (tmp_path / "empty.plan").write_text(as_text(empty))
+    (tmp_path / "fence.txt").write_text(FENCE)
     (tmp_path / "bad.waypoints").write_text("QGC WPL 110\n0 1\n")
     for arguments, code, words in (
         (["rally", "put", str(tmp_path / "empty.plan")], ExitCode.DIFFERS, "no rally points in it"),
         (["mission", "put", str(tmp_path / "bad.waypoints")], ExitCode.USAGE, "bad.waypoints:2: has 2 fields, not 12"),
-        (["fence", "get", str(tmp_path / "f.waypoints")], ExitCode.USAGE, "only a .plan can hold a fence"),
+        (
+            ["mission", "put", str(tmp_path / "fence.txt")],
+            ExitCode.DIFFERS,
+            "no mission in it; but a fence of 3 items (`fence put`)",
+        ),
         (["mission", "get", str(tmp_path / "empty.plan")], ExitCode.USAGE, "exists already"),
     ):
         run = verb(capsys, vehicle, *arguments)

@@ -56,7 +56,7 @@ def test_a_file_of_another_tool_is_read() -> None:
 
 
 def test_values_are_those_that_the_wire_can_carry() -> None:
-    text = "QGC WPL 110\n0\t0\t2\t93\t0.1\tnan\t0\t0\t-214748.3648\t0\t0\t1\n"
+    text = "QGC WPL 110\n0\t0\t2\t93\t0.1\tnan\t0\t0\t-2147483648\t0\t0\t1\n"
     [item] = decode_plan(text.encode())
     assert m.MissionItemInt(1, 1, 0, 2, 93, 0, 1, *item.params, item.x, item.y, item.z).param1 == item.params[0]
     again = from_message(through_the_wire(to_message(item, 0, 0, (1, 1))))  # type: ignore[arg-type]
