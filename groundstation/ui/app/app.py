@@ -46,6 +46,7 @@ from groundstation.ui.terminal import drawn_lines, interpreter, tty_ping
 from groundstation.ui.terminal.console_driver import PING, ConsoleDriver, TerminalClosed
 from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
 from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
+from groundstation.ui.terminal.mouse import MouseReport
 from groundstation.ui.terminal.tmux import TmuxSession
 from groundstation.ui.terminal.tty_output import TerminalFile
 from groundstation.views.line import LineView
@@ -387,6 +388,11 @@ class ConsoleApp(App[int]):
             shown.release_key(event.key)
         if shown is self.drive:
             self.drive.light_keycaps(self._pressed.names)
+
+    def on_mouse_report(self, report: MouseReport) -> None:
+        """Give the mouse to the screen on top of Drive. Drive and what lies over a screen have no use for it."""
+        if isinstance(self.screen, ConsoleScreen) and self.screen is not self.drive and not self._navigator.closing:
+            self.screen.take_mouse(report)
 
     def _light(self, key: str) -> None:
         self._pressed.press(key, self._clock())

@@ -6,6 +6,7 @@ from textual import events
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 from textual.content import Content
+from textual.widget import Widget
 from textual.widgets import Static
 
 from groundstation.actions import ACTIONS
@@ -14,7 +15,7 @@ from groundstation.ui.app.help_text import HelpSection, build_sections, lay_out
 from groundstation.ui.app.navigation import load_screen
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.own_dismissal import OwnDismissal
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.wrap import plain
 from groundstation.ui.widgets.line_field import FieldUse
 
@@ -56,6 +57,10 @@ class HelpScreen(OwnDismissal[None], ConsoleScreen):
         else:
             self._go_back()
         return True
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str]:
+        """Scroll the page wherever the wheel turns."""
+        return LIST_ARROWS
 
     def filter_by(self, text: str) -> bool:
         """Show the keys that contain each word of a text."""

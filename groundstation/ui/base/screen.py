@@ -11,10 +11,11 @@ import msgspec
 from msgspec.structs import replace
 from textual import events
 from textual.app import ComposeResult
+from textual.errors import NoWidget
 from textual.screen import Screen
 from textual.widget import Widget
 
-from groundstation.actions import OperatorAction
+from groundstation.actions import ACTIONS, OperatorAction
 from groundstation.input.keymap import Keymap
 from groundstation.intents.union import AnyIntent
 from groundstation.screens import SCREENS, ScreenRow, find_screen
@@ -24,15 +25,24 @@ from groundstation.ui.display.display_state import DisplayState, ScreenInfo, Scr
 from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.display.wrap import plain
 from groundstation.ui.terminal.key_parser import KeyRepeat
+from groundstation.ui.terminal.mouse import MouseReport
 from groundstation.ui.terminal.painting import LineCompositor, painted_at_once
+from groundstation.ui.widgets.footer import KeyFooter
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.ui.widgets.line_field import LineField
+from groundstation.ui.widgets.tabs import TabBar
 from groundstation.views.base import View, ViewRequest
 
 Kept = TypeVar("Kept")
 
 NOTE_TIME = 10.0
 """s for which a note is shown in the hint line."""
+
+WHEEL_ROWS = 3
+"""Steps of one notch of the wheel."""
+
+LIST_ARROWS = ("up", "down")
+"""What the wheel presses in a list."""
 
 
 class ScreenContext(msgspec.Struct, frozen=True):
@@ -135,6 +145,10 @@ class ConsoleScreen(Screen[None]):
         """Show only what a text describes, "" all; return False if this screen has no filter."""
         return False
 
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Choose the panel of a widget; return the keys that the wheel presses there, up and down, or None."""
+        return None
+
     def leave(self) -> None:
         """Stop what must not go on while this screen is not on top."""
 
@@ -197,6 +211,33 @@ class ConsoleScreen(Screen[None]):
         if self.is_current:
             self.show_state(self._state)
 
+    def take_mouse(self, report: MouseReport) -> None:
+        """Point at what is shown: the wheel moves, a click chooses. It types no text and answers no question."""
+        if self.takes_text or self.question is not None:
+            return
+        try:
+            widget, _ = self.get_widget_at(report.column, report.row)
+        except NoWidget:
+            return
+        inside = widget.content_region
+        if isinstance(widget, TabBar) and not report.wheel:
+            tab = widget.tab_at(report.column - inside.x)
+            if tab is not None:
+                self.context.perform(ACTIONS[tab.action])
+        elif isinstance(widget, KeyFooter) and not report.wheel:
+            self._press(widget.key_at(report.column - inside.x))
+        elif (keys := self.choose_panel_of(widget)) is not None:
+            rows = WHEEL_ROWS * report.wheel or _rows_to(widget, report.row - inside.y, keys)
+            for _ in range(abs(rows)):
+                self._press(keys[rows > 0])
+        if self.is_current:
+            self.show_state(self._state)
+
+    def _press(self, key: str) -> None:
+        """Perform a key of the screen as if it was typed; the station hears nothing of it."""
+        if key and not self.perform_key(events.Key(key, None)) and key == "escape":
+            self.context.perform(ACTIONS["app.drive"])
+
     def on_paste(self, event: events.Paste) -> None:
         """Give pasted text to the field; nothing else takes any."""
         if self.field.is_attached and self.field.is_open:
@@ -252,3 +293,9 @@ class ConsoleScreen(Screen[None]):
         """Show the state in one of them."""
         if row.id in self._built:
             self._built[row.id].show(row.value(self._state))
+
+
+def _rows_to(widget: Widget, line: int, keys: tuple[str, str]) -> int:
+    """Return by how many rows a click moves the cursor of a list."""
+    rows = widget.rows_to(line) if isinstance(widget, Instrument) and keys == LIST_ARROWS else None
+    return rows or 0

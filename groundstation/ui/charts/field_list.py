@@ -74,6 +74,16 @@ class FieldList(Instrument[tuple[ListRow, ...]]):
         rows = self.value[self._first(height - 1) :][: max(0, height - 1)]
         return [strip((titles, style(DIM))), *(self._line(row, width) for row in rows)]
 
+    def rows_to(self, line: int) -> int | None:
+        """Return how many lines of charts lie between the chosen one and that on a line of the drawing."""
+        at = self._first(self.size.height - 1) + line - 1
+        lines = [row for row in self.value if isinstance(row, SeriesRow)]
+        under = self.value[at] if 0 <= at < len(self.value) else None
+        chosen = next((number for number, row in enumerate(lines) if row.chosen), None)
+        if chosen is None or not isinstance(under, SeriesRow):
+            return None
+        return sum(isinstance(row, SeriesRow) for row in self.value[:at]) - chosen
+
     def _first(self, room: int) -> int:
         typed = next((at for at, row in enumerate(self.value) if isinstance(row, CandidateRow)), None)
         chosen = next((at for at, row in enumerate(self.value) if isinstance(row, SeriesRow) and row.chosen), 0)

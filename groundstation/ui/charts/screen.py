@@ -10,7 +10,7 @@ from textual.widget import Widget
 
 from groundstation.intents.charts import PinSeries
 from groundstation.ui.base.list_keys import ALL_ROWS
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.charts.chart_set import MAX_CHARTS
 from groundstation.ui.charts.empty import EmptyCharts, EmptyValue
 from groundstation.ui.charts.field_list import FieldList
@@ -116,6 +116,12 @@ class ChartsScreen(ConsoleScreen):
         return " · ".join(part for part in (behind, window, more, "ESC goes back to Drive") if part)
 
     # ---- keys ----
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Move in the list of fields; over a chart the wheel zooms."""
+        if widget is self._list:
+            return LIST_ARROWS
+        return ("plus", "minus") if widget in (*self._panes, self._timeline) else None
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""

@@ -14,7 +14,7 @@ from groundstation.intents.session import StartSimulator
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.sitl.simulators import SIMULATORS
 from groundstation.ui.base.list_keys import rows_to_move
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.connect.model import ConnectModel, Panel
 from groundstation.ui.connect.tables import heard_value, logs_value, ports_value, recent_value, simulators_value
 from groundstation.ui.connect.welcome import Welcome, WelcomeValue
@@ -108,6 +108,14 @@ class ConnectScreen(ConsoleScreen):
         return f"{first} · nothing is sent before you choose"
 
     # ---- keys ----
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Give the arrows to the list of a widget."""
+        panel = next((panel for panel, each in zip(Panel, self._tables, strict=True) if each is widget), None)
+        if panel is not None:
+            self._model.chosen = panel
+            self._show()
+        return None if panel is None else LIST_ARROWS
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""

@@ -23,6 +23,8 @@ class ScreenKey(msgspec.Struct, frozen=True):
     label: str
     """One or two words for the footer."""
     help: str
+    commands: bool = False
+    """It reaches a vehicle: the mouse does not press it in the footer."""
 
 
 class ScreenInfo(msgspec.Struct, frozen=True):

@@ -14,7 +14,7 @@ from textual.worker import Worker
 from groundstation.intents.services import CancelRequest, ServiceIntent
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.local_files import short_path
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.wrap import clean, plain
 from groundstation.ui.files.export import ChosenLog, FileExport
@@ -48,10 +48,13 @@ class FilesScreen(ConsoleScreen):
         ScreenKey("tab", "Panel", "Next panel: logs there, files there, files here, tasks"),
         ScreenKey("enter", "Open", "Open or close the folder under the cursor"),
         ScreenKey("x", "Stop task", "Stop the task under the cursor, else the newest; what has arrived is kept"),
-        ScreenKey("U", "Upload", "Upload a file of this machine into the folder under the cursor"),
+        ScreenKey("U", "Upload", "Upload a file of this machine into the folder under the cursor", commands=True),
         ScreenKey("C", "Compare", "Compare the file under the cursor there with that here, by their checksums"),
         ScreenKey(
-            "X", "Delete", "Delete the file under the cursor, there or here; all logs of the vehicle; after a word"
+            "X",
+            "Delete",
+            "Delete the file under the cursor, there or here; all logs of the vehicle; after a word",
+            commands=True,
         ),
         ScreenKey(
             "E", "Export", "Export the log under the cursor here, or a part of it; the ending chooses the format"
@@ -112,6 +115,14 @@ class FilesScreen(ConsoleScreen):
         return "D downloads · nothing is deleted before a word is typed · ESC goes back to Drive"
 
     # ---- keys ----
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Give the arrows to the list of a widget."""
+        panel = next((panel for panel, each in zip(Panel, self._tables, strict=True) if each is widget), None)
+        if panel is not None:
+            self._model.chosen = panel
+            self._show()
+        return None if panel is None else LIST_ARROWS
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""

@@ -14,7 +14,7 @@ from groundstation.intents.links import CloseLink
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.panels import PanelHeights, share_rows
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import handover_text
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.wrap import plain
@@ -68,10 +68,12 @@ class LinksScreen(ConsoleScreen):
 
     CSS_PATH = "screen.tcss"
     KEYS = (
-        ScreenKey("enter", "Choose", "Choose the vehicle under the cursor; the one before gets neutral first"),
+        ScreenKey(
+            "enter", "Choose", "Choose the vehicle under the cursor; the one before gets neutral first", commands=True
+        ),
         ScreenKey("tab", "Panel", "Next panel: vehicles, links, control"),
         ScreenKey("a", "Add", "Open a link: goes to the Connect screen"),
-        ScreenKey("x", "Close", "Close the link under the cursor, after a question"),
+        ScreenKey("x", "Close", "Close the link under the cursor, after a question", commands=True),
     )
 
     def __init__(self, context: ScreenContext) -> None:
@@ -137,7 +139,7 @@ class LinksScreen(ConsoleScreen):
         """Return the keys of this screen with those of COMMANDS, as the key map has them."""
         info = super().describe()
         keys = [(self.context.keymap.get_keys(each), ACTIONS[each]) for each in COMMANDS[:3]]
-        extra = [ScreenKey(names[0], action.label, action.help) for names, action in keys if names]
+        extra = [ScreenKey(names[0], action.label, action.help, commands=True) for names, action in keys if names]
         return ScreenInfo(info.id, (*info.keys, *extra), info.hint, info.text)
 
     @property
@@ -157,6 +159,15 @@ class LinksScreen(ConsoleScreen):
         return self.HINT
 
     # ---- keys ----
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Give the arrows to the panel of a widget."""
+        if widget not in self._panels:
+            return None
+        self._chosen = next(at for at, each in enumerate(self._panels) if each is widget)
+        self._show_links(self._links.value.view)
+        self._lay_out()
+        return LIST_ARROWS
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""

@@ -43,6 +43,13 @@ class LogRows(Instrument[LogWindow]):
         """Draw the rows; further rows of a line are indented."""
         return [strip(*_row(row, self.value, width)).crop(0, width) for row in self.value.rows[:height]]
 
+    def rows_to(self, line: int) -> int | None:
+        """Return how many messages lie between the marked one and that on a line of the drawing."""
+        numbers = list(dict.fromkeys(row.line.number for row in self.value.rows))
+        if line >= len(self.value.rows) or self.value.marked not in numbers:
+            return None
+        return numbers.index(self.value.rows[line].line.number) - numbers.index(self.value.marked)
+
 
 def _row(row: LogRow, window: LogWindow, width: int) -> list[Part]:
     marked = row.line.number == window.marked

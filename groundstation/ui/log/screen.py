@@ -16,7 +16,7 @@ from groundstation.intents.services import CancelRequest
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.local_files import short_path
 from groundstation.ui.base.save_file import save_text
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.task_list import TaskList
@@ -169,6 +169,14 @@ class LogScreen(ConsoleScreen):
         else:
             return False
         return True
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Give the arrows to the alerts or the messages."""
+        if widget not in (self._alerts, self._rows):
+            return None
+        self._scrolls_alerts = widget is self._alerts
+        self._mark_chosen()
+        return LIST_ARROWS
 
     def filter_by(self, text: str) -> bool:
         """Show the rows that the text describes."""

@@ -27,10 +27,12 @@ MAP_KEYS = (
     ScreenKey("a", "Add", "Add an item at the cursor, behind the selected one"),
     ScreenKey("enter", "Edit", "Edit the item under the cursor; in its panel the selected field"),
     ScreenKey("x", "Del", "Remove the selected item"),
-    ScreenKey("U", "Upload", "Upload the edited plan; while armed it asks"),
-    ScreenKey("G", "Go", "Drive to the cursor now; asks"),
+    ScreenKey("U", "Upload", "Upload the edited plan; while armed it asks", commands=True),
+    ScreenKey("G", "Go", "Drive to the cursor now; asks", commands=True),
     ScreenKey("tab", "Table", "Next panel: map, table, item"),
-    ScreenKey("P", "Start/pause", "Start the mission, go on with it, or pause it; what moves the vehicle asks"),
+    ScreenKey(
+        "P", "Start/pause", "Start the mission, go on with it, or pause it; what moves the vehicle asks", commands=True
+    ),
     ScreenKey("e", "Layer", "Edit the mission, the fence or the rally points"),
     ScreenKey("u", "Undo", "Undo the last edit; Ctrl-R does it again"),
     ScreenKey("f", "Fit", "Show everything"),
@@ -44,11 +46,13 @@ MAP_KEYS = (
     ScreenKey("less_than_sign", "Up", "Move the selected item up in the plan; > moves it down"),
     ScreenKey("b", "Measure", "Measure from the cursor; again ends it"),
     ScreenKey("p", "Polygon", "Begin another polygon of the fence at the cursor"),
-    ScreenKey("J", "Jump", "Make the selected item the next one that AUTO drives to; asks"),
-    ScreenKey("H", "Home", "Move home to the cursor; asks"),
-    ScreenKey("X", "Clear", "Clear the edited plan on the vehicle; asks"),
+    ScreenKey("J", "Jump", "Make the selected item the next one that AUTO drives to; asks", commands=True),
+    ScreenKey("H", "Home", "Move home to the cursor; asks", commands=True),
+    ScreenKey("X", "Clear", "Clear the edited plan on the vehicle; asks", commands=True),
     ScreenKey("C", "Cancel", "Cancel the transfers that run"),
     ScreenKey("O", "Open", "Open a plan (.plan, .waypoints), or a layer to look at (.geojson)"),
     ScreenKey("S", "Save", "Save the plans: .plan, .waypoints, .geojson"),
-    ScreenKey("1", "Mode", "1 MANUAL, 2 HOLD, 3 AUTO, 4 GUIDED, 5 RTL, 6 LOITER; one that moves by itself asks"),
+    ScreenKey(
+        "1", "Mode", "1 MANUAL, 2 HOLD, 3 AUTO, 4 GUIDED, 5 RTL, 6 LOITER; one that moves by itself asks", commands=True
+    ),
 )

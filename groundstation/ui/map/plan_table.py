@@ -56,6 +56,10 @@ class PlanTableValue(msgspec.Struct, frozen=True):
 class PlanTable(Instrument[PlanTableValue]):
     """The table."""
 
+    def cursor_line(self) -> int | None:
+        """Return the line of the selected item, below the titles."""
+        return None if self.value.selected is None else self.value.selected + 1
+
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw titles, rows and the summary."""
         widths = fit(COLUMNS, width)

@@ -12,7 +12,7 @@ from textual.widget import Widget
 
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.base.list_keys import rows_to_move
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.display.wrap import plain
 from groundstation.ui.map.draw.plan_map import PlanMap
@@ -97,6 +97,14 @@ class MapScreen(ConsoleScreen):
         return self._drive.advice or "arrows move the cursor · a adds an item there · TAB goes on to the table"
 
     # ---- keys ----
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Give the arrows to a panel; over the map the wheel zooms."""
+        if widget not in self._panels:
+            return None
+        self._chosen = next(at for at, each in enumerate(self._panels) if each is widget)
+        self._show(forced=True)
+        return ("plus", "minus") if self._chosen == 0 else LIST_ARROWS
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""

@@ -10,7 +10,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widget import Widget
 
 from groundstation.ui.base.list_keys import rows_to_move
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.charts.model import ChartsModel
 from groundstation.ui.display.display_state import ScreenKey
 from groundstation.ui.display.wrap import plain
@@ -44,8 +44,8 @@ class MessagesScreen(ConsoleScreen):
         ScreenKey("o", "Order", "Next order: by source, name, rate, bytes, age"),
         ScreenKey("tab", "Fields", "Choose a field with ↑ ↓ (an item of an array: ← →), or a message again"),
         ScreenKey("p", "To Charts", "Record the chosen field for the Charts screen, also while that is closed"),
-        ScreenKey("R", "Rate", "Request the chosen message at a rate (SET_MESSAGE_INTERVAL)"),
-        ScreenKey("Q", "Once", "Request the chosen message once (REQUEST_MESSAGE)"),
+        ScreenKey("R", "Rate", "Request the chosen message at a rate (SET_MESSAGE_INTERVAL)", commands=True),
+        ScreenKey("Q", "Once", "Request the chosen message once (REQUEST_MESSAGE)", commands=True),
         ScreenKey("S", "Save", "Write each of the chosen messages to a CSV file while this screen is open; S ends it"),
         ScreenKey("e", "Raw", "Show values as they are sent, or with units and names of enum values"),
         ScreenKey("z", "Freeze", "Freeze the picture, or go on"),
@@ -132,6 +132,15 @@ class MessagesScreen(ConsoleScreen):
             return False
         self._show_table()
         return True
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Give the arrows to the table or the fields."""
+        if widget not in (self._detail, self._table):
+            return None
+        self._in_detail = widget is self._detail
+        self._mark_chosen()
+        self._show_table()
+        return LIST_ARROWS
 
     def filter_by(self, text: str) -> bool:
         """Show the rows that the text describes."""

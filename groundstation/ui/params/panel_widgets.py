@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from textual.widget import Widget
+
 from groundstation.ui.base.panels import BORDERS
 from groundstation.ui.display.wrap import clean, plain
 from groundstation.ui.params.compare import CompareList, CompareValue
@@ -36,6 +38,10 @@ class ParamWidgets:
             "detail": self.detail,
             "compare": self.compare,
         }
+
+    def name_of(self, widget: Widget) -> str:
+        """Return the panel of a widget that has a cursor; "" for any other."""
+        return next((name for name, each in self._by_name.items() if each is widget), "")
 
     def height_of(self, panel: str) -> int:
         """Return how many rows of its list a panel shows."""

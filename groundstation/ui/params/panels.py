@@ -8,7 +8,7 @@ from groundstation.ui.params.model import ParamModel
 PARAM_KEYS = (
     ScreenKey("slash", "Find", "Show the parameters with any of these words in the name or the texts"),
     ScreenKey("enter", "Edit", "Change the value here first: a number, 0x…, a name of its list, bits"),
-    ScreenKey("W", "Write", "List the changes once more and write them to the vehicle after a question"),
+    ScreenKey("W", "Write", "List the changes once more and write them to the vehicle after a question", commands=True),
     ScreenKey("tab", "Panel", "Groups, comparison, detail, or the table again"),
     ScreenKey("x", "Drop", "Drop the change of the selected parameter"),
     ScreenKey("u", "Undo", "Undo the last step; after a write the old values are changes again"),
@@ -20,7 +20,7 @@ PARAM_KEYS = (
     ScreenKey("asterisk", "Favourite", "Make the selected parameter a favourite, or one no more"),
     ScreenKey("ctrl+r", "Redo", "Do again what was undone"),
     ScreenKey("R", "Read", "Read all parameters again, or those that are missing"),
-    ScreenKey("E", "Memory", "Have the vehicle store all parameters, or reset them to their defaults"),
+    ScreenKey("E", "Memory", "Have the vehicle store all parameters, or reset them to their defaults", commands=True),
     ScreenKey("X", "Cancel", "Cancel the reading or writing that runs"),
 )
 

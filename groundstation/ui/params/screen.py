@@ -10,7 +10,7 @@ from textual.widget import Widget
 
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.base.list_keys import rows_to_move
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.params.edit.saving import ParamSaving
 from groundstation.ui.params.kept import keep_params
@@ -95,6 +95,14 @@ class ParamsScreen(ConsoleScreen):
         return "ENTER edits · TAB groups · / finds any of the words · ESC goes back to Drive"
 
     # ---- keys ----
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Give the arrows to the panel of a widget."""
+        name = self._widgets.name_of(widget)
+        if name:
+            self._panels.chosen = name
+            self._show()
+        return LIST_ARROWS if name else None
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""

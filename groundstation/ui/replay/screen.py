@@ -13,7 +13,7 @@ from groundstation.intents import replay as r
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.local_files import list_logs
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.wrap import plain
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
@@ -151,6 +151,12 @@ class ReplayScreen(ConsoleScreen):
         else:
             return False
         return True
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Move in the list of events, or of logs while none is open; over the timeline the wheel goes back and on."""
+        if widget is self._timeline and self._open:
+            return "left", "right"
+        return LIST_ARROWS if widget is (self._events if self._open else self._logs) else None
 
     def _choose_log(self, event: events.Key) -> bool:
         if rows := rows_to_move(event.key, self._logs.size.height):

@@ -49,6 +49,12 @@ class ChainPanel(Instrument[ChainValue]):
         room = height - len(shown)
         return [*shown, *self._picture(width, room), *self._steps(width, room - 2)]
 
+    def cursor_line(self) -> int | None:
+        """Return the line of the selected row."""
+        lines = chain_lines(self.value.rows, self.size.height)
+        at = next((index for index, line in enumerate(lines) if self.value.selected in map(_id, line.rows)), None)
+        return None if at is None else at - max(0, min(at - self.size.height + 1, len(lines) - self.size.height))
+
     def _line(self, line: ChainLine, width: int) -> Strip:
         row, selected = line.row, self.value.selected in map(_id, line.rows)
         ground = {"on": FAINT} if selected else {}

@@ -14,7 +14,7 @@ from groundstation.doctor.report import format_report
 from groundstation.intents.setup import RebootVehicle, RunChecks, StopMotorTest
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.save_file import save_text
-from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.wrap import plain
 from groundstation.ui.params.edit.pending import PendingChange
@@ -41,18 +41,23 @@ class SetupScreen(ConsoleScreen):
 
     CSS_PATH = "screen.tcss"
     KEYS = (
-        ScreenKey("enter", "Do", "Do or open what the line under the cursor proposes"),
+        ScreenKey("enter", "Do", "Do or open what the line under the cursor proposes", commands=True),
         ScreenKey("f", "Fix", "Make the proposed value of a parameter a pending change of the Params screen"),
-        ScreenKey("c", "Check", "Let the vehicle run its pre-arm checks"),
-        ScreenKey("m", "Motors", "Motor test, wheels up: then hold 1 to 4; + and - change the strength, v reverses"),
-        ScreenKey("B", "Reboot", "Restart the vehicle, after a question"),
+        ScreenKey("c", "Check", "Let the vehicle run its pre-arm checks", commands=True),
+        ScreenKey(
+            "m",
+            "Motors",
+            "Motor test, wheels up: then hold 1 to 4; + and - change the strength, v reverses",
+            commands=True,
+        ),
+        ScreenKey("B", "Reboot", "Restart the vehicle, after a question", commands=True),
         ScreenKey("S", "Report", "Save a report for a bug, without keys and public addresses"),
-        ScreenKey("C", "Compass", "Calibrate the compass; W writes the result, x cancels"),
-        ScreenKey("A", "Accel", "Calibrate the accelerometers in 6 positions; ENTER confirms each"),
-        ScreenKey("H", "Level", "Calibrate the level"),
-        ScreenKey("Y", "Gyro", "Calibrate the gyros, at rest"),
-        ScreenKey("P", "Pressure", "Calibrate the pressure sensor"),
-        ScreenKey("R", "Sticks", "Calibrate the RC sticks: ends and centres become pending parameters"),
+        ScreenKey("C", "Compass", "Calibrate the compass; W writes the result, x cancels", commands=True),
+        ScreenKey("A", "Accel", "Calibrate the accelerometers in 6 positions; ENTER confirms each", commands=True),
+        ScreenKey("H", "Level", "Calibrate the level", commands=True),
+        ScreenKey("Y", "Gyro", "Calibrate the gyros, at rest", commands=True),
+        ScreenKey("P", "Pressure", "Calibrate the pressure sensor", commands=True),
+        ScreenKey("R", "Sticks", "Calibrate the RC sticks: ends and centres become pending parameters", commands=True),
     )
 
     def __init__(self, context: ScreenContext) -> None:
@@ -113,6 +118,10 @@ class SetupScreen(ConsoleScreen):
         return self._model.verdict
 
     # ---- keys ----
+
+    def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
+        """Move in the chain. While motors are tested the mouse does nothing: any key would stop them."""
+        return LIST_ARROWS if widget is self._chain and not self._model.testing else None
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen. While motors are tested every other key stops them first."""

@@ -107,7 +107,7 @@ class ConsoleDriver(LinuxDriver):
         self._app.post_message(message)
 
     def _enable_mouse_support(self) -> None:
-        """Capture the mouse on each start. The app runs with `mouse=False`: the reports are discarded."""
+        """Capture the mouse on each start. The app runs with `mouse=False`: Textual gets no event of the mouse."""
         self.write(CAPTURE_MOUSE)
         self.flush()
 

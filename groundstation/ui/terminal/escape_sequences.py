@@ -79,11 +79,12 @@ class Piece(msgspec.Struct, frozen=True):
 
 
 class SequenceAssembler:
-    """Divides terminal input into characters and whole sequences, wherever reads split them. Drops mouse reports."""
+    """Divides terminal input into characters and whole sequences, wherever reads split them. Mouse reports are none."""
 
     def __init__(self) -> None:
         self.mouse_reports = 0
-        """Number of reports dropped so far."""
+        """Number of reports so far."""
+        self._whole_reports: list[str] = []
         self._held = ""
         """The sequence that has begun."""
         self._split = False
@@ -96,6 +97,11 @@ class SequenceAssembler:
     def waiting(self) -> bool:
         """A sequence has begun, and `expire` must be called."""
         return bool(self._held)
+
+    def pop_reports(self) -> list[str]:
+        """Return the mouse reports that came in one piece since the last call."""
+        found, self._whole_reports = self._whole_reports, []
+        return found
 
     def feed(self, data: str, now: float) -> list[Piece]:
         """Return the pieces of one read; the beginning of a sequence stays here."""
@@ -147,6 +153,8 @@ class SequenceAssembler:
     def _end(self, whole: str, pieces: list[Piece]) -> None:
         if _MOUSE.match(whole):
             self.mouse_reports += 1
+            if not self._split:
+                self._whole_reports.append(whole)
         else:
             pieces.append(Piece(whole, self._split))
         self._begin("")

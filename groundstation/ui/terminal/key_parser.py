@@ -20,6 +20,7 @@ from textual.message import Message
 
 from groundstation.input.keymap import SPLIT, KeyEvent
 from groundstation.ui.terminal.escape_sequences import ESC, Piece, SequenceAssembler, is_string, is_whole
+from groundstation.ui.terminal.mouse import parse_report
 
 PONG = "\x1b[0n"
 """Answer to terminal.PING."""
@@ -140,6 +141,7 @@ class KeyEventParser(XTermParser):
             batch += (press for press in keys if press != _PASTE or press not in batch)
             found += tokens
         self._tell(found, batch)
+        found += (report for text in self._sequences.pop_reports() if (report := parse_report(text)) is not None)
         return [token for token in found if not (isinstance(token, events.Key) and self._sink.is_repeat(token.key))]
 
     def _tell(self, found: Iterable[Message], batch: Sequence[KeyEvent]) -> None:

@@ -34,6 +34,9 @@ FOOTER_ITEMS: tuple[FooterItem, ...] = (
 )
 """The most important first: the last ones may not fit."""
 
+Item = tuple[list[Part], str]
+"""A key with its label, and the key that the mouse presses there, "" for none."""
+
 REPLAY_ACTIONS = ("app.goto", "view.pane", "vehicle.next", "app.help", "app.quit")
 """On the Drive screen while a log is shown."""
 
@@ -66,29 +69,46 @@ class KeyFooter(Instrument[FooterValue]):
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw keys in yellow, stop keys in red."""
-        parts: list[Part] = []
-        tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" Commands ", style(TEXT, PANEL))]
-        for item in self._items():
-            if item and length(parts) + length(item) + length(tail) <= width:
-                parts += item
+        parts = [part for item, _ in self._fitting(width) for part in item]
+        tail = _tail()
         gap = max(0, width - length(parts) - length(tail))
         return [strip(*parts, (" " * gap, style(TEXT, PANEL)), *tail).crop(0, width)]
 
-    def _items(self) -> Iterator[list[Part]]:
+    def key_at(self, column: int) -> str:
+        """Return the key at a column that the mouse may press, by Textual's name; "" for all others.
+
+        It never presses what stops, and no key of a screen that reaches a vehicle.
+        """
+        begin = 0
+        for item, key in self._fitting(self.size.width):
+            begin += length(item)
+            if column < begin:
+                return key
+        return ""
+
+    def _fitting(self, width: int) -> Iterator[Item]:
+        """Yield the items that have room."""
+        room = width - length(_tail())
+        for item, key in self._items():
+            if item and length(item) <= room:
+                room -= length(item)
+                yield item, key
+
+    def _items(self) -> Iterator[Item]:
         screen = self.value.screen
         if screen.drives:
-            yield from (self._item(label, ids) for label, ids in self._drive_items())
+            yield from ((self._item(label, ids), "") for label, ids in self._drive_items())
             return
-        yield _parts(self._stop_key(), "Pause" if self.value.replay else "Stop", RED)
+        yield _parts(self._stop_key(), "Pause" if self.value.replay else "Stop", RED), ""
         if not self.value.replay:
-            yield self._item("E-STOP", ("stop.emergency",))
+            yield self._item("E-STOP", ("stop.emergency",)), ""
         if screen.text:
-            yield _parts("ENTER", "Keep", YELLOW)
-            yield _parts("ESC", "Clear", YELLOW)
+            yield _parts("ENTER", "Keep", YELLOW), ""
+            yield _parts("ESC", "Clear", YELLOW), ""
             return
         for each in screen.keys:
-            yield _parts(format_key(each.key), each.label, YELLOW)
-        yield _parts("ESC", "Drive", YELLOW)
+            yield _parts(format_key(each.key), each.label, YELLOW), "" if each.commands else each.key
+        yield _parts("ESC", "Drive", YELLOW), "escape"
 
     def _drive_items(self) -> list[FooterItem]:
         """Return the table; with several vehicles the key that selects the next one takes the place of the speed."""
@@ -117,6 +137,10 @@ class KeyFooter(Instrument[FooterValue]):
         keymap = self.value.keymap
         key = "space" if "space" in keymap.get_keys(action_id) else main_key(keymap, action_id)
         return None if key is None else format_key(key)
+
+
+def _tail() -> list[Part]:
+    return [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" Commands ", style(TEXT, PANEL))]
 
 
 def _parts(keys: str, label: str, colour: str) -> list[Part]:

@@ -18,6 +18,9 @@ from groundstation.ui.terminal.painting import Ground, find_ground, mark_changed
 Value = TypeVar("Value")
 
 
+CURSOR = "›"
+"""First character of the line at the cursor, in every list."""
+
 Part = tuple[str, Style]
 """A run of text in one style."""
 
@@ -54,6 +57,15 @@ class Instrument(Widget, Generic[Value], can_focus=False):
     def value(self) -> Value:
         """What is shown."""
         return self._value
+
+    def rows_to(self, line: int) -> int | None:
+        """Return how many steps down lead from the cursor to what is drawn on a line; None without a cursor."""
+        at = self.cursor_line()
+        return None if at is None or line >= len(self._strips) else line - at
+
+    def cursor_line(self) -> int | None:
+        """Return the line on which the cursor is drawn."""
+        return next((y for y, drawn in enumerate(self._strips) if drawn.text.startswith(CURSOR)), None)
 
     def show(self, value: Value) -> None:
         """Show another value."""

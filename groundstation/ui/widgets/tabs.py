@@ -47,15 +47,35 @@ class TabBar(Instrument[TabBarValue]):
         return [strip(*tabs, (" " * gap, style()), *right).crop(0, width)]
 
     def _fitting(self, room: int) -> list[Part]:
-        """Return the tabs that have room; those that are farthest from the one on top go first."""
+        """Return the tabs that have room."""
+        wide = room >= WIDE - GOTO_WIDTH
+        return [part for row in self._fitting_rows(room) for part in self._tab(row, wide=wide)]
+
+    def _fitting_rows(self, room: int) -> list[ScreenRow]:
+        """Return the screens whose tabs have room; those that are farthest from the one on top go first."""
         rows = [row for row in SCREENS if row.in_tabs]
-        tabs = [self._tab(row, wide=room >= WIDE - GOTO_WIDTH) for row in rows]
+        widths = [length(self._tab(row, wide=room >= WIDE - GOTO_WIDTH)) for row in rows]
         top = next((at for at, row in enumerate(rows) if row.id == self.value.screen), 0)
-        while len(tabs) > 1 and sum(map(length, tabs)) > room:
-            at = 0 if top > len(tabs) // 2 else len(tabs) - 1
-            del tabs[at]
+        while len(rows) > 1 and sum(widths) > room:
+            at = 0 if top > len(rows) // 2 else len(rows) - 1
+            del rows[at], widths[at]
             top -= at == 0
-        return [part for tab in tabs for part in tab]
+        return rows
+
+    def tab_at(self, column: int) -> ScreenRow | None:
+        """Return the screen whose tab is drawn at a column."""
+        wide = self._room >= WIDE - GOTO_WIDTH
+        begin = 0
+        for row in self._fitting_rows(self._room):
+            begin += length(self._tab(row, wide=wide))
+            if column < begin:
+                return row
+        return None
+
+    @property
+    def _room(self) -> int:
+        width = self.size.width
+        return width - length(goto_parts(self.value.keymap, label=width >= WIDE))
 
     def _tab(self, row: ScreenRow, *, wide: bool) -> list[Part]:
         key = main_key(self.value.keymap, row.action) if wide else None
