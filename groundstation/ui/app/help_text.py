@@ -56,7 +56,7 @@ NOTES = (
     "In a text field SPACE and k are text: ^k stops there, and ! is the emergency stop as everywhere.",
     "The limits are the largest demand that a key sends: speed and turn, in percent of the full range.",
     "Where the terminal reports key releases, keys of a Cyrillic or Greek layout count by their position.",
-    "The mouse does nothing on Drive. Elsewhere a click chooses a tab, a row or a key of the footer, and the wheel moves.",
+    "The mouse does nothing on Drive. Elsewhere a click chooses a tab, a row or a key of the footer, the wheel moves.",
     "It presses no key that stops or reaches a vehicle. Shift and drag selects text.",
 )
 

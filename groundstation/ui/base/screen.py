@@ -219,19 +219,25 @@ class ConsoleScreen(Screen[None]):
             widget, _ = self.get_widget_at(report.column, report.row)
         except NoWidget:
             return
-        inside = widget.content_region
-        if isinstance(widget, TabBar) and not report.wheel:
-            tab = widget.tab_at(report.column - inside.x)
-            if tab is not None:
-                self.context.perform(ACTIONS[tab.action])
-        elif isinstance(widget, KeyFooter) and not report.wheel:
-            self._press(widget.key_at(report.column - inside.x))
-        elif (keys := self.choose_panel_of(widget)) is not None:
-            rows = WHEEL_ROWS * report.wheel or _rows_to(widget, report.row - inside.y, keys)
-            for _ in range(abs(rows)):
-                self._press(keys[rows > 0])
+        if isinstance(widget, (TabBar, KeyFooter)):
+            if not report.wheel:
+                self._click(widget, report.column - widget.content_region.x)
+        else:
+            self._move_by(report, widget)
         if self.is_current:
             self.show_state(self._state)
+
+    def _click(self, widget: TabBar | KeyFooter, column: int) -> None:
+        if isinstance(widget, KeyFooter):
+            self._press(widget.key_at(column))
+        elif (tab := widget.tab_at(column)) is not None:
+            self.context.perform(ACTIONS[tab.action])
+
+    def _move_by(self, report: MouseReport, widget: Widget) -> None:
+        if (keys := self.choose_panel_of(widget)) is not None:
+            rows = WHEEL_ROWS * report.wheel or _rows_to(widget, report.row - widget.content_region.y, keys)
+            for _ in range(abs(rows)):
+                self._press(keys[rows > 0])
 
     def _press(self, key: str) -> None:
         """Perform a key of the screen as if it was typed; the station hears nothing of it."""

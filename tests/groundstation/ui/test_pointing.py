@@ -76,7 +76,7 @@ async def test_no_click_and_no_wheel_reaches_a_vehicle(row: ScreenRow) -> None:
 
 
 HARMLESS = {"Stop", "PinSeries", "WatchDiscovery", "StartSimulator", "ListFolder"}
-"""Neutral of our own keys when Drive is left, fields to record, a search on the network, a list of files, a new simulated rover."""
+"""Neutral of our own keys when Drive is left, and what asks for data: fields, files, the network, a new simulator."""
 
 
 async def test_on_drive_the_mouse_does_nothing() -> None:
