@@ -8,6 +8,7 @@ ROWS do. Tests that are named on the command line always run.
 
 from __future__ import annotations
 
+import functools
 import inspect
 import math
 from collections.abc import Sequence
@@ -24,20 +25,39 @@ MARKED = ("e2e", "interop")
 """Folders in which every test has one."""
 
 LONG = (
-    "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "recipes", "soak", "test_examples.py",
+    "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "recipes", "soak", "stress", "test_ci_again.py",
+    "test_examples.py", "test_order.py", "test_suite.py",
     "test_release.py::test_a_signature",
     "test_keys_to_motion.py::test_every_key_and_chord", "test_missions.py", "test_roaming.py",
-    "test_secure_by_default.py::test_no_data_becomes_code",
-    "dialects/extra", "dialects/test_build.py", "dialects/test_fingerprint.py::test_pytest_stops",
-    "link/bridge/test_bridge.py", "link/runtime/test_stdio.py", "link/services/param/test_recorded_params.py",
+    "test_secure_by_default.py::test_no_data_becomes_code", "test_signed_stops.py::test_every_stop_stops_a_rover",
+    "test_stop_worlds.py", "test_stops.py::test_a_key_held_over_another_screen",
+    "dialects/extra", "dialects/test_build.py", "dialects/test_codec.py::test_every_message_that_we_make",
+    "dialects/test_fingerprint.py::test_pytest_stops",
+    "link/bridge/test_bridge.py", "link/bridge/fleet/test_self_probe.py", "link/routing/test_routes.py::test_strangers",
+    "link/runtime/test_stdio.py", "link/runtime/test_without_openssl.py",
+    "link/services/ftp/test_handlers.py::test_any", "link/services/param/test_recorded_params.py",
+    "link/services/test_any_bytes.py",
     "link/signing/test_c_library.py", "link/signing/test_verifier.py::test_81",
+    "link/transport/test_udp.py::test_datagrams_that_are_kept",
+    "vehicle/test_identity.py::test_a_session_is_moved", "vehicle/test_identity.py::test_copy_at_any_lag",
+    "vehicle/test_identity.py::test_still_older_frames", "vehicle/test_identity.py::test_a_driver_who_comes_back",
+    "vehicle/test_keys_apart.py::test_any_mix", "vehicle/test_rover_any_input.py",
+    "vehicle/test_stops_in_a_crowd.py::test_a_new_station_stops_a_rover",
+    "vehicle/autonomy/test_autonomous_stops.py::test_no_command_moves", "vehicle/commands/test_hand_over.py",
+    "vehicle/commands/test_origin.py", "vehicle/drive/test_operator_session.py::test_no_demand_older",
+    "vehicle/navigation/test_estimator.py", "vehicle/navigation/test_fence_avoidance.py",
+    "vehicle/navigation/test_rally.py", "vehicle/safety/test_health_notices.py", "vehicle/sim/test_drives.py",
+    "vehicle/storage/test_plan_store.py::test_it_is_said_again", "vehicle/telemetry/test_bandwidth.py",
+    "vehicle/telemetry/test_build_computer.py::test_no_reading", "vehicle/telemetry/test_build_navigation.py",
+    "vehicle/telemetry/test_telemetry.py::test_no_reading",
     "vehicle/accessories/test_accessory_missions.py", "vehicle/autonomy/mission", "vehicle/autonomy/modes",
     "vehicle/autonomy/test_navigator.py", "vehicle/cli/test_motor_test.py", "vehicle/cli/test_systemd_unit.py",
     "vehicle/commands/test_go_to.py", "vehicle/commands/test_params.py::test_an_unsaved_value_is_retried",
     "vehicle/machine", "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
     "vehicle/storage/test_tlog_files.py::test_a_real_card",
     "groundstation/cli/test_keys_verb.py", "groundstation/connect", "groundstation/export", "groundstation/gamepad",
-    "groundstation/replay", "groundstation/station/services/test_file_transfers.py",
+    "groundstation/recording/test_power_cut.py", "groundstation/replay",
+    "groundstation/station/services/test_file_transfers.py", "groundstation/test_ipc.py::test_the_version",
     "groundstation/station/driving/test_freeze.py",
     "groundstation/station/messages/test_recorded_traffic.py", "groundstation/test_foreign_missions.py",
     "groundstation/ui/app/test_command_line.py", "groundstation/ui/app/test_help.py",
@@ -49,27 +69,30 @@ LONG = (
     "groundstation/ui/terminal/test_escape_sequences.py", "groundstation/ui/app/test_exit.py",
     "groundstation/ui/keys/test_hold.py", "groundstation/ui/terminal/test_interpreter.py",
     "groundstation/ui/terminal/test_mouse.py",
+    "groundstation/ui/test_foreign_words.py",
     "groundstation/vehicles/probes/test_dialect_probe.py", "groundstation/vehicles/test_replay.py",
+    "groundstation/vehicles/state/test_vehicle_state.py::test_no_message_breaks",
     "groundstation/verbs",
     "groundstation/watchdog/test_watchdog.py::test_after_a_neutral_of_the_watchdog",
 )  # fmt: skip
-"""Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, or need
-programs and packages that a clone alone does not have."""
+"""Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, such as the
+properties that drive a whole rover, test the tests, or need programs and packages that a clone alone does not have."""
 
 MAIN_JOB = (
     "groundstation/sitl/test_sitl.py::test_sitl_starts",
     "e2e/test_stop_matrix.py::test_key_released", "e2e/test_stop_matrix.py::test_terminal_closed",
     "e2e/test_stop_matrix.py::test_ground_station", "e2e/test_stop_matrix.py::test_quit_by_key",
     "e2e/test_stop_matrix.py::test_vehicle_told_to_end", "e2e/test_station_process_lost.py::test_our_rover_stops",
-    "e2e/test_handover.py::test_given_control_stops", "e2e/test_serial_and_tcp.py::test_ground_station_killed",
-    "e2e/test_serial_and_bridge.py", "vehicle/runtime/test_daemon.py::test_a_signal_while_driving",
+    "e2e/test_handover.py::test_given_control_stops", "e2e/test_serial_and_bridge.py",
+    "e2e/test_serial_and_tcp.py::test_ground_station_killed_or_frozen_with_its_children[serial",
+    "vehicle/runtime/test_daemon.py::test_a_signal_while_driving",
     "vehicle/safety/test_estop_button.py", "groundstation/verbs/line", "groundstation/verbs/control/test_arm.py",
     "groundstation/verbs/control/test_stops.py",
 )  # fmt: skip
 """Tests that are in it all the same: starting, driving, every way to die, serial lines, the bridge, and the verbs that
 arm and stop."""
 
-ROWS = 6
+ROWS = 4
 """Rows of one parametrised test in the short suite at most, evenly from its table; the others are in the rest."""
 
 APPS = "groundstation/ui"
@@ -86,55 +109,61 @@ def chosen(config: pytest.Config) -> str:
 def is_long_file(path: Path) -> bool:
     """Return whether a file, or every file of a folder, is not in the short suite, so that it need not be imported."""
     name = _below(path)
-    if any(_covers(row, name) or row.startswith((f"{name}/", f"{name}::")) for row in MAIN_JOB):
+    if _is_whole(name, MAIN_JOB) or any(row.startswith((f"{name}/", f"{name}::")) for row in MAIN_JOB):
         return False
-    return any(_covers(row, name) for row in (*LONG, *MARKED))
+    return _is_whole(name, (*LONG, *MARKED))
 
 
 def is_short(item: pytest.Item) -> bool:
     """Return whether a test is in the short suite."""
-    name = _name_of(item)
-    if _is_main_job(item):
+    if _is_in(MAIN_JOB, item):
         return True
-    if any(_covers(row, name) for row in LONG) or any(mark.name in MARKERS for mark in item.iter_markers()):
+    if _is_in(LONG, item) or any(mark.name in MARKERS for mark in item.iter_markers()):
         return False
-    return not (name.startswith(APPS) and inspect.iscoroutinefunction(getattr(item, "obj", None)))
+    screens = _below(item.path).startswith(APPS)
+    return not (screens and inspect.iscoroutinefunction(getattr(item, "obj", None)))
 
 
 def split(items: Sequence[pytest.Item], suite: str) -> tuple[list[pytest.Item], list[pytest.Item]]:
     """Return the tests of a suite, and the others."""
     if suite == ALL:
         return list(items), []
-    short = set(map(id, _thinned([item for item in items if is_short(item)])))
+    short = set(map(id, thinned([item for item in items if is_short(item)])))
     ours = [(id(item) in short) == (suite == SHORT) for item in items]
     pairs = list(zip(items, ours, strict=True))
     return [item for item, our in pairs if our], [item for item, our in pairs if not our]
 
 
-def _thinned(items: Sequence[pytest.Item]) -> list[pytest.Item]:
+def thinned(items: Sequence[pytest.Item]) -> list[pytest.Item]:
     """Return the items with at most ROWS of each parametrised test, but for those of MAIN_JOB."""
     rows: dict[str, list[pytest.Item]] = {}
     for item in items:
         rows.setdefault(item.nodeid.partition("[")[0], []).append(item)
     kept: list[pytest.Item] = []
     for of_one in rows.values():
-        kept += of_one if _is_main_job(of_one[0]) else of_one[:: math.ceil(len(of_one) / ROWS)]
+        kept += of_one if _is_in(MAIN_JOB, of_one[0]) else of_one[:: math.ceil(len(of_one) / ROWS)]
     return kept
 
 
-def _is_main_job(item: pytest.Item) -> bool:
-    name = _name_of(item)
-    return any(_covers(row, name) for row in MAIN_JOB)
+def _is_in(rows: tuple[str, ...], item: pytest.Item) -> bool:
+    """Return whether one of the rows names the folder, the file or the start of the name of a test."""
+    starts = _starts(rows, item.path)
+    return starts is None or (bool(starts) and item.nodeid.partition("::")[2].startswith(starts))
 
 
-def _name_of(item: pytest.Item) -> str:
-    return f"{_below(item.path)}::{item.nodeid.partition('::')[2]}"
+@functools.cache  # 11,000 tests are in 500 files
+def _starts(rows: tuple[str, ...], path: Path) -> tuple[str, ...] | None:
+    """Return how the names of the tests of a file that the rows name begin, or None for all of them."""
+    name = _below(path)
+    if _is_whole(name, rows):
+        return None
+    return tuple(row.partition("::")[2] for row in rows if row.startswith(f"{name}::"))
+
+
+def _is_whole(name: str, rows: Sequence[str]) -> bool:
+    """Return whether a row names a folder or file, or a folder above it."""
+    return any(name == row or name.startswith(f"{row}/") for row in rows)
 
 
 def _below(path: Path) -> str:
     return path.relative_to(TESTS).as_posix() if path.is_relative_to(TESTS) else path.as_posix()
-
-
-def _covers(row: str, name: str) -> bool:
-    """Return whether a row names a folder or file, one above it, or the start of a test's name."""
-    return name == row or name.startswith((f"{row}/", f"{row}::")) or ("::" in row and name.startswith(row))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
+from heapq import heappop, heappush
 from typing import NamedTuple
 
 import msgspec
@@ -74,7 +75,8 @@ class StreamSchedule:
         """The highest level that the peer has shown to understand."""
         self._clocks = {each.message.id: _Clock(each, boot + n * PHASE) for n, each in enumerate(STREAMS)}
         self._steady = [clock for clock in self._clocks.values() if clock.stream.steady]
-        self._next = math.inf
+        self._queue: list[tuple[float, int]] = []
+        """A heap of due times and message ids; entries of a time that is no longer that of the stream are void."""
         self._share = BandwidthShare()
         self._messages = TokenBucket(PEER_MESSAGE_RATE_MAX, PEER_MESSAGE_RATE_MAX * BURST)
         self._bytes: TokenBucket | None = None
@@ -156,17 +158,21 @@ class StreamSchedule:
         """Make a stream due now, or as soon as CHANGE_GAP allows: its content has changed."""
         clock = self._clocks[message_id]
         if clock.on:
-            clock.due = min(clock.due, max(now, clock.sent + max(CHANGE_GAP, self._least(clock.stream))))
-            self._next = min(self._next, clock.due)
+            self._set_due(clock, min(clock.due, max(now, clock.sent + max(CHANGE_GAP, self._least(clock.stream)))))
 
     def pop_due(self, now: float) -> list[Stream]:
         """Return the streams that are due and have room; they count as sent."""
-        if now < self._next:
-            return []
-        due = [each for each in self._clocks.values() if now >= each.due]
-        due.sort(key=lambda each: (not each.stream.steady, each.due))  # if room is short, each gets its turn
-        taken = [each.stream for each in due if self._take(each, now)]
-        self._next = min(each.due for each in self._clocks.values())
+        due: dict[int, _Clock] = {}
+        while self._queue and now >= self._queue[0][0]:
+            time, number = heappop(self._queue)
+            if self._clocks[number].due == time:
+                due[number] = self._clocks[number]
+        taken = []
+        for clock in sorted(due.values(), key=lambda each: (not each.stream.steady, each.due)):
+            if self._take(clock, now):
+                taken.append(clock.stream)
+            else:  # no room: it stays due, and gets its turn when it is the oldest
+                heappush(self._queue, (clock.due, clock.stream.message.id))
         return taken
 
     def pop_if_due(self, message_id: int, now: float) -> bool:
@@ -178,8 +184,15 @@ class StreamSchedule:
         stream = clock.stream
         if not (stream.fixed_rate or self._room(stream, now)):
             return False
-        clock.sent, clock.due = now, self._next_due(clock, now)
+        clock.sent = now
+        self._set_due(clock, self._next_due(clock, now))
         return True
+
+    def _set_due(self, clock: _Clock, due: float) -> None:
+        if due != clock.due:
+            clock.due = due
+            if due < math.inf:
+                heappush(self._queue, (due, clock.stream.message.id))
 
     def _next_due(self, clock: _Clock, now: float) -> float:
         """Return when a stream is due again, as the link allows; a steady one may just have been expedited."""
@@ -214,8 +227,8 @@ class StreamSchedule:
 
     def _set(self, message_id: int, on: bool, interval: float | None, due: float) -> None:
         clock = self._clocks[message_id]
-        clock.on, clock.interval, clock.due = on, interval, due if on else math.inf
-        self._next = min(self._next, clock.due)
+        clock.on, clock.interval = on, interval
+        self._set_due(clock, due if on else math.inf)
 
     def _narrowed(self) -> float:
         messages = self._excess(self._share.messages, lambda stream: 1.0)
