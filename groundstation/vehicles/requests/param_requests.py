@@ -209,10 +209,11 @@ class ParamRequests:
             if outcome.fault == ParamErrorCode.READ_ONLY:
                 self._book.keep(access.number, access.name)
             detail = self._fault_text(outcome)
-            self._book.refuse(access.number, detail, now, by_vehicle=outcome.wanted is not None and outcome.tries > 0)
+            by_vehicle = outcome.wanted is not None and outcome.tries > 0
+            self._book.refuse(access.number, detail, now, by_vehicle=by_vehicle, name=access.name)
         elif outcome.value is not None:
             self._book.keep(access.number, access.name)
-            self._book.refuse(access.number, f"the vehicle keeps {value_text(outcome.value)}", now)
+            self._book.refuse(access.number, f"the vehicle keeps {value_text(outcome.value)}", now, name=access.name)
         else:
             self._book.fail(access.number, f"after {outcome.tries} tries")
 

@@ -61,6 +61,7 @@ class RequestReport(msgspec.Struct, frozen=True):
 class _Refusal(NamedTuple):
     at: float
     until: float
+    name: str
 
 
 class RequestBook:
@@ -111,8 +112,11 @@ class RequestBook:
         """End a request as accepted."""
         self._end(number, RequestState.ACCEPTED, detail)
 
-    def refuse(self, number: int, detail: str, now: float, *, by_vehicle: bool = True) -> None:
-        """End a request as refused; `by_vehicle`: with the vehicle's STATUSTEXT, for which it waits REASON_WITHIN."""
+    def refuse(self, number: int, detail: str, now: float, *, by_vehicle: bool = True, name: str = "") -> None:
+        """End a request as refused; `by_vehicle`: with the vehicle's STATUSTEXT, for which it waits REASON_WITHIN.
+
+        `name`: the parameter that is refused. Texts that name it explain it, in place of those about its neighbours.
+        """
         report = self._running.get(number)
         if report is None:
             return
@@ -121,8 +125,8 @@ class RequestBook:
             self._end(number, RequestState.REFUSED, f"{detail}{why}")
             return
         self._running[number] = replace(report, detail=detail)
-        said = self._reasons.explain(now, self._texts_before[number])
-        self._refused[number] = _Refusal(now, now + (MORE_WITHIN if said else REASON_WITHIN))
+        said = self._reasons.explain(now, self._texts_before[number], name)
+        self._refused[number] = _Refusal(now, now + (MORE_WITHIN if said else REASON_WITHIN), name)
 
     def fail(self, number: int, detail: str) -> None:
         """End a request without an answer; `detail` names the tries."""
@@ -152,9 +156,9 @@ class RequestBook:
 
     def tick(self, now: float) -> None:
         """End the refusals for which no further reason is waited."""
-        for number, (at, until) in list(self._refused.items()):
+        for number, (at, until, name) in list(self._refused.items()):
             if now >= until:
-                reason = self._reasons.explain(at, self._texts_before[number])
+                reason = self._reasons.explain(at, self._texts_before[number], name)
                 self._running[number] = replace(self._running[number], reason=reason)
                 self._end(number, RequestState.REFUSED, self._running[number].detail)
 

@@ -46,12 +46,14 @@ class ReasonTexts:
             self.count += 1
         return may
 
-    def explain(self, refused_at: float, since: int = 0) -> str:
+    def explain(self, refused_at: float, since: int = 0, name: str = "") -> str:
         """Return what was said around a refusal, beginning with text number `since`; "" for nothing.
 
-        Beside a warning only notices count, without one also what is for information.
+        Beside a warning only notices count, without one also what is for information; beside texts with `name` in
+        them only those.
         """
         near = [each for each in self._texts if each.number >= since and abs(each.at - refused_at) <= REASON_WITHIN]
+        near = [each for each in near if name in each.text] or near
         bound = Severity.NOTICE if any(each.severity <= Severity.WARNING for each in near) else Severity.INFO
         texts = dict.fromkeys(each.text for each in near if each.severity <= bound)
         return "; ".join(list(texts)[-MAX_TEXTS:])
