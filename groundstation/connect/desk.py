@@ -12,7 +12,6 @@ from groundstation.connect.listener import VehicleListener
 from groundstation.connect.port_scan import PortScan
 from groundstation.intents.links import AddLink, CloseLink
 from groundstation.intents.session import StartSimulator
-from groundstation.intents.union import AnyIntent
 from groundstation.sitl.sitl import SimulatorControl, free_port
 from groundstation.station.station import Station
 from groundstation.station.view_feed import ViewSource
@@ -52,18 +51,20 @@ class ConnectDesk:
         self._simulators = simulators or SimulatorControl()
         self._listen_until = -math.inf
         station.views.add(ConnectRequest, ViewSource(self._build_view, PERIOD))
+        station.intents.add_last(
+            {AddLink: self._add_link, CloseLink: self._close_link, StartSimulator: self._handle_simulator}
+        )
 
-    def handle(self, intent: AnyIntent, now: float) -> None:
-        """Carry out an intent, if it is one for here."""
-        match intent:
-            case AddLink():
-                self._release_port(intent.endpoint)
-                self._keeper.add(intent, now)
-            case CloseLink():
-                self._keeper.close(intent.link, now)
-            case StartSimulator():
-                if (problem := self._start_simulator(intent.kind)) is not None:
-                    self._warn(now, problem)
+    def _add_link(self, intent: AddLink, now: float) -> None:
+        self._release_port(intent.endpoint)
+        self._keeper.add(intent, now)
+
+    def _close_link(self, intent: CloseLink, now: float) -> None:
+        self._keeper.close(intent.link, now)
+
+    def _handle_simulator(self, intent: StartSimulator, now: float) -> None:
+        if (problem := self._start_simulator(intent.kind)) is not None:
+            self._warn(now, problem)
 
     def tick(self, now: float) -> None:
         """Open and close what is due, and notice the end of a simulator."""

@@ -23,7 +23,6 @@ from groundstation.host.names import answer_names
 from groundstation.host.screens import Lifetime, ScreenSet
 from groundstation.host.snapshot_pace import SLOT, SnapshotPace
 from groundstation.host.verbs import VerbSet
-from groundstation.intents.base import Intent
 from groundstation.intents.driving import Stop
 from groundstation.intents.session import Quit
 from groundstation.intents.union import AnyIntent
@@ -96,8 +95,6 @@ class StationHost:
         self.verbs = VerbSet(station, ids, self._runner.flush)
         self._disk = DiskDesk(station, self._runner.flush)
         self.connect = ConnectDesk(self._runner, station, ids, sent, simulators)
-        self.handlers: list[Callable[[Intent, float], None]] = []
-        """Parts beside the station and its links that take intents, and the time."""
         self._last_snapshot = Snapshot()
         self._pace = SnapshotPace()
         self._slot: asyncio.Handle | None = None
@@ -150,9 +147,6 @@ class StationHost:
         self._pace.note(now)
         self._rouse()
         self._station.handle_intent(intent, now, read_at=read_at)
-        self.connect.handle(intent, now)
-        for handle in self.handlers:
-            handle(intent, now)
 
     def flush(self) -> None:
         """Send what intents have caused, and read and write their files."""

@@ -8,28 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from groundstation.station.charts.desk import ChartDesk
+from groundstation.station.core_listener import CoreListener
 from groundstation.station.relay.verb_relay import VerbRelay
-from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.views.messages import MessageRequest
 
 
 class Attention:
     """Says what is looked at: what is shown, driven or asked for something."""
 
-    def __init__(self, fleet: Fleet, views: ViewFeed, charts: ChartDesk, relay: VerbRelay) -> None:
-        self._fleet, self._views, self._charts, self._relay = fleet, views, charts, relay
+    def __init__(self, fleet: Fleet, relay: VerbRelay, listener: CoreListener) -> None:
+        self._fleet, self._relay, self._listener = fleet, relay, listener
 
     @property
     def systems(self) -> frozenset[int] | None:
         """System ids; None while a verb is connected, which gets what all vehicles send."""
-        return None if self._relay.busy else frozenset(self._find())
+        return None if self._relay.busy else self._listener.systems.union(self._find())
 
     def _find(self) -> Iterator[int]:
         yield from (each.state.system for each in self._fleet if self._is_busy(each))
-        yield from self._charts.systems
-        yield from (each.system for each in self._views.requests(MessageRequest))
 
     def _is_busy(self, contact: Contact) -> bool:
         return (

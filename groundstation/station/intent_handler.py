@@ -7,7 +7,8 @@ selected vehicle, in SERVICE_CALLS (service_calls.py) if it is a request to one 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import msgspec
@@ -15,7 +16,6 @@ import msgspec
 from dialects.enums import Severity
 from dialects.mode_tables import HOLD
 from groundstation.intents.base import Intent
-from groundstation.intents.charts import PinSeries
 from groundstation.intents.driving import (
     HOLD_TIME,
     STOP_KEY,
@@ -29,11 +29,9 @@ from groundstation.intents.driving import (
     SetStyle,
     Stop,
 )
-from groundstation.intents.line import RunLine
 from groundstation.intents.links import CloseLink
 from groundstation.intents.services import CancelRequest, ServiceIntent
-from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, ReportScreen, SetKeyGate
-from groundstation.intents.setup import SETUP_INTENTS
+from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import (
     Arm,
@@ -46,23 +44,17 @@ from groundstation.intents.vehicle import (
     SelectVehicle,
     SetMode,
 )
-from groundstation.intents.watch import Watch
-from groundstation.station.charts.desk import ChartDesk
+from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.commander import Commander
-from groundstation.station.driving.departure import Departure
-from groundstation.station.driving.driving import DrivingController
-from groundstation.station.driving.handover import Handover
-from groundstation.station.driving.link_closing import LinkClosing
-from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.services.service_calls import SERVICE_CALLS
-from groundstation.station.services.service_desk import ServiceDesk
-from groundstation.station.view_feed import ViewFeed
-from groundstation.vehicles.fleet import Fleet
-from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_state import VehicleState
 
 SECOND_STOP_WITHIN = 3.0
 """s after an emergency stop within which another one goes to every vehicle, not only to ours."""
+
+Handle = Callable[[Any, float], None]
+"""Carries out one kind of intent; called with it and the time."""
+Rows = Mapping[type[Intent], Handle]
 
 
 class VehicleCommand(msgspec.Struct, frozen=True):
@@ -77,47 +69,46 @@ class VehicleCommand(msgspec.Struct, frozen=True):
 
 
 class IntentHandler:
-    """Applies intents to the operator's session, the selection and the selected vehicle."""
+    """Applies intents: one table says who carries out which. Parts beside the core add their rows."""
 
-    def __init__(
-        self,
-        operator: OperatorSession,
-        fleet: Fleet,
-        commander: Commander,
-        driving: DrivingController,
-        departure: Departure,
-        handover: Handover,
-        log: MessageLog,
-        views: ViewFeed,
-        services: ServiceDesk,
-        charts: ChartDesk,
-        link_closing: LinkClosing,
-    ) -> None:
-        self._operator = operator
-        self._fleet = fleet
-        self._commander = commander
-        self._driving = driving
-        self._departure = departure
-        self._handover = handover
-        self._log = log
-        self._views = views
-        self._services = services
-        self._charts = charts
-        self._link_closing = link_closing
+    def __init__(self, parts: CoreParts) -> None:
+        self._operator, self._fleet, self._log = parts.operator, parts.fleet, parts.log
+        self._commander, self._driving, self._services = parts.commander, parts.driving, parts.services
+        self._departure, self._handover, self._link_closing = parts.departure, parts.handover, parts.link_closing
         self._emergency_at = -math.inf
+        rows: dict[type[Intent], Handle] = {kind: partial(do, self) for kind, do in HANDLERS.items()}
+        rows |= {kind: partial(self._send_command, command) for kind, command in VEHICLE_COMMANDS.items()}
+        self._table = {kind: [handle] for kind, handle in rows.items()}
+        self._last: dict[type[Intent], Handle] = {}
+
+    def add(self, rows: Rows) -> None:
+        """Let these handle their intents, before the handlers that an intent has already."""
+        for kind, handle in rows.items():
+            self._table.setdefault(kind, []).insert(0, handle)
+
+    def add_last(self, rows: Rows) -> None:
+        """Let these handle their intents, one each, when everything else is done: links, files and lines of verbs."""
+        self._last |= rows
+
+    @property
+    def kinds(self) -> frozenset[type[Intent]]:
+        """All kinds of intents that somebody handles."""
+        return frozenset((*self._table, *self._last))
 
     def handle(self, intent: AnyIntent, now: float) -> None:
         """Carry out an intent; its messages are ready to be sent when this returns."""
         if intent.is_input:
             self._operator.record_input(now)
         self._driving.update_permission(now)
-        command = VEHICLE_COMMANDS.get(type(intent))
-        handler = HANDLERS.get(type(intent))
-        if command is not None:
-            self._send_command(command, intent, now)
-        elif handler is not None:
-            handler(self, intent, now)
+        for handle in self._table.get(type(intent), ()):
+            handle(intent, now)
         self._driving.update(now)
+
+    def finish(self, intent: AnyIntent, now: float) -> None:
+        """Call the last handler of an intent, if it has one."""
+        handle = self._last.get(type(intent))
+        if handle is not None:
+            handle(intent, now)
 
     def _send_command(self, command: VehicleCommand, intent: AnyIntent, now: float) -> None:
         vehicle = self._selected_vehicle(now)
@@ -201,9 +192,6 @@ class IntentHandler:
         self._operator.reset_demand(now)
         self._fleet.select_next(now)
 
-    def _watch(self, intent: Watch, now: float) -> None:
-        self._views.watch(intent.requests)
-
     def _request_control(self, intent: RequestControl, now: float) -> None:
         if (vehicle := self._selected_vehicle(now)) is not None:
             self._handover.request(vehicle, now)
@@ -225,24 +213,12 @@ class IntentHandler:
     def _start_request(self, intent: ServiceIntent, now: float) -> None:
         self._services.start(intent, now)
 
-    def _pin_series(self, intent: PinSeries, now: float) -> None:
-        self._charts.pin(intent.fields)
-
     def _cancel_request(self, intent: CancelRequest, now: float) -> None:
         self._services.cancel(intent.request, now)
 
     def _close_link(self, intent: CloseLink, now: float) -> None:
         """Go neutral for the vehicles behind the link; the shell closes it after that."""
         self._link_closing.begin(intent.link, now)
-
-    def _leave_to_doctor(self, intent: Intent, now: float) -> None:
-        """Do nothing more: station/doctor/doctor_desk.py has carried it out."""
-
-    def _leave_to_line_desk(self, intent: Intent, now: float) -> None:
-        """Do nothing more: verbs/line/desk.py carries it out."""
-
-    def _leave_to_notes(self, intent: ReportScreen, now: float) -> None:
-        """Do nothing more: station/notes/station_notes.py notes it."""
 
     def _quit(self, intent: Quit, now: float) -> None:
         self._operator.sticks.block(now)
@@ -281,19 +257,14 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     RenewLease: IntentHandler._renew_lease,
     SelectVehicle: IntentHandler._select,
     SelectNextVehicle: IntentHandler._select_next,
-    Watch: IntentHandler._watch,
-    ReportScreen: IntentHandler._leave_to_notes,
     RequestControl: IntentHandler._request_control,
     ReleaseControl: IntentHandler._release_control,
     GiveControl: IntentHandler._give_control,
     KeepControl: IntentHandler._keep_control,
     CancelRequest: IntentHandler._cancel_request,
-    PinSeries: IntentHandler._pin_series,
     CloseLink: IntentHandler._close_link,
     Quit: IntentHandler._quit,
-    RunLine: IntentHandler._leave_to_line_desk,
     **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),
-    **dict.fromkeys(SETUP_INTENTS, IntentHandler._leave_to_doctor),
 }
-"""Intent -> method, for all that are not commands to a vehicle. AddLink, StartSimulator and
-the rest of CloseLink are the shell's, groundstation/connect."""
+"""Intent -> method, for all that are not commands to a vehicle. Those of the screens are added by screen_feed.py, those
+of the shell (AddLink, StartSimulator, RunLine, the rest of CloseLink) by the station's process."""

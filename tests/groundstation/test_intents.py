@@ -11,11 +11,13 @@ from groundstation.actions import ACTIONS
 from groundstation.intents import replay
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.line import RunLine
 from groundstation.intents.links import AddLink
 from groundstation.intents.services import ServiceIntent
-from groundstation.intents.session import Detach, StartSimulator
+from groundstation.intents.session import Detach, ReportScreen, StartSimulator
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
 from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
+from groundstation.station.station import Station
 
 REPLAY = {kind for kind in Intent.__subclasses__() if kind.__module__ == replay.__name__}
 """Handled by a replay (tests/groundstation/replay) and by no station."""
@@ -42,7 +44,8 @@ def test_every_intent_travels_through_the_pipe(kind: type[Intent]) -> None:
 
 
 def test_every_intent_has_a_handler() -> None:
-    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator, AddLink, Detach, *REPLAY} == set(KINDS)
+    shell = {StartSimulator, AddLink, RunLine, Detach}
+    assert {*Station(["memory"]).intents.kinds, ReportScreen, *shell, *REPLAY} == set(KINDS)
     assert not set(HANDLERS) & set(VEHICLE_COMMANDS)
 
 

@@ -18,28 +18,28 @@ from groundstation.intents.setup import (
     WatchSticks,
 )
 from groundstation.snapshot import Snapshot
-from groundstation.station.doctor.doctor_facts import VehicleReport, collect, sensor_rows
+from groundstation.station.doctor.doctor_facts import (
+    VehicleReport,
+    collect,
+    find_motors,
+    motor_rows,
+    sensor_rows,
+    vehicle_facts,
+)
 from groundstation.station.driving.motor_test import THROTTLE_MAX, MotorTester
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.services.service_calls import SETUP
 from groundstation.station.services.service_desk import ServiceDesk
 from groundstation.station.services.vehicle_queries import VehicleQueries
-from groundstation.station.view_feed import ViewSource
-from groundstation.vehicles.calibration.calibration import CalibrationState
+from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.vehicles.health.arming_checks import ArmingChecks
-from groundstation.vehicles.readings.motor_outputs import TestedMotor, motors_of
-from groundstation.vehicles.readings.outputs import servo_functions, servo_names
-from groundstation.vehicles.state.doctor_params import DoctorParams
 from groundstation.views.base import ViewRequest
 from groundstation.views.doctor import (
     CheckText,
     DoctorRequest,
     DoctorRow,
     DoctorView,
-    MotorRow,
-    ParamFix,
 )
 from groundstation.views.requests import RequestLine
 from link.core import Outgoing, Received
@@ -99,8 +99,9 @@ class DoctorDesk:
         if contact is self._fleet.selected:
             self.tester.handle_text(text, now)
 
-    def tick(self, now: float, *, watched: bool) -> None:
-        """Renew or end a motor test, read the parameters while the screen is watched."""
+    def tick(self, now: float, views: ViewFeed) -> None:
+        """Renew or end a motor test, read the parameters while a screen shows the chain."""
+        watched = views.is_watching(DoctorRequest)
         self.tester.tick(now, watched=watched)
         chosen = self._fleet.selected
         for contact in self._fleet:
@@ -135,16 +136,25 @@ class DoctorDesk:
 
     # ---- the operator ----
 
-    def handle(self, intent: Intent, now: float) -> None:
-        """Carry out an intent of the Setup screen. Any other input of the operator ends a motor test."""
-        handler = _HANDLERS.get(type(intent))
-        if handler is not None:
-            handler(self, intent, now)
-        elif intent.is_input:
+    @property
+    def handlers(self) -> dict[type[Intent], Callable[[Any, float], None]]:
+        """Intents of the Setup screen -> who carries them out; the services of the vehicle get some of them, too."""
+        return {
+            Calibrate: self._begin_calibration,
+            TurnMotor: self._turn,
+            StopMotorTest: self._stop,
+            ConfirmPosition: self._confirm,
+            EndCalibration: self._end_calibration,
+            WatchSticks: self._watch_sticks,
+        }
+
+    def end_test(self, intent: Intent, now: float) -> None:
+        """End the test of a motor with any input of the operator that is not one of `handlers`."""
+        if intent.is_input and type(intent) not in _OWN:
             self.tester.stop("stopped: another key", now)
 
     def _turn(self, intent: TurnMotor, now: float) -> None:
-        self.tester.press(intent, self._motors(self._fleet.selected), now)
+        self.tester.press(intent, find_motors(self._fleet.selected), now)
 
     def _stop(self, intent: StopMotorTest, now: float) -> None:
         self.tester.stop("stands", now)
@@ -185,7 +195,7 @@ class DoctorDesk:
             self._links,
             system=self._request.station or self._ids[0],
             terminal=self._request.terminal,
-            tested=self.tester.tested.get(system, frozenset()),
+            tested=self._tested(contact),
             now=now,
         )
         return examine(facts)
@@ -212,7 +222,7 @@ class DoctorDesk:
             ),
             checked=checked,
             checked_ago=report.checks.checked_ago(now),
-            motors=self._motor_rows(contact, report, now),
+            motors=motor_rows(contact, report, self._tested(contact), self._shown(now).vehicle),
             motor_limit=min(THROTTLE_MAX, report.params.values.get("MOT_TEST_MAX", 30.0) / 100),
             test=self.tester.view,
             calibrations=report.calibration.rows(contact.state.autopilot, requests),
@@ -223,75 +233,23 @@ class DoctorDesk:
             sticks=sticks.rows if sticks.running else None,
             stick_changes=sticks.changes(values) if sticks.running else (),
             sticks_unread=sticks.unread(values) if sticks.running else (),
-            facts=_vehicle_facts(contact),
+            facts=vehicle_facts(contact),
             requests=requests,
         )
+
+    def _tested(self, contact: Contact | None) -> frozenset[int]:
+        return self.tester.tested.get(contact.state.system, frozenset()) if contact is not None else frozenset()
 
     def _requests(self, system: int) -> tuple[RequestLine, ...]:
         found = self._services.requests_of(SETUP, system)
         return (*(line for line in found.ended if line.system == system), *found.running)
 
-    def _motors(self, contact: Contact | None) -> tuple[TestedMotor, ...]:
-        if contact is None:
-            return ()
-        state = contact.state
-        functions = servo_functions(contact.drive.params.values)
-        return motors_of(state.autopilot, state.drive_info, functions, rover_dialect=state.has_rover_dialect)
-
-    def _motor_rows(self, contact: Contact, report: VehicleReport, now: float) -> tuple[MotorRow, ...]:
-        vehicle = self._shown(now).vehicle
-        values = {output.name: output.value for output in vehicle.outputs} if vehicle is not None else {}
-        tested = self.tester.tested.get(contact.state.system, frozenset())
-        return tuple(
-            MotorRow(
-                number, motor.name, motor.output, values.get(motor.name), number in tested, _reversal(motor, report)
-            )
-            for number, motor in enumerate(self._motors(contact), 1)
-        )
-
     def _report(self, contact: Contact) -> VehicleReport:
-        state = contact.state
-        report = self._reports.get(state.system)
-        if report is None or report.component != state.component:
-            target = (state.system, state.component)
-            report = self._reports[state.system] = VehicleReport(
-                ArmingChecks(state.component),
-                DoctorParams(state.autopilot, self._ids, target),
-                CalibrationState(self._ids, target),
-                state.component,
-            )
+        report = self._reports.get(contact.state.system)
+        if report is None or report.component != contact.state.component:
+            report = self._reports[contact.state.system] = VehicleReport.of(contact, self._ids)
         return report
 
 
-def _reversal(motor: TestedMotor, report: VehicleReport) -> ParamFix | None:
-    """Return the change that lets a motor turn the other way, where its parameter is known."""
-    value = report.params.values.get(motor.reverse)
-    return None if value is None else ParamFix(motor.reverse, value, 0.0 if value else 1.0)
-
-
-def _vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
-    """Return what the vehicle is."""
-    state, values = contact.state, contact.drive.params.values
-    known = len(contact.services.params.client.params) if contact.services is not None else 0
-    axes = "operator presence" if state.has_rover_dialect else "MANUAL_CONTROL"
-    lines = {
-        "firmware": contact.details.firmware,
-        "system": f"{state.system}/{state.component}",
-        "dialect": "rover" if state.has_rover_dialect else "common",
-        "demands": axes,
-        "motors": ", ".join(servo_names(values).values()) if servo_functions(values) else "",
-        "params": f"{known} known" if known else "",
-        "signing": "on, verified" if contact.verified else "with a key that is not here" if contact.signs else "",
-    }
-    return tuple((name, text) for name, text in lines.items() if text)
-
-
-_HANDLERS: dict[type[Intent], Callable[[DoctorDesk, Any, float], None]] = {
-    Calibrate: DoctorDesk._begin_calibration,
-    TurnMotor: DoctorDesk._turn,
-    StopMotorTest: DoctorDesk._stop,
-    ConfirmPosition: DoctorDesk._confirm,
-    EndCalibration: DoctorDesk._end_calibration,
-    WatchSticks: DoctorDesk._watch_sticks,
-}
-"""Intent -> method. Other inputs of the operator end a motor test."""
+_OWN = frozenset((Calibrate, TurnMotor, StopMotorTest, ConfirmPosition, EndCalibration, WatchSticks))
+"""The intents of `handlers`."""

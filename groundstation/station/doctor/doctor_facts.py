@@ -8,13 +8,15 @@ import msgspec
 
 from dialects.enums import Sensor
 from groundstation.doctor.facts import DoctorFacts, SensorBits, SettingFact
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.vehicles.calibration.calibration import CalibrationState
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.health.arming_checks import ArmingChecks
+from groundstation.vehicles.readings.motor_outputs import TestedMotor, motors_of
+from groundstation.vehicles.readings.outputs import servo_functions, servo_names
 from groundstation.vehicles.state.doctor_params import DoctorParams
-from groundstation.views.doctor import SensorRow, TerminalFacts
+from groundstation.views.doctor import MotorRow, ParamFix, SensorRow, TerminalFacts
 from link.runtime.diagnosis import Health
 
 SENSOR_NAMES: Mapping[Sensor, str] = {
@@ -39,6 +41,14 @@ class VehicleReport(msgspec.Struct):
     calibration: CalibrationState
     component: int
     """Of the vehicle that they ask."""
+
+    @classmethod
+    def of(cls, contact: Contact, ids: tuple[int, int]) -> VehicleReport:
+        """Return an empty one for a vehicle; `ids` are our system and component id."""
+        state = contact.state
+        target = (state.system, state.component)
+        params, calibration = DoctorParams(state.autopilot, ids, target), CalibrationState(ids, target)
+        return cls(ArmingChecks(state.component), params, calibration, state.component)
 
 
 def collect(
@@ -105,3 +115,46 @@ def _health(bits: SensorBits, sensor: Sensor) -> Health:
     if not bits.enabled & sensor:
         return Health.UNKNOWN
     return Health.OK if bits.health & sensor else Health.FAULT
+
+
+def find_motors(contact: Contact | None) -> tuple[TestedMotor, ...]:
+    """Return the motors of a vehicle that can be tested."""
+    if contact is None:
+        return ()
+    state = contact.state
+    functions = servo_functions(contact.drive.params.values)
+    return motors_of(state.autopilot, state.drive_info, functions, rover_dialect=state.has_rover_dialect)
+
+
+def motor_rows(
+    contact: Contact, report: VehicleReport, tested: frozenset[int], vehicle: VehicleView | None
+) -> tuple[MotorRow, ...]:
+    """Return a row for each motor, with its output as the screens show it, and the change that reverses it."""
+    values = {output.name: output.value for output in vehicle.outputs} if vehicle is not None else {}
+    return tuple(
+        MotorRow(number, motor.name, motor.output, values.get(motor.name), number in tested, _reversal(motor, report))
+        for number, motor in enumerate(find_motors(contact), 1)
+    )
+
+
+def _reversal(motor: TestedMotor, report: VehicleReport) -> ParamFix | None:
+    """Return the change that lets a motor turn the other way, where its parameter is known."""
+    value = report.params.values.get(motor.reverse)
+    return None if value is None else ParamFix(motor.reverse, value, 0.0 if value else 1.0)
+
+
+def vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
+    """Return name and text of what is known of the vehicle itself."""
+    state, values = contact.state, contact.drive.params.values
+    known = len(contact.services.params.client.params) if contact.services is not None else 0
+    axes = "operator presence" if state.has_rover_dialect else "MANUAL_CONTROL"
+    lines = {
+        "firmware": contact.details.firmware,
+        "system": f"{state.system}/{state.component}",
+        "dialect": "rover" if state.has_rover_dialect else "common",
+        "demands": axes,
+        "motors": ", ".join(servo_names(values).values()) if servo_functions(values) else "",
+        "params": f"{known} known" if known else "",
+        "signing": "on, verified" if contact.verified else "with a key that is not here" if contact.signs else "",
+    }
+    return tuple((name, text) for name, text in lines.items() if text)

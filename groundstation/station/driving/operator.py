@@ -98,6 +98,11 @@ class OperatorSession:
         self._lease.timeout = REST_LEASE_TIMEOUT if rests else LEASE_TIMEOUT
         self._rest_ended_at = -math.inf if rests else now
 
+    @property
+    def rests(self) -> bool:
+        """The station rests."""
+        return self._lease.timeout == REST_LEASE_TIMEOUT
+
     def expire_lease(self, now: float) -> str | None:
         """Release all keys when the lease has run out. Returns what happened, once each time."""
         self._check_lease(now)

@@ -14,7 +14,7 @@ from groundstation.station.messages.message_capture import MessageCapture
 from groundstation.station.messages.message_fields import build_fields
 from groundstation.station.messages.message_kind import MessageKind
 from groundstation.station.messages.message_traffic import MessageTraffic, Place
-from groundstation.station.view_feed import ViewSource
+from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.views.base import ViewRequest
 from groundstation.views.charts import FieldId
 from groundstation.views.messages import (
@@ -61,6 +61,11 @@ class MessageDetail:
             MessageRequest: ViewSource(self._build, 0.25),
             CaptureRequest: ViewSource(self._capture.build_page, 0.5),
         }
+
+    @staticmethod
+    def systems(views: ViewFeed) -> frozenset[int]:
+        """Return the system ids of the vehicles of which a screen shows a message."""
+        return frozenset(each.system for each in views.requests(MessageRequest))
 
     def tick(self, now: float) -> None:
         """Forget the messages when no screen requests them any more."""

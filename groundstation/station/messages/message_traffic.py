@@ -77,10 +77,6 @@ class MessageTraffic:
         for tap in kind.taps:
             tap(message, now)
 
-    def _end_buckets_until(self, now: float) -> None:
-        if now >= self._bucket_ends:
-            self._end_buckets(now)
-
     def _end_buckets(self, now: float) -> None:
         """End the buckets that are over; after a long silence all that count."""
         ended = min(BUCKETS + 1, 1 + int((now - self._bucket_ends) / BUCKET))
@@ -88,6 +84,11 @@ class MessageTraffic:
         for _, kind in self.kinds():
             for _ in range(ended):
                 kind.end_bucket()
+
+    def tick(self, now: float) -> None:
+        """End what is over, so that the next message, which may be a key's, finds it done."""
+        if now >= self._bucket_ends:
+            self._end_buckets(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take the unknown messages, and what was lost of each source, from the link that has received most of it."""
@@ -126,7 +127,7 @@ class MessageTraffic:
 
     def build_page(self, request: MessagesRequest, now: float, wall: float) -> MessagesPage:
         """Return the rows that a screen shows."""
-        self._end_buckets_until(now)
+        self.tick(now)
         every = [row for source in self._sources() for row in self._message_rows(source, now)]
         rows = self._arrange(request, every, now)
         count = max(1, min(request.count, MAX_ROWS))

@@ -6,14 +6,9 @@ from collections.abc import Mapping
 
 from dialects.enums import state_name
 from groundstation.geo import Place, find_way
-from groundstation.station.driving.commander import Commander
-from groundstation.station.driving.driving import DrivingController
-from groundstation.station.driving.handover import Handover
-from groundstation.station.links.ground_stations import GroundStations
-from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.services.vehicle_queries import VehicleQueries
+from groundstation.station.core_parts import CoreParts
 from groundstation.station.view_feed import ViewSource
-from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.state.control_report import ControlReport
 from groundstation.views.base import ViewRequest
 from groundstation.views.links import (
@@ -26,35 +21,24 @@ from groundstation.views.links import (
     VehiclesRequest,
     VehiclesView,
 )
-from link.services.timesync import TimesyncClient
 
 PERIOD = 0.5
 """s between two views: tables change all their lines, which is expensive over SSH."""
 
 
 class LinkViews:
-    """Builds the three views, only while the screen watches them. `ours` is this station."""
+    """Builds the three views, only while the screen watches them."""
 
-    def __init__(
-        self,
-        fleet: Fleet,
-        commander: Commander,
-        driving: DrivingController,
-        handover: Handover,
-        queries: VehicleQueries,
-        links: LinkStats,
-        timesync: TimesyncClient,
-        ours: Program,
-    ) -> None:
-        self.stations = GroundStations()
-        self._fleet = fleet
-        self._commander = commander
-        self._driving = driving
-        self._handover = handover
-        self._queries = queries
-        self._links = links
-        self._timesync = timesync
-        self._ours = ours
+    def __init__(self, parts: CoreParts) -> None:
+        self._fleet = parts.fleet
+        self._commander = parts.commander
+        self._driving = parts.driving
+        self._handover = parts.handover
+        self._queries = parts.queries
+        self._links = parts.links.stats
+        self._timesync = parts.links.timesync
+        self._stations = parts.links.stations
+        self._ours = Program(*parts.ids, parts.operator.session)
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -117,7 +101,7 @@ class LinkViews:
     # ---- control ----
 
     def _build_control(self, request: ControlRequest, now: float, wall: float) -> ControlView:
-        stations, signing = self.stations.build_rows(now), self._links.signing
+        stations, signing = self._stations.build_rows(now), self._links.signing
         contact = self._fleet.selected
         if contact is None:
             return ControlView(

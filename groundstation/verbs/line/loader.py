@@ -7,7 +7,6 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from groundstation.intents.base import Intent
 from groundstation.intents.line import RunLine
 from groundstation.station.station import Station
 from groundstation.station.view_feed import ViewSource
@@ -29,11 +28,10 @@ class LineLoader:
         self._loading: asyncio.Task[None] | None = None
         self._waiting: list[RunLine] = []
         station.views.add(LineRequest, ViewSource(self._build, period=PERIOD))
+        station.intents.add_last({RunLine: self._run})
 
-    def handle(self, intent: Intent, now: float) -> None:
-        """Run a line, at once or when the verbs are loaded; ignore all other intents."""
-        if not isinstance(intent, RunLine):
-            return
+    def _run(self, intent: RunLine, now: float) -> None:
+        """Run a line, at once or when the verbs are loaded."""
         self._waiting.append(intent)
         self._run_waiting(now)
 

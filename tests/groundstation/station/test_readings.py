@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.codec import encode_payload
 from groundstation.intents.session import RenewLease, SetKeyGate
 from groundstation.snapshot import Snapshot
-from groundstation.station import station as station_module
+from groundstation.station import operator_core
 from groundstation.station.readings import READINGS
 from groundstation.station.station import Station
 from link.protocol.channel import Channel
@@ -55,7 +55,7 @@ def test_station_that_gives_all_messages_to_all_parts_is_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     shown, sent = run()
-    monkeypatch.setattr(station_module, "READINGS", frozenset())
+    monkeypatch.setattr(operator_core, "READINGS", frozenset())
     assert (shown, sent) == run()
     assert shown.vehicle is not None
     assert shown.vehicle.heading is not None

@@ -11,7 +11,7 @@ from groundstation.intents.session import LEASE_TIMEOUT, REST_PERIOD, RenewLease
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.snapshot import Snapshot
 from groundstation.station.driving.driven import DEMAND_MEMORY
-from groundstation.station.station import REST_AFTER, TICK_PERIOD
+from groundstation.station.operator_core import REST_AFTER, TICK_PERIOD
 from tests.fakes.rover import FakeArduPilot
 from tests.groundstation.cockpits import Cockpit, armed_cockpit
 

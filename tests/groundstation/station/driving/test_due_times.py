@@ -10,7 +10,7 @@ from dialects.modes import Mode
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import LEASE_TIMEOUT
 from groundstation.station.driving.operator import NEUTRAL_LEAD
-from groundstation.station.station import TICK_PERIOD
+from groundstation.station.operator_core import TICK_PERIOD
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
 

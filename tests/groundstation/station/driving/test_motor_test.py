@@ -48,7 +48,7 @@ class Bench(Drive):
     @property
     def text(self) -> str:
         """What the screen says about the test."""
-        view = self.station._doctor.tester.view
+        view = self.station.feed.doctor.tester.view
         return view.text if view is not None else ""
 
     def turn(self, intent: TurnMotor = TURN) -> None:
@@ -239,7 +239,7 @@ def test_ardupilot_arms_itself_for_a_test_which_does_not_end_it() -> None:
     cockpit.vehicle.armed = True
     cockpit.vehicle.beat()
     cockpit.run(1.0)
-    tester = cockpit.station._doctor.tester
+    tester = cockpit.station.feed.doctor.tester
     assert tester.view is not None
     assert tester.view.turning
     cockpit.do(StopMotorTest())

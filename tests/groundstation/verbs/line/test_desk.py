@@ -24,15 +24,14 @@ from tests.waits import PATIENCE
 class Lines:
     """A station whose lease is renewed."""
 
-    def __init__(self, station: Station, loader: LineLoader) -> None:
+    def __init__(self, station: Station) -> None:
         self.station = station
-        self._loader = loader
         self._number = 0
 
     async def run(self, text: str, *, confirmed: bool = False) -> LineView:
         """Run a line, and return how it ended."""
         self._number += 1
-        self._loader.handle(RunLine(self._number, text, 0, confirmed), now())
+        self.station.handle_intent(RunLine(self._number, text, 0, confirmed), now())
         return await self.until(lambda view: view.state != RUNNING, LineRequest(self._number))
 
     async def until(self, condition: Callable[[LineView], bool], request: LineRequest) -> LineView:
@@ -86,7 +85,8 @@ def with_station(vehicle: ForeignVehicle, use: Callable[[Lines], Awaitable[None]
                 await asyncio.sleep(0.1)
 
         lease = asyncio.ensure_future(renew())
-        lines = Lines(station, LineLoader(station, (255, COMPONENT), runner.flush))
+        LineLoader(station, (255, COMPONENT), runner.flush)
+        lines = Lines(station)
         try:
             async with asyncio.timeout(2 * PATIENCE):
                 await lines.see(lambda: station.fleet.selected is not None)

@@ -1,0 +1,61 @@
+"""CoreListener: what an OperatorCore tells of everything that happens, to whoever shows or records it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dialects.messages import Message
+from groundstation.intents.union import AnyIntent
+from groundstation.vehicles.fleet import Contact
+from link.core import LinkReport, Outgoing, Received
+
+
+class CoreListener:
+    """Listens and does nothing: that of a core without a screen. ScreenFeed is the other one."""
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is under way that needs all ticks."""
+        return False
+
+    @property
+    def systems(self) -> frozenset[int]:
+        """System ids of vehicles whose whole telemetry is needed."""
+        return frozenset()
+
+    def hear(self, received: Received, contact: Contact | None, now: float) -> None:
+        """Take a message of any system, before the parts of the core; `contact` is None if it is no vehicle's."""
+
+    def receive(self, contact: Contact, received: Received, now: float) -> None:
+        """Take a message of a vehicle; its state has it already."""
+
+    def receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
+        """Take one that answers a request, makes one, or decides on something (not in READINGS)."""
+
+    def handle_text(self, contact: Contact, text: str, now: float) -> None:
+        """Take a whole STATUSTEXT of a vehicle."""
+
+    def tick(self, now: float) -> None:
+        """Do what is due while the core ticks."""
+
+    def end_tick(self, now: float) -> None:
+        """Do what is due when the core has ticked."""
+
+    def begin_intent(self, intent: AnyIntent, now: float) -> None:
+        """Take an intent that is going to be carried out."""
+
+    def repeat_key(self, push: AnyIntent, now: float) -> None:
+        """Take a repeat of a key that drives, which is no intent for anybody else."""
+
+    def follow(self, intent: AnyIntent | None, now: float) -> None:
+        """Take that an intent was carried out, or (None) that time has passed."""
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Take the reports of the open links, once a second, before the parts of the core."""
+
+    def handle_sent(self, message: Message, now: float) -> None:
+        """Take that a message was sent."""
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now and clear the queue."""
+        return []

@@ -1,0 +1,61 @@
+"""CoreParts: the parts of an OperatorCore, built and joined. What happens in which order is operator_core.py's."""
+
+from __future__ import annotations
+
+from collections.abc import MutableMapping, Sequence
+
+from groundstation.input.style import Style
+from groundstation.station.component import COMPONENT
+from groundstation.station.driving.commander import Commander
+from groundstation.station.driving.departure import Departure
+from groundstation.station.driving.driving import DrivingController
+from groundstation.station.driving.handover import Handover
+from groundstation.station.driving.link_closing import LinkClosing
+from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.links.link_monitor import LinkMonitor
+from groundstation.station.notes.operator_log import OperatorLog
+from groundstation.station.relay.refusals import Refusals
+from groundstation.station.relay.verb_relay import VerbRelay
+from groundstation.station.services.service_desk import ServiceDesk
+from groundstation.station.services.transfer_hold import TransferHold
+from groundstation.station.services.vehicle_queries import VehicleQueries
+from groundstation.vehicles.fleet import Fleet
+from groundstation.vehicles.state.message_log import MessageLog
+
+
+class CoreParts:
+    """Vehicles, operator, driving, commands, services, links and log of one ground station.
+
+    `system` is our system id, `session` a random number. `docs_cache`: texts of parameters, see VehicleServices.
+    """
+
+    def __init__(
+        self,
+        endpoints: Sequence[str],
+        *,
+        system: int = 255,
+        style: Style = Style.HOLD,
+        speed: float = 0.6,
+        session: int = 0,
+        docs_cache: MutableMapping[int, bytes] | None = None,
+        now: float = 0.0,
+    ) -> None:
+        ids = self.ids = (system, COMPONENT)
+        self.started = now
+        log = self.log = MessageLog()
+        operator = self.operator = OperatorSession(style, speed, session)
+        fleet = self.fleet = Fleet(log, *ids)
+        log.name_of = fleet.name_of
+        self.links = LinkMonitor(endpoints, log, system, now)
+        stats = self.links.stats
+        commander = self.commander = Commander(log, *ids)
+        hold = TransferHold(fleet, operator, stats)
+        self.services = ServiceDesk(fleet, commander, log, *ids, texts=docs_cache, is_held=hold.is_held)
+        self.driving = DrivingController(operator, fleet, commander, ids)
+        self.departure = Departure(fleet, commander, self.driving)
+        self.handover = Handover(fleet, commander, self.driving, log, system)
+        self.link_closing = LinkClosing(operator, fleet, stats)
+        self.queries = VehicleQueries(fleet, commander, stats, log, self.services)
+        self.relay = VerbRelay(fleet, operator, commander, log)
+        self.refusals = Refusals(fleet, commander, self.relay, log)
+        self.operator_log = OperatorLog(log)

@@ -1,0 +1,309 @@
+"""OperatorCore: one operator, the vehicles, and what goes to and comes from them. No screen is needed, and no I/O."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Sequence
+
+from dialects import messages as m
+from dialects.enums import Severity
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import REST_PERIOD
+from groundstation.intents.union import AnyIntent
+from groundstation.station.attention import Attention
+from groundstation.station.core_listener import CoreListener
+from groundstation.station.core_parts import CoreParts
+from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.intent_handler import IntentHandler
+from groundstation.station.readings import READINGS
+from groundstation.vehicles.demand.drive_gate import drive_refusal
+from groundstation.vehicles.demand.stop_commands import StopKind
+from groundstation.vehicles.fleet import Contact
+from groundstation.vehicles.readings.motor_outputs import is_turn
+from groundstation.vehicles.state.message_log import VehicleText
+from link.core import LinkReport, Outgoing, Received
+from link.services.timesync import handle_request
+
+DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
+
+DECISIVE = (m.Heartbeat, m.ControlStatus, m.RoverControl, m.RoverDriveStatus)
+"""Messages that report what decides on demands: armed, mode, who is in control, emergency stop."""
+
+REST_AFTER = 1.0
+"""s without anything under way after which the station rests: requests to many vehicles follow one another."""
+
+TICK_PERIOD = 0.1
+"""s between ticks that are enough for demands, which have times of their own (`due_at`)."""
+
+
+class OperatorCore:
+    """A core (link/core.py). Its parts do the work; here is which of them gets what, and in which order."""
+
+    def __init__(self, parts: CoreParts, listener: CoreListener | None = None) -> None:
+        """Join the parts. `listener` shows and records what happens; None: nobody does."""
+        self.parts = parts
+        self.log, self.operator, self.fleet = parts.log, parts.operator, parts.fleet
+        self.services, self.driving, self.relay = parts.services, parts.driving, parts.relay
+        self.departure, self.link_closing = parts.departure, parts.link_closing
+        self.surroundings, self.params = parts.links.surroundings, parts.links.params
+        self.intents = IntentHandler(parts)
+        self._listener = listener or CoreListener()
+        self._attention = Attention(parts.fleet, parts.relay, self._listener)
+        self._commander, self._handover, self._queries = parts.commander, parts.handover, parts.queries
+        self._links, self._timesync, self._heartbeat = parts.links, parts.links.timesync, parts.links.heartbeat
+        self._refusals, self._operator_log = parts.refusals, parts.operator_log
+        self._outbox: list[Outgoing] = []
+        self._active_at = parts.started
+        """When something was under way last."""
+        self.rests = False
+        """No vehicle is armed or was driven just now, and nothing is under way."""
+        self.on_rest_end: Callable[[], None] = lambda: None
+        """Called at once when `rests` becomes False."""
+
+    # ---- Core ----
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle one message at once."""
+        reading = type(received.message) in READINGS
+        if not reading:
+            self._links.receive(received, now)
+            self._commander.receive_of_unheard(received)
+        self.relay.receive(received, now)
+        contact = self.fleet.get_or_add(received, now)
+        if contact is not None and self._commander.blind_stop is not None:
+            self._commander.stop_late(contact.state, now)
+        self._listener.hear(received, contact, now)
+        if contact is None:
+            return
+        self._heartbeat.greet(received.peer, now)
+        contact.state.receive(received, now)
+        contact.details.receive(received, now)
+        self._listener.receive(contact, received, now)
+        self._queries.receive(contact, received, now)
+        self.services.receive(contact, received, now)
+        if not reading:
+            self._receive_exchange(contact, received, now)
+
+    def stop_blindly(self, kind: StopKind, now: float) -> None:
+        """Stop all vehicles, also those that are not heard."""
+        self._commander.stop_blindly(now, kind)
+
+    def _receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
+        """Handle what answers a request, makes one, or decides on something."""
+        self._handover.receive(contact, received, now)
+        self._listener.receive_exchange(contact, received, now)
+        if isinstance(received.message, DECISIVE):
+            self.driving.handle_report(contact, now)
+            if self.rests:  # it ends at once; its beginning is found by a tick, which looks at all vehicles
+                self._update_rest(now)
+        elif isinstance(received.message, m.StatusText):
+            said = self.log.handle_statustext(received.message, received.system, now, received.component)
+            self._handle_texts(said, now)
+        if contact is self.fleet.selected:
+            self._timesync.receive(received, now)
+        self._outbox += handle_request(received, now, self.parts.ids)
+        self._commander.receive(received, now)
+
+    def tick(self, now: float) -> None:
+        """Send what is due and handle what has timed out."""
+        self._expire_lease(now)
+        self._handle_texts(self.log.expire(now), now)
+        self.fleet.update(now)
+        self._commander.tick(now)
+        self._listener.tick(now)
+        self._handover.tick(now)
+        self.relay.tick(now)
+        if self.operator.live:
+            self._queries.tick(now)
+            self.services.tick(now)
+        if self.operator.live and not self.driving.ending:
+            self._timesync.tick(now)
+            self._outbox += self._heartbeat.tick(now, driving=self.driving.drives_any)
+        self.driving.update(now)
+        self._log_driving(now)
+        self._listener.follow(None, now)
+        self.departure.tick(now)
+        self._update_rest(now)
+        self._listener.end_tick(now)
+
+    @property
+    def looked_at(self) -> frozenset[int] | None:
+        """System ids of the vehicles whose whole telemetry is needed; None: all."""
+        return self._attention.systems
+
+    @property
+    def rest_period(self) -> float | None:
+        """Time between ticks that are enough, s: nothing but demands is under way, and for them there is `due_at`."""
+        if self._busy:
+            return None
+        return REST_PERIOD if self.rests else TICK_PERIOD
+
+    @property
+    def _busy(self) -> bool:
+        """More than demands is under way."""
+        return (
+            self._commander.busy
+            or self.services.busy
+            or self.relay.busy
+            or self._handover.busy
+            or self._listener.busy
+            or self.driving.ending
+        )
+
+    def _update_rest(self, now: float) -> None:
+        driven = any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
+        if self._busy or driven or self.driving.driven_vehicles(now) or self._heartbeat.is_greeting(now):
+            self._active_at = now
+        rests = now - self._active_at >= REST_AFTER
+        if rests != self.rests:
+            self.rests = rests
+            self.operator.set_resting(rests, now)
+            if not rests:
+                self.on_rest_end()
+
+    def decisive(self, now: float) -> Hashable:
+        """Return what a driver must see at once if it changes: who drives what, armed, stopped, held keys, the log."""
+        selected, operator = self.fleet.selected, self.operator
+        state = selected.state if selected is not None else None
+        vehicle = state and (state.system, state.armed, state.mode, state.driver, state.emergency_stop, state.failsafes)
+        keys = (operator.sent_demand, operator.sticks.held_keys(now), operator.ignored(now))
+        others = (self.fleet.also_armed, self._handover.busy, self.rests)
+        return (self.driving.blocked_reason(now), self.log.state, vehicle, keys, others)
+
+    @property
+    def due_at(self) -> float | None:
+        """When a demand is due, or one ends, before the next tick; None: none is."""
+        return self.driving.due_at
+
+    def act(self, now: float) -> None:
+        """Send the demand that is due before the next tick."""
+        self._expire_lease(now)
+        before = self.operator.sent_demand
+        self.driving.update(now)
+        if self.operator.sent_demand != before:
+            self._log_driving(now)
+            self._listener.follow(None, now)
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Update the link statistics; log when a link problem starts and ends."""
+        self._listener.observe(reports, now)
+        self.relay.observe(reports)
+        reports = [*reports, *self.surroundings.not_open]
+        selected = self.fleet.selected
+        self._links.stats.update(reports, selected.state.system if selected else None, now)
+        self.fleet.observe(reports, now)
+        self.driving.adapt(self._links.stats)
+        self._links.log_events(reports, now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now and clear the queue."""
+        outbox, self._outbox = self._outbox, []
+        demands = self.driving.messages_to_send()
+        commands = self._commander.messages_to_send() + self._queries.messages_to_send()
+        services = self.services.messages_to_send()  # repeated later if they are dropped here
+        return (
+            demands
+            + self.relay.messages_to_send()
+            + commands
+            + self._listener.messages_to_send()
+            + self._timesync.messages_to_send()
+            + outbox
+            + (services if self.operator.live else [])
+        )
+
+    def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
+        """Record that a message was sent under this packet sequence number."""
+        self._listener.handle_sent(message, now)
+        self.driving.handle_sent(message, sequence, now)
+
+    def handle_refused(self, message: m.Message, why: str, now: float) -> None:
+        """Tell who wanted a message that our role does not allow."""
+        self._refusals.handle(message, why, now)
+
+    def may_send(self, message: m.Message, now: float) -> bool:
+        """Return False for what would move a vehicle: its kind is not driven, or our process stood still."""
+        why = drive_refusal(message, (contact.state for contact in self.fleet))
+        if why is not None:
+            self._refusals.handle(message, why, now)
+            return False
+        moves = isinstance(message, DEMANDS) or is_turn(message)
+        return not moves or not self.operator.stall.is_stalled(now)
+
+    def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
+        """Return the vehicles that the watchdog stops if no further call follows in time (stall.py)."""
+        self._expire_lease(now)
+        self._update_rest(now)
+        self.operator.stall.record_report(now, rests=self.rests)
+        return self.driving.driven_vehicles(now)
+
+    def renew_lease(self, now: float) -> bool:
+        """Extend the lease of a screen that renews it in time, which changes nothing else.
+
+        Returns False, without a renewal, if the lease had run out: then RenewLease is an intent like any other.
+        """
+        self._expire_lease(now)
+        if self.operator.live:
+            self.operator.renew_lease(now)
+        return self.operator.live
+
+    def prolong_key(self, push: DriveKeyDown, now: float) -> bool:
+        """Handle a repeat of a drive key that is held, which changes nothing but until when it counts.
+
+        Returns False if it is something else: then it is an intent like any other.
+        """
+        self._expire_lease(now)
+        if not self.operator.prolong(push, now):
+            return False
+        self._listener.repeat_key(push, now)
+        return True
+
+    def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
+        """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
+        self._expire_lease(now)
+        self._operator_log.handle(intent, now)
+        self._listener.begin_intent(intent, now)
+        if intent.is_input:
+            self.driving.key_read_at = now if read_at is None else read_at
+        self.intents.handle(intent, now)
+        self.driving.key_read_at = None
+        self._log_driving(now)
+        self._listener.follow(intent, now)
+        self._update_rest(now)
+        self.intents.finish(intent, now)
+
+    @property
+    def finished(self) -> bool:
+        """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
+        return (
+            self.driving.ending
+            and self.driving.finished
+            and self.departure.finished
+            and self._handover.finished
+            and self.relay.finished
+        )
+
+    def _expire_lease(self, now: float) -> None:
+        """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.
+
+        Without an armed vehicle of ours it is not reported: a slow start would be.
+        """
+        lapse = self.operator.expire_lease(now)
+        if lapse is None:
+            return
+        self.driving.drop_demands()
+        if any(contact.ours and contact.state.armed for contact in self.fleet):
+            self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
+
+    def _log_driving(self, now: float) -> None:
+        selected = self.fleet.selected
+        self._operator_log.tick(self.operator.sent_demand, selected.state.latency if selected else None, now)
+
+    def _handle_texts(self, texts: Iterable[VehicleText], now: float) -> None:
+        for each in texts:
+            contact = self.fleet.get(each.system)
+            if contact is None:
+                continue
+            contact.state.handle_text(each.text)
+            self.fleet.signing.handle_text(each.system, each.text)
+            self._commander.handle_statustext(each.system, each.text, each.severity, now)
+            self.services.handle_text(contact, each.text, each.severity, now)
+            self._listener.handle_text(contact, each.text, now)

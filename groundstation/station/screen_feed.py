@@ -1,0 +1,142 @@
+"""ScreenFeed: what screens are shown of a core beside its own state, and what a recording keeps of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dialects.messages import Message
+from groundstation.intents.charts import PinSeries
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.watch import Watch
+from groundstation.snapshot import Snapshot
+from groundstation.station.charts.desk import ChartDesk
+from groundstation.station.core_listener import CoreListener
+from groundstation.station.core_parts import CoreParts
+from groundstation.station.doctor.doctor_desk import DoctorDesk
+from groundstation.station.intent_handler import Rows
+from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_traffic import MessageTraffic
+from groundstation.station.notes.station_notes import StationNotes
+from groundstation.station.snapshot_builder import SnapshotBuilder
+from groundstation.station.view_feed import ViewFeed
+from groundstation.station.views.drive_display import DriveDisplay
+from groundstation.station.views.param_texts import ParamTexts
+from groundstation.station.views.sources import core_sources
+from groundstation.vehicles.fleet import Contact
+from link.core import LinkReport, Outgoing, Received
+
+
+class ScreenFeed(CoreListener):
+    """Views, charts, message traffic, doctor, display and notes of one core, for all of its screens."""
+
+    def __init__(self, parts: CoreParts, texts: ParamTexts) -> None:
+        self._parts = parts
+        fleet, links, operator = parts.fleet, parts.links, parts.operator
+        self._traffic = MessageTraffic(*parts.ids)
+        self._detail = MessageDetail(self._traffic)
+        self._display = DriveDisplay(fleet, operator, links.timesync, parts.ids[0])
+        self._snapshots = SnapshotBuilder(parts, self._display)
+        self._charts = ChartDesk(fleet, self._traffic, operator, links.stats, links.timesync)
+        self.doctor = DoctorDesk(
+            fleet, parts.services, parts.queries, links.stats, operator, parts.ids, lambda now: self.snapshot(now, now)
+        )
+        self.notes = StationNotes(operator, fleet, parts.driving)
+        parts.log.listener = self.notes.add_line
+        self.views = ViewFeed(
+            {
+                **core_sources(parts, texts.files),
+                **self._charts.sources,
+                **self._detail.sources,
+                **self.doctor.sources,
+                **self._display.sources,
+            }
+        )
+
+    @property
+    def handlers(self) -> Rows:
+        """Intents that only screens have, and who carries them out."""
+        return {
+            Watch: lambda intent, now: self.views.watch(intent.requests),
+            PinSeries: lambda intent, now: self._charts.pin(intent.fields),
+            **self.doctor.handlers,
+        }
+
+    def snapshot(self, now: float, wall: float) -> Snapshot:
+        """Build the snapshot; `now` and `wall` are the same moment on both clocks.
+
+        It has no effect. Whoever sends it counts it (`Snapshot.number`).
+        """
+        return self._snapshots.build(now, wall, faults=self.doctor.faults)
+
+    # ---- CoreListener ----
+
+    @property
+    def busy(self) -> bool:
+        """A motor is tested."""
+        return self.doctor.tester.busy
+
+    @property
+    def systems(self) -> frozenset[int]:
+        """System ids of the vehicles whose fields are drawn, or whose messages are shown."""
+        return self._charts.systems | self._detail.systems(self.views)
+
+    def hear(self, received: Received, contact: Contact | None, now: float) -> None:
+        """Count a message of any system."""
+        autopilot = contact is not None and contact.state.component == received.component
+        self._traffic.count(received.message, received.system, received.component, now, known=autopilot)
+
+    def receive(self, contact: Contact, received: Received, now: float) -> None:
+        """Take a message of a vehicle for its display."""
+        self._display.receive(contact, received, now)
+
+    def receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
+        """Take a message of a vehicle for the doctor."""
+        self.doctor.receive(contact, received, now)
+
+    def handle_text(self, contact: Contact, text: str, now: float) -> None:
+        """Take a whole STATUSTEXT of a vehicle for the doctor."""
+        self.doctor.handle_text(contact, text, now)
+
+    def tick(self, now: float) -> None:
+        """Choose what to read of vehicles, renew or end a motor test."""
+        self._display.tick(now)
+        self.doctor.tick(now, self.views)
+
+    def end_tick(self, now: float) -> None:
+        """Count and record what is shown, and examine the chain."""
+        self._traffic.tick(now)
+        self._charts.tick(now)
+        self._detail.tick(now)
+        self.doctor.examine_if_due(now)
+
+    def begin_intent(self, intent: AnyIntent, now: float) -> None:
+        """Mark a key in the charts; each input that is no motor's ends the test of a motor."""
+        self._charts.mark_key(intent, now)
+        self.doctor.end_test(intent, now)
+
+    def repeat_key(self, push: AnyIntent, now: float) -> None:
+        """Mark a repeat of a key that drives."""
+        self._charts.mark_key(push, now)
+
+    def follow(self, intent: AnyIntent | None, now: float) -> None:
+        """Note what an intent, or time, has changed."""
+        if intent is None:
+            self.notes.tick(now)
+        else:
+            self.notes.handle(intent, now)
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Take the reports of the open links."""
+        self.notes.observe(reports, now)
+        self._traffic.observe([*reports, *self._parts.links.surroundings.not_open], now)
+        states = [contact.state for contact in self._parts.fleet]
+        self._traffic.set_labels({(each.system, each.component): each.name for each in states})
+
+    def handle_sent(self, message: Message, now: float) -> None:
+        """Count a message that was sent."""
+        self._traffic.count_sent(message, now)
+        self._display.handle_sent(message, now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the doctor's messages, and remove them."""
+        return self.doctor.messages_to_send()

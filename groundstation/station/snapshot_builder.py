@@ -1,0 +1,62 @@
+"""SnapshotBuilder: what every screen shows, from the parts of the core. It changes nothing."""
+
+from __future__ import annotations
+
+from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.station.core_parts import CoreParts
+from groundstation.station.views.drive_display import DriveDisplay
+from groundstation.vehicles.fleet import Contact
+
+
+class SnapshotBuilder:
+    """Joins what vehicles report with what this station has requested of them."""
+
+    def __init__(self, parts: CoreParts, display: DriveDisplay) -> None:
+        self._parts = parts
+        self._display = display
+
+    def build(self, now: float, wall: float, *, faults: int) -> Snapshot:
+        """Build the snapshot; `faults`: how many links of the doctor's chain stop the operator."""
+        parts, links, fleet, around = self._parts, self._parts.links, self._parts.fleet, self._parts.links.surroundings
+        selected = fleet.selected
+        return Snapshot(
+            uptime=now - parts.started,
+            endpoints=around.endpoints,
+            addresses=() if selected else around.addresses,
+            waiting=None if selected else around.waiting(has_traffic=links.stats.has_traffic),
+            vehicle=self._vehicle(selected, now) if selected else None,
+            left_armed=parts.departure.left_armed(now),
+            id_conflict=links.id_conflict.text(now),
+            blind_stop=parts.commander.describe_blind_stop(),
+            vehicles=fleet.system_ids,
+            not_shown=fleet.not_shown,
+            also_armed=fleet.also_armed,
+            handover=parts.handover.notice(now),
+            operator=parts.operator.build_view(
+                parts.driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
+            ),
+            links=links.stats.build_views(links.timesync.round_trip),
+            signing=fleet.signing_of(selected, now),
+            texts=parts.log.build_lines(now, wall),
+            faults=faults,
+            recording=around.recording,
+            simulator=around.simulator,
+            transfers=parts.services.progress,
+            rests=parts.operator.rests,
+        )
+
+    def _vehicle(self, contact: Contact, now: float) -> VehicleView:
+        state, commander, driving = contact.state, self._parts.commander, self._parts.driving
+        return state.build_view(
+            now,
+            in_control=driving.is_in_control(contact),
+            twin=driving.is_driven_by_twin(contact),
+            control_wait=self._parts.handover.waits_for(contact, now),
+            emergency_stop=state.emergency_stop or commander.is_locked(state.system),
+            emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
+            stop_question=commander.stop_question(state.system, now),
+            stop_doubt=state.senders.find_doubt(now) if commander.is_locked(state.system) else "",
+            twins=state.senders.describe_twins(now),
+            refusal=commander.last_refusal(state.system, now),
+            **self._display.build_fields(contact, now),
+        )
