@@ -49,6 +49,7 @@ ADVICE: tuple[Advice, ...] = (
     _to("set it level, or calibrate the level", "level"),
     _to("wait until the estimator has settled, outdoors", "ekf"),
     _to("wait until the estimator has settled, outdoors", "ahrs"),
+    _to("let the keys go and arm from Drive: PX4 wants the throttle centred", "throttle", "safe position"),
     _to("wait for a position, outdoors; or use a mode that needs none", "gps"),
     _to("wait for a position, outdoors; or use a mode that needs none", "position"),
     _to("wait until home is set, by the first position", "home"),

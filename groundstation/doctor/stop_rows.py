@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from groundstation.doctor.facts import DoctorFacts, SettingFact
 from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
+from groundstation.doctor.link_rows import OBEYED
 from groundstation.doctor.vehicle_rows import AFTER_VEHICLE
 from groundstation.snapshot.drive import StopBound
 from groundstation.views.doctor import ParamFix
@@ -22,7 +23,8 @@ REMEDIES = {
 """Parameter -> the value that its warning recommends (vehicles/stops/ardupilot_checks.py, px4_checks.py)."""
 
 STOP_BOUNDS = ("RC_OVERRIDE_TIME", "FS_THR_ENABLE", "COM_RC_LOSS_T", "NAV_RCL_ACT", "COM_FAIL_ACT_T", "COM_RC_IN_MODE")
-"""Parameters that decide when the motors stop without demands; the others decide on the ground station failsafe."""
+"""Parameters that decide when the motors stop without demands; the others decide on the ground station failsafe, but
+for OBEYED, which the row of our id judges for the station that will drive."""
 
 
 ENABLE, AUTO_GOES_ON = "FS_GCS_ENABLE", 2
@@ -55,7 +57,7 @@ def gcs_failsafe(facts: DoctorFacts) -> ChainFinding:
     """Judge what the vehicle does when the ground station is lost."""
     if facts.vehicle is None:
         return AFTER_VEHICLE
-    wrong = [each for each in facts.settings if each.warning and each.name not in STOP_BOUNDS]
+    wrong = [each for each in facts.settings if each.warning and each.name not in (*STOP_BOUNDS, *OBEYED)]
     if wrong:
         return _wrong(wrong[0])
     stop = next((each for each in facts.vehicle.stops if each.name == STATION), None)

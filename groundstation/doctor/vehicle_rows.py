@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dialects.enums import Sensor
+from dialects.enums import Autopilot, Sensor, SystemState, state_name
 from dialects.mode_tables import HOLD
 from groundstation.doctor.facts import DoctorFacts
 from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
@@ -32,8 +32,15 @@ def control(facts: DoctorFacts) -> ChainFinding:
         waits = "" if view.control_wait is None else f", may answer for {view.control_wait:.0f} s"
         return fault(f"ground station {view.driver}{waits}", "request control", "vehicle.control")
     if view.armed:
-        return fault("armed, and not in control", "request control", "vehicle.control")
+        return _armed_without_control(view, facts)
     return ok("nobody: arming takes it" if view.driver == 0 else "not managed by this vehicle: arming takes it")
+
+
+def _armed_without_control(view: VehicleView, facts: DoctorFacts) -> ChainFinding:
+    """Judge an armed vehicle of which this program is not in control: a verb runs beside a station that may be."""
+    if view.driver is None and facts.terminal is None:
+        return unknown("armed; this vehicle does not report who is in control")
+    return fault("armed, and not in control", "request control", "vehicle.control")
 
 
 def pre_arm(facts: DoctorFacts) -> ChainFinding:
@@ -47,12 +54,25 @@ def pre_arm(facts: DoctorFacts) -> ChainFinding:
         return ok("passed")
     texts = facts.texts
     if not texts:
+        if view.prearm is None and view.autopilot == Autopilot.PX4:
+            return _pre_arm_of_px4(view)
         if view.prearm is None:
             return unknown("not reported by this vehicle", "run the checks", "setup.checks")
         return fault("fail, and the vehicle has not said why", "run the checks", "setup.checks")
     advice = find_advice(texts[0].text)
     more = f" (+{len(texts) - 1})" if len(texts) > 1 else ""
     return fault(f"{texts[0].text}{more}", advice or "put it right, then check again", "setup.checks")
+
+
+def _pre_arm_of_px4(view: VehicleView) -> ChainFinding:
+    """Judge by HEARTBEAT: STANDBY if its checks pass, else UNINIT, also while nobody sends MANUAL_CONTROL.
+
+    Its reasons are EVENTs (https://docs.px4.io/main/en/concept/events_interface.html), which are not read.
+    """
+    if view.status == SystemState.STANDBY:
+        return ok("passed: HEARTBEAT says STANDBY")
+    text = f"its checks do not pass now: HEARTBEAT says {state_name(view.status).upper()}"
+    return warn(text, "arm from Drive, which sends MANUAL_CONTROL first; its console says more: commander check")
 
 
 def mode(facts: DoctorFacts) -> ChainFinding:
@@ -110,7 +130,7 @@ def fence(facts: DoctorFacts) -> ChainFinding:
     if bits is None or not bits.present & Sensor.GEOFENCE:
         return unknown("none is loaded")
     if not bits.enabled & Sensor.GEOFENCE:
-        return unknown("loaded, but off")
+        return unknown("loaded, but off" if facts.rover_dialect else "off; `fence show` says whether one is loaded")
     return ok("on, and inside") if bits.health & Sensor.GEOFENCE else fault("breached", "drive back", "app.log")
 
 

@@ -100,6 +100,8 @@ class FakeVehicle:
         self.mode: int = mode if mode is not None else PX4_MANUAL if autopilot == Autopilot.PX4 else Mode.MANUAL
         self.armed = False
         self.locked = False
+        self.ready = True
+        """Its checks pass; else it says UNINIT as PX4 does."""
         self.calibrating = False
         """The HEARTBEAT says CALIBRATING."""
         self.deaf = False
@@ -187,6 +189,7 @@ class FakeVehicle:
             return
         status = SystemState.EMERGENCY if self.locked else SystemState.ACTIVE if self.armed else SystemState.STANDBY
         status = SystemState.CALIBRATING if self.calibrating else status
+        status = status if self.ready or self.armed else SystemState.UNINIT
         self.send(m.Heartbeat(self.kind, self.autopilot, self._flags(), self.mode, status, 3))
         if self.driver is not None:
             self.send(m.ControlStatus(1, self.driver, [0] * 10))

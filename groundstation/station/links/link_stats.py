@@ -22,7 +22,8 @@ MAX_PEERS = 4
 class _Sample(msgspec.Struct, frozen=True):
     time: float
     report: LinkReport
-    vehicle: SourceCount
+    systems: tuple[int, ...]
+    """The vehicle whose loss is counted, if there is one."""
 
 
 class LinkStats:
@@ -37,7 +38,7 @@ class LinkStats:
         self._samples = {link: samples for link, samples in self._samples.items() if link in reported}
         for report in reports:
             samples = self._samples.setdefault(report.index, deque())
-            samples.append(_Sample(now, report, _count(report, system)))
+            samples.append(_Sample(now, report, () if system is None else (system,)))
             while now - samples[0].time > LOSS_WINDOW:
                 samples.popleft()
 
@@ -100,10 +101,6 @@ class LinkStats:
         return any(_delta(samples, "bytes_received") > 0 for samples in self._samples.values())
 
 
-def _count(report: LinkReport, system: int | None) -> SourceCount:
-    return _sum(report, () if system is None else (system,))
-
-
 def _delta(samples: deque[_Sample], name: str) -> float:
     first, last = samples[0].report, samples[-1].report
     return float(getattr(last, name) - getattr(first, name))
@@ -115,14 +112,20 @@ def _rate(samples: deque[_Sample], name: str) -> float:
 
 
 def _loss(samples: deque[_Sample], systems: Collection[int]) -> float | None:
-    """Return the lost fraction of the frames of these systems.
+    """Return the lost fraction of the frames of these systems, which the first sample counts as well.
 
-    Frames with unknown ids leave gaps in the numbers, but did arrive.
+    Frames with unknown message ids (a tenth to a quarter of ArduPilot's) leave gaps in the numbers, but did arrive.
     """
     first, last = (_sum(sample.report, systems) for sample in (samples[0], samples[-1]))
     received, gaps = last.received - first.received, last.lost - first.lost
     lost = max(0, gaps - int(_delta(samples, "unknown")))
     return lost / (lost + received) if received > 0 and gaps >= 0 else None
+
+
+def lost_frames(report: LinkReport, systems: Collection[int] | None = None) -> int:
+    """Return how many frames of these systems (None: of all) were lost since the link opened; unknown ids were not."""
+    wanted = {system for system, _ in report.sources} if systems is None else systems
+    return max(0, _sum(report, wanted).lost - report.unknown)
 
 
 def _sum(report: LinkReport, systems: Collection[int]) -> SourceCount:
@@ -144,7 +147,7 @@ def _row(samples: deque[_Sample], vehicles: Collection[int], round_trip: float |
         bytes_in=round(_rate(samples, "bytes_received")),
         bytes_out=round(_rate(samples, "bytes_sent")),
         loss=_loss(samples, vehicles),
-        lost=max(0, _sum(report, vehicles).lost - report.unknown),
+        lost=lost_frames(report, vehicles),
         crc_errors=report.crc_errors,
         refused=report.refused_peers,
         dropped=report.dropped,
@@ -175,17 +178,11 @@ def _address(peer: Peer) -> str:
 
 
 def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
-    newest, oldest = samples[-1], samples[0]
-    received = newest.vehicle.received - oldest.vehicle.received
-    # Frames with unknown message ids (a quarter of ArduPilot's) do arrive, but leave gaps in the sequence numbers.
-    unknown = newest.report.unknown - oldest.report.unknown
-    gaps = newest.vehicle.lost - oldest.vehicle.lost
-    lost = max(0, gaps - unknown)
-    carries_vehicle = newest.vehicle.received > 0
+    newest, systems = samples[-1], samples[-1].systems
     return LinkView(
         name=newest.report.name,
-        loss=lost / (lost + received) if received > 0 and gaps >= 0 else None,
-        round_trip=round_trip if carries_vehicle else None,
+        loss=_loss(samples, systems),
+        round_trip=round_trip if _sum(newest.report, systems).received > 0 else None,
         rate=_rate(samples, "frames"),
         bytes_per_second=_rate(samples, "bytes_received"),
         frames=newest.report.frames,

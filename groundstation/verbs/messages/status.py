@@ -12,6 +12,7 @@ from typing import Any
 from dialects import messages as m
 from dialects.enums import state_name
 from groundstation.snapshot import VehicleView
+from groundstation.station.links.link_stats import lost_frames
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.vehicles.state.senders import DIFFERS_FOR
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -255,7 +256,7 @@ _LINK_TITLES = ("link", "peers", "frames in", "bytes in", "bytes out", "lost", "
 
 
 def _link_cells(report: LinkReport) -> tuple[str, ...]:
-    lost = sum(source.lost for source in report.sources.values())
+    lost = lost_frames(report)
     numbers = (report.peers, report.frames, report.bytes_received, report.bytes_sent, lost, report.crc_errors)
     return (report.name, *map(str, numbers), str(report.unknown), _link_state(report))
 
@@ -273,7 +274,7 @@ def _link_state(report: LinkReport) -> str:
 def _link_fields(report: LinkReport) -> dict[str, Any]:
     return {
         "link": report.name, "peers": report.peers, "frames": report.frames, "bytes_received": report.bytes_received,
-        "bytes_sent": report.bytes_sent, "lost": sum(source.lost for source in report.sources.values()),
+        "bytes_sent": report.bytes_sent, "lost": lost_frames(report),
         "crc_errors": report.crc_errors, "unknown": report.unknown, "down": report.down,
         "dialect_mismatch": list(report.dialect_mismatch),
     }  # fmt: skip

@@ -66,5 +66,10 @@ def _finish(view: DoctorView, found: bool, output: Output) -> int:
     if stops:
         output.note(f"{view.name} cannot be driven: {', '.join(stops)} ({MARKS[Health.FAULT]} above)")
         return ExitCode.DIFFERS
-    output.note(f"nothing stops you from driving {view.name}")
+    doubtful = [row.title for row in view.rows if row.health is Health.WARNING]
+    if doubtful:
+        marked = f"{', '.join(doubtful)} ({MARKS[Health.WARNING]} above)"
+        output.note(f"no fault is known that stops you from driving {view.name}; look at {marked}")
+    else:
+        output.note(f"nothing stops you from driving {view.name}")
     return ExitCode.DONE

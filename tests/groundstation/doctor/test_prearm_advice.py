@@ -32,6 +32,7 @@ def test_reasons(text: str, reason: str | None) -> None:
     ("GPS 1: Bad fix", "position"),
     ("AHRS: not using configured AHRS type", "estimator"),
     ("Throttle (RC3) is not neutral", "centre the throttle"),
+    ("throttle not in safe position", "let the keys go"),
     ("RC not found", "transmitter"),
     ("Radio failsafe on", "transmitter"),
     ("Battery 1 low voltage failsafe", "charge"),

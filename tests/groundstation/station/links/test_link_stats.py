@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.links.link_stats import LinkStats, lost_frames
 from link.core import LinkReport, Peer, SourceCount
 
 
@@ -38,6 +38,21 @@ def test_frames_of_unknown_ids_are_not_lost() -> None:
     for second in range(20):
         stats.update([report(30 * second, 10 * second, unknown=9 * second)], 1, float(second))
     assert stats.build_views(None)[0].loss == pytest.approx(1 / 31)
+
+
+def test_unknown_frames_before_a_choice_are_not_lost() -> None:
+    stats = LinkStats()
+    for second, system in ((0, None), (1, 1), (2, 1)):  # a verb that comes to a station after 1000 s
+        stats.update(
+            [report(30_000 + 30 * second, 3000 + 3 * second, unknown=3000 + 3 * second)], system, float(second)
+        )
+    assert stats.build_views(None)[0].loss == 0.0
+
+
+def test_lost_frames_leave_out_unknown_ids() -> None:
+    assert lost_frames(report(100, 32, unknown=30)) == 2
+    assert lost_frames(report(100, 3, unknown=30)) == 0
+    assert lost_frames(report(100, 32, unknown=30), (7,)) == 0
 
 
 def test_noise_that_looks_like_frames_makes_no_negative_loss() -> None:

@@ -11,8 +11,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 from dialects import messages as m
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
+from groundstation.verbs.messages.status import _link_cells
 from groundstation.verbs.messages.status_changes import ChangePrinter
 from groundstation.verbs.session.contact import VehicleContact
+from link.core import LinkReport, SourceCount
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.vehicles.state.test_vehicle_state import heartbeat, received
 from tests.groundstation.verbs.verb_runs import run_verb
@@ -104,6 +106,12 @@ def test_vehicles_lists_every_vehicle_on_all_links(capsys: Capture) -> None:
         assert [line.split()[0] for line in listed.out.splitlines()] == ["id", "1", "7"]
         records = run_verb(capsys, "vehicles", "--json", "-e", one.endpoint, "-e", other.endpoint).records
         assert [each["vehicle"] for each in records] == [1, 7]
+
+
+def test_links_count_frames_of_unknown_ids_as_unknown_only() -> None:
+    counts = {(1, 1): SourceCount(400, 32), (255, 190): SourceCount(10, 0)}
+    cells = _link_cells(LinkReport("udpin:127.0.0.1:14550", frames=410, unknown=32, sources=counts))
+    assert (cells[5], cells[7]) == ("0", "32")
 
 
 def test_links_show_what_arrives_with_and_without_a_vehicle(capsys: Capture) -> None:

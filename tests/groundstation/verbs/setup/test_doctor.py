@@ -40,6 +40,14 @@ def test_nothing_stops_you(capsys: Capture, rover: ForeignVehicle) -> None:
     assert [each.command for each in rover.of("COMMAND_LONG")].count(CHECKS) == 1
 
 
+def test_px4_that_says_it_is_not_ready_is_doubtful(capsys: Capture) -> None:
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.ready = False
+        run = run_verb(capsys, "doctor", "-e", vehicle.endpoint)
+        assert "HEARTBEAT says UNINIT" in run.out
+        assert "nothing stops you" not in run.err
+
+
 def test_what_stops_you(capsys: Capture, rover: ForeignVehicle, tmp_path: Path) -> None:
     rover.params["FS_THR_ENABLE"].value = 0.0
     rover.answers[CHECKS] = (0, "PreArm: Compass not calibrated")
