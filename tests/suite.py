@@ -73,7 +73,7 @@ LONG = (
     "groundstation/vehicles/probes/test_dialect_probe.py", "groundstation/vehicles/test_replay.py",
     "groundstation/vehicles/state/test_vehicle_state.py::test_no_message_breaks",
     "groundstation/verbs",
-    "groundstation/watchdog/test_watchdog.py::test_after_a_neutral_of_the_watchdog",
+    "groundstation/watchdog/test_freezes.py::test_after_a_neutral_of_the_watchdog",
 )  # fmt: skip
 """Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, such as the
 properties that drive a whole rover, test the tests, or need programs and packages that a clone alone does not have."""

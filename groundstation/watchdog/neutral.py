@@ -8,13 +8,30 @@ from dialects.enums import OperatorFlag
 from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, Message, RoverOperatorPresence, boot_ms
 from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.watchdog.report import DemandRoute
-from link.signing.signature import SecretHash
+from link.protocol.signing_guard import SigningWay
 from link.signing.signing import FrameSigner, Signing
 
 SEQUENCE_LEAD = 40
 """Packet sequence numbers left out: more than a station sends between two reports, and more than LATE_WINDOW
 (link/protocol/sequence.py). So the frames of a station that goes on are neither late nor a clash with these; the
 vehicle knows both by their session."""
+
+
+class _Signer:
+    """Signs as the station did on one route."""
+
+    def __init__(self, signing: Signing, way: SigningWay) -> None:
+        self._signing = signing
+        self._way = way
+        self._signer = FrameSigner(signing.clock)
+
+    def sign(self, number: int, payload: bytes, sequence: int, ids: tuple[int, int], now: float) -> bytes | None:
+        """Return a signed frame; None if the station's key has gone."""
+        key = self._signing.hash_of(self._signing.ring.find(self._way.key))
+        if key is None:
+            return None
+        frame = codec.frame_to_sign(number, payload, sequence, *ids)
+        return self._signer.sign(frame, key, self._way.link_id, self._way.lead, now)
 
 
 class NeutralFrames:
@@ -27,25 +44,15 @@ class NeutralFrames:
         self._ids = ids
         self._sequence = route.sequence + SEQUENCE_LEAD
         self._clock = 0
-        self._way = route.signing
-        self._signing = signing
-        self._signer = FrameSigner(signing.clock) if signing is not None else None
+        self._signer = None if signing is None or route.signing is None else _Signer(signing, route.signing)
 
     def next_frame(self, now: float) -> bytes:
         """Return the next frame."""
         message = self._build(now)
         self._sequence += 1
         number, payload, sequence = type(message).id, codec.encode_payload(message), self._sequence & 0xFF
-        key = self._find_key()
-        if key is None or self._way is None or self._signer is None:
-            return codec.frame(number, payload, sequence, *self._ids)
-        frame = codec.frame_to_sign(number, payload, sequence, *self._ids)
-        return self._signer.sign(frame, key, self._way.link_id, self._way.lead, now)
-
-    def _find_key(self) -> SecretHash | None:
-        if self._signing is None or self._way is None:
-            return None
-        return self._signing.hash_of(self._signing.ring.find(self._way.key))
+        frame = None if self._signer is None else self._signer.sign(number, payload, sequence, self._ids, now)
+        return frame or codec.frame(number, payload, sequence, *self._ids)
 
     def _build(self, now: float) -> Message:
         vehicle = self._vehicle

@@ -60,10 +60,10 @@ class _Target(msgspec.Struct):
     """A vehicle that gets neutral."""
 
     vehicle: DrivenVehicle
-    sent: int = 0
-    """Frames that the kernel has accepted."""
+    sent: bool = False
+    """The kernel has accepted a frame."""
     error: str = ""
-    """Why the newest frame was not accepted."""
+    """Why the newest frame that it refused was not accepted."""
     disarmed: bool = False
     armed_at: float = -math.inf
     """When a HEARTBEAT reported armed last: another vehicle may have the same id, and one report confirms nothing."""
@@ -76,7 +76,7 @@ class _Target(msgspec.Struct):
             case Heartbeat():
                 armed = bool(message.base_mode & ModeFlag.ARMED)
                 self.armed_at = now if armed else self.armed_at
-                self.disarmed = not armed and now - self.armed_at > TWIN_BEAT
+                self.disarmed = now - self.armed_at > TWIN_BEAT
             case RoverDriveStatus():
                 self.stands = not any(message.output)
             case VfrHud() if self.vehicle.session is None:
@@ -183,7 +183,10 @@ class Watchdog:
         """Record whether the kernel has accepted a frame (None) or why not."""
         if self._takeover is not None:
             each = self._takeover.targets[target]
-            each.sent, each.error = each.sent + (error is None), error or each.error
+            if error is None:
+                each.sent = True
+            else:
+                each.error = error
 
     def timeout(self, now: float) -> float | None:
         """Return the s until the next `tick`; None: only an event of the station brings one."""

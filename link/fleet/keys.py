@@ -25,6 +25,8 @@ from link.signing.role import Role
 _BRIEF = "brief"
 _CHUNKS = 6
 """Of a frame's key before role, class and message."""
+_DIGITS_MAX = 8
+"""Digits of a message id, which has 24 bits."""
 MAX_KEYS = 8192
 """Keys that are kept parsed: 160 vehicles with 50 messages each."""
 _IDS = {str(message.msgname): number for number, message in MESSAGES.items()}
@@ -41,8 +43,11 @@ def _read_word(word: str) -> int | None:
     """Return the id of a message from its name in a key; None if no message has it."""
     if word in _IDS:
         return _IDS[word]
-    number = int(word[2:]) if word[:2] == "ID" and word[2:].isascii() and word[2:].isdecimal() else None
-    return None if number is None or message_word(number) != word else number
+    digits = word[2:]
+    if len(digits) > _DIGITS_MAX or not digits.isdecimal():
+        return None
+    number = int(digits)
+    return number if message_word(number) == word else None
 
 
 def new_framer() -> Framer:
@@ -128,7 +133,7 @@ class FleetKeys(msgspec.Struct, frozen=True):
         """Return what a key says of the frame under it; None if it is the key of no frame to this program."""
         chunks = key.split("/")
         roles, rest = chunks[_CHUNKS:-2], chunks[-2:]
-        if len(chunks) <= _CHUNKS or len(roles) != (0 if self.me else 1):
+        if len(chunks) != _CHUNKS + (2 if self.me else 3):
             return None
         message_id = _read_word(rest[1])
         if message_id is None or traffic_class(message_id).word != rest[0]:

@@ -60,6 +60,8 @@ _SET_UP = frozenset(
 ) | {number for number, message in MESSAGES.items() if message.msgname in _SET_UP_NAMES}  # fmt: skip
 """Messages that change parameters, plans, logs, keys, or the machine itself."""
 
+_IDS = 1 << 24
+"""Ids that a message can have."""
 _SEND_BANNER = 42428
 """MAV_CMD_DO_SEND_BANNER of ArduPilot's dialect."""
 
@@ -136,7 +138,9 @@ def _sets_rate_of_heartbeat(message: m.CommandLong | m.CommandInt) -> bool:
     """Return whether this may silence the HEARTBEAT of a channel, by which all behind it know the vehicle."""
     if message.command != rover.MAV_CMD_SET_MESSAGE_INTERVAL:
         return False
-    return not message.param1 >= 0.5  # an autopilot reads the id as a whole number; a NaN as 0
+    return (
+        not 1.0 <= message.param1 < _IDS
+    )  # ArduPilot cuts off the fraction, PX4 rounds; NaN and what is too large may be 0
 
 
 def _decode(frame: Frame) -> Message:

@@ -25,15 +25,32 @@ _VEHICLE_TESTS = (
     "tests/vehicle/commands/test_actuator_test.py", "tests/vehicle/commands/test_buttons.py",
     "tests/vehicle/test_signed_drivers.py",
 )  # fmt: skip
+_ROLE_TESTS = ("tests/link/fleet/test_roles.py", "tests/link/fleet/test_keys.py", "tests/link/fleet/rights")
+_STICK_TESTS = tuple(
+    f"tests/groundstation/station/driving/test_{name}.py"
+    for name in ("operator", "gamepad", "driving", "due_times", "screen_lease", "claims", "emergency")
+)
 ROOMS: dict[str, tuple[str, ...]] = {
     "vehicle/drive": _VEHICLE_TESTS,
     "vehicle/safety": _VEHICLE_TESTS,
     "link/protocol": ("tests/link/protocol", "tests/test_bounds.py"),
     "link/signing": ("tests/link/signing", "tests/link/protocol/test_signing_guard.py", "tests/test_bounds.py"),
+    "link/fleet/roles.py": _ROLE_TESTS,
+    "link/fleet/keys.py": _ROLE_TESTS,
+    "link/fleet/rights": _ROLE_TESTS,
+    "groundstation/watchdog": ("tests/groundstation/watchdog", "tests/test_bounds.py"),
+    "groundstation/input": ("tests/groundstation/input", *_STICK_TESTS, "tests/test_bounds.py"),
+    "groundstation/web": ("tests/groundstation/web",),
+    "groundstation/station_socket": ("tests/groundstation/station_socket", "tests/test_bounds.py"),
 }
-"""Folders to mutate, those that decide whether the wheels turn and which frames count -> tests to run against them."""
-DESELECTED = ("tests/vehicle/safety/test_estop_button.py",)
-"""Tests that start the vehicle in a process of its own, which has no mutant."""
+"""Folders and modules to mutate: those that decide whether the wheels turn, which frames count and who gets in -> tests
+to run against them."""
+DESELECTED = (
+    "tests/vehicle/safety/test_estop_button.py",
+    "tests/groundstation/watchdog/test_process.py",
+    "tests/groundstation/watchdog/test_freezes.py",
+)
+"""Tests that start a program in a process of its own, which has no mutant."""
 
 LIMIT = 2.0
 """s of tests to run against a mutant: behaviour that takes longer to test needs a test of its own."""
@@ -83,8 +100,13 @@ def describe(mutant: Mutant) -> str:
 
 def _tests_of(mutants: Iterable[Mutant]) -> list[str]:
     """Return the tests of the rooms of `mutants`; those of all rooms for a module elsewhere."""
-    rooms = {Path(mutant.path).parent.as_posix() for mutant in mutants}
+    rooms = {room_of(mutant) for mutant in mutants}
     return list(dict.fromkeys(test for room in sorted(rooms) for test in ROOMS.get(room, sum(ROOMS.values(), ()))))
+
+
+def room_of(mutant: Mutant) -> str:
+    """Return the folder of `mutant`, or its module where that is a room of its own."""
+    return mutant.path if mutant.path in ROOMS else Path(mutant.path).parent.as_posix()
 
 
 def _run(mutants: list[Mutant], args: argparse.Namespace) -> int:
@@ -107,8 +129,8 @@ def _run(mutants: list[Mutant], args: argparse.Namespace) -> int:
         print("Tests fail without a change:", *faults, sep="\n  ")
         return 2
     survivors = [mutant for mutant in mutants if outcomes[mutant].outcome is not Outcome.KILLED]
-    for room, count in Counter(Path(mutant.path).parent.as_posix() for mutant in mutants).items():
-        alive = sum(Path(mutant.path).parent.as_posix() == room for mutant in survivors)
+    for room, count in Counter(map(room_of, mutants)).items():
+        alive = sum(room_of(mutant) == room for mutant in survivors)
         print(f"{room}: {count} mutants, {count - alive} killed")
     print(f"{time.monotonic() - began:.0f} s")
     return _judge(mutants, survivors)

@@ -12,7 +12,7 @@ import pytest
 
 TIME_MAX = 5.0
 """s of CPU for a test, for mutants that loop forever. A busy machine does not kill a mutant."""
-WAIT_MAX = 600
+WAIT_MAX = 60
 """s for a test, for mutants that wait forever."""
 OPTIONS = (
     "-o", "addopts=--import-mode=importlib", "-qq", "-s", "--no-header", "--no-summary", "--timeout=0",

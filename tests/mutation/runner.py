@@ -110,17 +110,24 @@ class Runner:
     def _tests(self, mutant: Mutant) -> list[str]:
         """Return the tests to run, likely and fast ones first; test files for a change at module level."""
         seconds = self.baseline.seconds
+        own = f"/test_{Path(mutant.path).stem}."
         if mutant.function:
             lines = self.baseline.tests_by_line[mutant.path]
-            cost = {test: seconds[test] for line in mutant.lines for test in lines.get(line, ()) if test}
+            tests = {test for line in mutant.lines for test in lines.get(line, ()) if test}
+            # What only a process executes that a test forks is not recorded
+            cost = {test: seconds[test] for test in tests or [test for test in seconds if own in test]}
         else:
             cost = defaultdict(float)
             for test, spent in seconds.items():
                 cost[test.partition("::")[0]] += spent
-        own = f"/test_{Path(mutant.path).stem}"
         order = sorted(cost, key=lambda test: (*self._kills.rank(mutant, test), own not in test, cost[test]))
         totals = accumulate(cost[test] for test in order)
-        return [test for test, total in zip(order, totals, strict=True) if total <= self._limit]
+        # The file of a module runs for its constants however long that takes
+        return [
+            test
+            for test, total in zip(order, totals, strict=True)
+            if total <= self._limit or (own in test and not mutant.function)
+        ]
 
 
 def _killer(folder: Path, status: int) -> str | None:

@@ -74,3 +74,15 @@ def test_only_the_vehicle_itself_ends_the_neutral(frame: bytes, believed: bool) 
     watchdog.handle_frame(found, 0.3)
     assert ("is disarmed" in watchdog.outage(0.3).text) is believed
     assert bool(watchdog.tick(2.0)) is not believed
+
+
+def test_without_keys_no_frame_of_a_vehicle_that_signs_is_believed() -> None:
+    rover = msgspec.structs.replace(ROVER, verified=True)
+    watchdog = Watchdog()
+    watchdog.handle_report(StationReport(vehicles=(rover,), routes=(DemandRoute(0, None, 3),)), 0.1)
+    watchdog.handle_end(0.2)
+    for _, target, _ in watchdog.tick(0.2):
+        watchdog.record_sent(target, None)
+    (found,) = Framer(stream=False).feed(signed(DISARMED, stamp=NOW, ids=(1, 1)), 0.3)
+    watchdog.handle_frame(found, 0.3)
+    assert "is disarmed" not in watchdog.outage(0.3).text

@@ -5,7 +5,14 @@ from __future__ import annotations
 import contextlib
 import os
 import pty
+import select
+import termios
+import threading
 import tty
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
 
 from groundstation.watchdog.terminal_reset import RESET, TerminalReset
 
@@ -47,3 +54,87 @@ def _read(master: int) -> bytes:
         while data := os.read(master, 65536):
             found += data
     return found
+
+
+class Raw:
+    """A terminal whose line a screen has changed, and the reset that was made before."""
+
+    def __init__(self) -> None:
+        self.master, self.slave = pty.openpty()
+        self.path = os.ttyname(self.slave)
+        self.before = termios.tcgetattr(self.slave)
+        self.reset = TerminalReset(self.path)
+        tty.setraw(self.slave)
+        self.raw = termios.tcgetattr(self.slave)
+
+    def close(self) -> None:
+        os.close(self.master)
+        os.close(self.slave)
+
+
+@pytest.fixture
+def terminal() -> Iterator[Raw]:
+    terminal = Raw()
+    yield terminal
+    terminal.close()
+
+
+def descriptors() -> int:
+    return len(os.listdir("/proc/self/fd"))
+
+
+def test_the_line_is_as_it_was_before_the_screen(terminal: Raw) -> None:
+    open_before = descriptors()
+    assert terminal.reset.run()
+    assert os.read(terminal.master, 4096) == RESET
+    assert termios.tcgetattr(terminal.slave) == terminal.before
+    TerminalReset(terminal.path)
+    assert descriptors() == open_before
+
+
+def test_the_line_that_a_shell_has_taken_stays(terminal: Raw) -> None:
+    """A shell that edits lines has echo off, but keeps the signals of Ctrl-C."""
+    edited = [*terminal.raw]
+    edited[3] |= termios.ISIG
+    termios.tcsetattr(terminal.slave, termios.TCSANOW, edited)
+    edited = termios.tcgetattr(terminal.slave)
+    assert terminal.reset.run()
+    assert termios.tcgetattr(terminal.slave) == edited
+    assert os.read(terminal.master, 4096) == RESET
+
+
+def test_a_line_that_was_not_read_before_stays(terminal: Raw, tmp_path: Path) -> None:
+    path = tmp_path / "tty"
+    reset = TerminalReset(str(path))
+    path.symlink_to(terminal.path)
+    assert reset.run()
+    assert os.read(terminal.master, 4096) == RESET
+    assert termios.tcgetattr(terminal.slave) == terminal.raw
+
+
+def test_a_file_that_is_no_terminal_raises_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(b"")
+    assert TerminalReset(str(path)).run()
+    assert path.read_bytes() == RESET
+
+
+def test_no_terminal_is_done() -> None:
+    assert TerminalReset(None).run()
+
+
+def test_a_reset_waits_for_room(terminal: Raw) -> None:
+    for end in (terminal.slave, terminal.master):
+        os.set_blocking(end, False)
+    _fill(terminal.slave)
+    done: list[bool] = []
+    runs = threading.Thread(target=lambda: done.append(terminal.reset.run(60.0)))
+    runs.start()
+    drawn = b""
+    while runs.is_alive():
+        if select.select([terminal.master], [], [], 0.02)[0]:
+            drawn += os.read(terminal.master, 65536)
+    drawn += _read(terminal.master)
+    runs.join(20.0)
+    assert done == [True]
+    assert drawn.endswith(RESET)

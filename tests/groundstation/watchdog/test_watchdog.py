@@ -1,147 +1,20 @@
-"""The watchdog and the station in virtual time: what happens before, during and after a freeze, in any order."""
+"""The watchdog in virtual time: when it sends neutral, to whom, until when, and the texts for the driver."""
 
 from __future__ import annotations
-
-import random
-from collections.abc import Callable
 
 import pytest
 
 from dialects import codec
 from dialects import messages as m
-from dialects.enums import Autopilot, ModeFlag, OperatorFlag, SystemState, VehicleType
-from dialects.modes import Mode, base_mode
-from groundstation.intents.driving import DriveKeyDown
-from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from dialects.enums import Autopilot, ModeFlag, OperatorFlag, VehicleType
 from groundstation.snapshot import StationOutage
 from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.station.driving.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT, StallMonitor
-from groundstation.station.station import Station
 from groundstation.watchdog.report import DemandRoute, StationReport
 from groundstation.watchdog.watchdog import SEND_FOR, Watchdog
-from link.core import Peer, Received
 from link.protocol.framer import Framer
 
 STEP = 0.005
-TICK, REPORT, LEASE, REPEAT_GAP = 0.025, 0.1, 0.1, 0.033
-PRESS = DriveKeyDown(key="i", throttle=1, steering=0)
-REPEAT = DriveKeyDown(key="i", throttle=1, steering=0, repeat=True)
-
-
-class FrozenStation:
-    """A station with an armed rover and `i` held, and its watchdog; events of the station come at their own periods."""
-
-    def __init__(self, chance: random.Random, autopilot: Autopilot) -> None:
-        self.now = 100.0
-        self.station = Station(["memory"], session=7, now=self.now)
-        self.watchdog = Watchdog()
-        self.neutrals: list[float] = []
-        self.motion: list[float] = []
-        self._autopilot = autopilot
-        self._periods: dict[Callable[[], None], float] = {
-            self._tick: TICK, self._report: REPORT, self._lease: LEASE, self._repeat: REPEAT_GAP, self._beat: 1.0,
-        }  # fmt: skip
-        self._due = {event: self.now + chance.uniform(0.0, period) for event, period in self._periods.items()}
-        self._chance = chance
-        for event in (self._lease, self._beat, self._report):
-            event()
-        for intent in (SetKeyGate(open=True), ReportKeyReleases()):
-            self.station.handle_intent(intent, self.now)
-        self.run(0.5)
-        self.station.handle_intent(PRESS, self.now)
-        self._flush()
-        self.run(0.5)
-        assert self.now - self.motion[-1] < 0.1
-
-    def run(self, seconds: float) -> None:
-        """Let the station run."""
-        until = self.now + seconds
-        while self.now < until:
-            self.now += STEP
-            self._run_due()
-            self._watch()
-
-    def freeze(self, seconds: float) -> None:
-        """Let only the watchdog run; then everything that is due comes at once, in any order."""
-        if self._chance.random() < 0.3:  # stopped after a demand was made and before it was sent
-            self.station.tick(self.now)
-        until = self.now + seconds
-        while self.now < until:
-            self.now += STEP
-            self._watch()
-        self._flush() if self._chance.random() < 0.5 else None
-        self._run_due()
-
-    def _run_due(self) -> None:
-        due = [event for event, at in self._due.items() if self.now >= at]
-        self._chance.shuffle(due)
-        for event in due:
-            self._due[event] = max(self._due[event] + self._periods[event], self.now)
-            event()
-            self._flush()
-
-    def _watch(self) -> None:
-        for _, target, frame in self.watchdog.tick(self.now):
-            self.watchdog.record_sent(target, None)
-            ((number, _, _, _, raw),) = Framer(stream=False).feed(frame, self.now)
-            assert is_neutral(codec.decode_frame(number, raw))
-            self.neutrals.append(self.now)
-
-    def _flush(self) -> None:
-        for outgoing in self.station.messages_to_send():
-            if self.station.may_send(outgoing.message, self.now):  # as the runner does
-                self.station.handle_sent(outgoing.message, 0, self.now)
-                if isinstance(outgoing.message, m.ManualControl) and not is_neutral(outgoing.message):
-                    self.motion.append(self.now)
-
-    def _tick(self) -> None:
-        self.station.tick(self.now)
-
-    def _report(self) -> None:
-        vehicles = self.station.report_to_watchdog(self.now)
-        routes = tuple(DemandRoute(index, None, 0) for index in range(len(vehicles)))
-        self.watchdog.handle_report(StationReport(vehicles=vehicles, routes=routes, rests=self.station.rests), self.now)
-
-    def _lease(self) -> None:
-        self.station.handle_intent(RenewLease(), self.now)
-
-    def _repeat(self) -> None:
-        self.station.handle_intent(REPEAT, self.now)
-
-    def _beat(self) -> None:
-        flags = base_mode(Mode.MANUAL, armed=True)
-        beat = m.Heartbeat(VehicleType.GROUND_ROVER, self._autopilot, flags, Mode.MANUAL, SystemState.ACTIVE, 3)
-        for message in (beat, m.ControlStatus(1, 255, [0] * 10)):
-            self.station.receive(Received(message, 1, 1, 0, Peer(0, "vehicle"), introduced=True), self.now)
-
-
-def is_neutral(message: m.Message) -> bool:
-    axes = [getattr(message, axis) for axis in "xzr"]
-    return all(axis in (0, m.INVALID_AXIS) for axis in axes)
-
-
-@pytest.mark.parametrize("autopilot", [Autopilot.GENERIC, Autopilot.ARDUPILOT])
-def test_after_a_neutral_of_the_watchdog_nothing_resumes(autopilot: Autopilot) -> None:
-    chance, acted = random.Random(5), 0
-    for _ in range(500):  # of two autopilots
-        frozen = FrozenStation(chance, autopilot)
-        frozen.run(chance.uniform(0.0, 0.1))
-        frozen.freeze(chance.choice((chance.uniform(0.2, 0.5), chance.uniform(0.3, 7.0))))
-        frozen.run(1.0)
-        if frozen.neutrals:
-            acted += 1
-            assert frozen.motion[-1] < frozen.neutrals[0]
-    assert acted > 300, "most of these freezes are long enough"
-
-
-def test_a_short_pause_changes_nothing() -> None:
-    frozen = FrozenStation(random.Random(1), Autopilot.ARDUPILOT)
-    frozen.freeze(0.15)
-    frozen.run(1.0)
-    assert not frozen.neutrals
-    assert frozen.now - frozen.motion[-1] < 0.1
-
-
 ROVER = DrivenVehicle(system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, session=7, boot_time=1000)
 ARDUROVER = DrivenVehicle(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
 
@@ -326,3 +199,151 @@ def test_station_and_watchdog_agree_on_the_longest_rest() -> None:
     assert stall.is_stalled(100.0 + REST_STALL_TIMEOUT + 0.01)
     stall.record_report(102.0)
     assert stall.is_stalled(102.0 + STALL_TIMEOUT + 0.01)
+
+
+def test_neutral_is_sent_for_5_s_to_the_moment() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    assert not watchdog.finished(105.0)
+    assert watchdog.tick(105.0)
+    assert watchdog.finished(105.01)
+    assert watchdog.tick(105.01) == []
+
+
+def test_the_rate_falls_after_a_second() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    sends = [at for at in (100.0, 100.03, 100.0625, 101.0, 101.15, 101.25, 101.4, 101.5) if watchdog.tick(at)]
+    assert sends == [100.0, 100.0625, 101.0, 101.25, 101.5]
+
+
+def test_the_next_wake_up_is_when_a_frame_is_due() -> None:
+    watchdog = watching(ARDUROVER)
+    assert watchdog.timeout(100.0) == pytest.approx(0.301, abs=1e-6)
+    assert watchdog.timeout(100.1) == pytest.approx(0.201, abs=1e-6)
+    assert watchdog.timeout(105.0) == pytest.approx(0.001, abs=1e-6)
+    watchdog.handle_end(105.0)
+    assert watchdog.timeout(105.0) == 0.0
+    watchdog.tick(105.0)
+    assert watchdog.timeout(105.01) == pytest.approx(0.04, abs=1e-6)
+    assert watchdog.timeout(105.5) == 0.0
+
+
+def test_a_station_is_silent_after_more_than_300_ms() -> None:
+    watchdog = Watchdog()
+    routes = (DemandRoute(0, None, 10),)
+    watchdog.handle_report(StationReport(vehicles=(ARDUROVER,), routes=routes), 0.0)
+    assert watchdog.tick(0.3) == []
+    assert watchdog.tick(0.301)
+
+
+def test_a_running_station_is_not_finished() -> None:
+    assert not Watchdog().finished(100.0)
+    assert not watching(ARDUROVER).finished(100.1)
+
+
+def test_the_silence_of_a_station_that_ended_in_order_is_none() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_report(StationReport(vehicles=(ARDUROVER,), routes=(DemandRoute(0, None, 10),), ending=True), 100.1)
+    watchdog.handle_end(100.2)
+    assert watchdog.tick(102.0) == []
+    assert watchdog.outage(102.0) == StationOutage()
+
+
+def test_a_silent_station_that_then_ends_is_said_to_have_ended() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.tick(100.5)
+    assert watchdog.outage(100.5) == StationOutage("station not responding: " + NOT_SENT, False)
+    watchdog.handle_end(101.0)
+    assert watchdog.outage(101.0) == StationOutage("station process ended: " + NOT_SENT, True)
+
+
+NOT_SENT = "neutral could NOT be sent to ArduPilot rover 2 (no link)"
+
+
+def test_a_vehicle_without_a_route_is_said_to_get_nothing() -> None:
+    watchdog = Watchdog()
+    watchdog.handle_report(StationReport(vehicles=(ARDUROVER,)), 100.0)
+    watchdog.handle_end(100.0)
+    assert watchdog.finished(100.0)
+    assert watchdog.outage(100.0).text == "station process ended: " + NOT_SENT
+
+
+def test_neutral_goes_on_until_each_vehicle_stands() -> None:
+    watchdog = watching(ROVER, ARDUROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    watchdog.handle_message(2, heartbeat(armed=False), 100.2)
+    assert not watchdog.finished(101.5)
+    watchdog.handle_message(1, m.RoverDriveStatus(0, 0, 0, 0, [0, 0, 0, 0], 0, 255, 0), 101.5)
+    assert watchdog.finished(101.5)
+    assert watchdog.outage(101.5).text == ("station process ended: Rover 1 stands, ArduPilot rover 2 is disarmed")
+
+
+def test_a_second_of_neutral_is_a_whole_one() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    watchdog.handle_message(2, heartbeat(armed=False), 100.2)
+    assert not watchdog.finished(100.99)
+    assert watchdog.finished(101.0)
+
+
+def test_our_own_rover_does_not_stand_by_its_speed() -> None:
+    """It reports its outputs; its speed may be unknown."""
+    watchdog = watching(ROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    for at in (100.2, 101.2):
+        watchdog.handle_message(1, speed(0.0), at)
+    assert not watchdog.finished(101.5)
+
+
+@pytest.mark.parametrize(
+    ("readings", "stands"),
+    [
+        (((101.0, 0.0), (101.25, 0.0)), False),
+        (((101.0, 0.0), (101.49, 0.0)), False),
+        (((101.0, 0.0), (101.5, 0.0)), True),
+        (((101.0, 0.19), (101.5, 0.19)), True),
+        (((101.0, 0.2), (101.5, 0.2)), False),
+        (((101.0, 0.0), (101.25, 0.2), (101.5, 0.0)), False),
+    ],
+)
+def test_a_foreign_vehicle_stands_below_200_mm_per_s_for_500_ms(
+    readings: tuple[tuple[float, float], ...], stands: bool
+) -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    for at, value in readings:
+        watchdog.handle_message(2, speed(value), at)
+    assert watchdog.finished(101.5) is stands
+
+
+@pytest.mark.parametrize(("after", "disarmed"), [(1.0, False), (2.5, False), (2.51, True)])
+def test_disarmed_counts_2500_ms_after_the_last_armed(after: float, disarmed: bool) -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    watchdog.handle_message(2, heartbeat(armed=True), 100.5)
+    watchdog.handle_message(2, heartbeat(armed=False), 100.5 + after)
+    assert watchdog.finished(103.5) is disarmed
+
+
+def test_a_frame_of_a_vehicle_that_does_not_sign_ends_the_neutral() -> None:
+    watchdog = watching(ARDUROVER)
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 0.1)
+    raw = codec.frame(0, codec.encode_payload(heartbeat(armed=False)), 1, 2, 1)
+    for frame in Framer(stream=False).feed(raw, 100.1):
+        watchdog.handle_frame(frame, 100.1)
+    assert watchdog.finished(101.5)
+
+
+def test_a_report_says_nothing_by_default() -> None:
+    report = StationReport()
+    assert report.ids == (255, 190)
+    assert (report.vehicles, report.routes, report.keys_version) == ((), (), 0)
+    flags = (report.keeps_descriptors, report.screen_has_quit, report.screen_is_gone, report.rests, report.ending)
+    assert not any(flags)

@@ -58,6 +58,7 @@ def test_a_frame_to_a_ground_station() -> None:
         ("two frames", heartbeat(0) + demand(1)),
         ("a frame in the bytes of a damaged one", heartbeat(0)[:-1] + b"\xff" + demand(1)),
         ("half a frame", heartbeat(0)[:-3]),
+        ("a byte before it", b"\0" + heartbeat(0)),
         ("nothing", b""),
     ],
 )
@@ -131,6 +132,56 @@ def test_keys_that_nobody_uses_again_are_bounded() -> None:
     assert place.sender == "v1"
 
 
-@pytest.mark.parametrize("word", ["ID0", "ID061000", "ID", "IDx", "heartbeat", "ID²"])
+@pytest.mark.parametrize(
+    "word",
+    [
+        *("ID0", "ID061000", "ID", "IDx", "heartbeat", "ID²", "ID\u0666\u0661\u0660\u0660\u0660", "XX61000", "IDNone"),
+        *("ID100000000", "ID" + "1" * 5000),
+    ],
+)
 def test_a_message_has_one_name(word: str) -> None:
     assert ALICE.parse(f"fleet/farm/v1/up/alice/1/tlm/{word}") is None
+
+
+def test_the_largest_id_has_a_name() -> None:
+    place = ALICE.parse("fleet/farm/v1/up/alice/1/tlm/ID16777215")
+    assert place is not None
+    assert (place.message_id, place.is_telemetry) == (0xFFFFFF, True)
+
+
+@pytest.mark.parametrize("middle", ["", "alice/", "alice/1/2/", "alice/1/2/3/"])
+def test_a_key_to_a_station_has_eight_chunks(middle: str) -> None:
+    assert ALICE.parse("fleet/farm/v1/up/alice/1/ctl/HEARTBEAT") is not None
+    assert ALICE.parse(f"fleet/farm/v1/up/{middle}ctl/HEARTBEAT") is None
+
+
+@pytest.mark.parametrize("role", ["", "watch/watch/", "watch/watch/watch/"])
+def test_a_key_to_a_vehicle_has_one_role(role: str) -> None:
+    assert ROVER.parse(f"{BASE}/watch/ctl/HEARTBEAT") is not None
+    assert ROVER.parse(f"{BASE}/{role}ctl/HEARTBEAT") is None
+
+
+def test_frames_arrive_under_the_own_name_only() -> None:
+    assert ALICE.frames == "fleet/farm/*/up/alice/1/**"
+    assert ROVER.frames == "fleet/farm/rover1/down/*/*/**"
+
+
+@pytest.mark.parametrize("key", ["fleet/farm/rover1/other", "fleet/farm/rover1/alive/more", "fleet/farm", ""])
+def test_what_is_no_token_of_a_vehicle_names_none(key: str) -> None:
+    assert ALICE.read_token(key) is None
+
+
+@pytest.mark.parametrize("key", ["fleet/farm/rover1/up/alice/1", "fleet/farm/rover1/gcs/alice/1/2", "fleet/farm", ""])
+def test_what_is_no_token_of_a_station_names_none(key: str) -> None:
+    assert ROVER.read_token(key) is None
+
+
+def test_what_is_no_token_of_a_brief_station_names_none() -> None:
+    assert ROVER.read_brief("fleet/farm/rover1/gcs/alice/1/other") is None
+    assert ALICE.read_brief("fleet/farm/rover1/alive/brief") is None
+
+
+def test_a_header_without_its_frame_holds_up_no_other() -> None:
+    reader = KeyReader(ROVER)
+    assert reader.read(f"{BASE}/watch/ctl/HEARTBEAT", b"\xfd\xff\0\0\0\1\1\0\0\0") is None
+    assert reader.read(f"{BASE}/watch/ctl/HEARTBEAT", heartbeat(0)) is not None

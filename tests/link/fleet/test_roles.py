@@ -12,7 +12,7 @@ from dialects.axes import Axes, build_manual_control
 from dialects.messages import Message
 from link.fleet.keys import read_frame
 from link.fleet.rights.drive_commands import DRIVE_COMMANDS
-from link.fleet.roles import needed_role
+from link.fleet.roles import depends_on_content, file_opcode, needed_role
 from link.protocol.frame import Frame
 from link.signing.role import Role
 from tests.link.frames import frame, heartbeat
@@ -55,7 +55,13 @@ def files(opcode: int) -> Frame:
         (read(m.RequestDataStream(1, 1, 0, 4, 1)), Role.DRIVE),
         (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 0, -1), Role.DRIVE),
         (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, math.nan, -1), Role.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 0.99, -1), Role.DRIVE),  # 0 for ArduPilot
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, -0.5, -1), Role.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 2.0**24, -1), Role.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, math.inf, -1), Role.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 1, 1e5), Role.WATCH),
         (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 30, 1e5), Role.WATCH),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 2.0**24 - 1, 1e5), Role.WATCH),
         (read(m.MissionAck(1, 1, 0)), Role.DRIVE),
         (read(m.LogRequestEnd(1, 1)), Role.DRIVE),
         (files(2), Role.DRIVE),
@@ -82,6 +88,29 @@ def files(opcode: int) -> Frame:
 )
 def test_what_each_frame_needs(sent: Frame, role: Role) -> None:
     assert needed_role(sent) is role
+
+
+READING = {0, 1, 3, 4, 5, 14, 15}
+
+
+@pytest.mark.parametrize("opcode", range(20))
+def test_only_file_operations_that_read_are_a_watchers(opcode: int) -> None:
+    expected = Role.WATCH if opcode in READING else Role.DRIVE if opcode == 2 else Role.SET_UP
+    assert needed_role(files(opcode)) is expected
+    assert file_opcode(files(opcode)) == opcode
+
+
+def test_an_opcode_of_zero_is_not_sent() -> None:
+    number, system, component, sequence, raw = read(m.FileTransferProtocol(0, 1, 1, [1, 0, 9, *(0,) * 248]))
+    assert raw[1] == 6, "bytes of payload: up to the session"
+    assert file_opcode((number, system, component, sequence, raw)) == 0
+
+
+def test_the_role_of_commands_and_files_depends_on_their_content() -> None:
+    for message in (m.CommandLong, m.CommandInt, m.SetMode, m.FileTransferProtocol):
+        assert depends_on_content(message.id)
+    for message in (m.Heartbeat, m.ManualControl, m.ParamSet, m.MissionAck):
+        assert not depends_on_content(message.id)
 
 
 SET_UP_BY_ANOTHER_NAME = {
@@ -129,3 +158,17 @@ def test_no_command_of_our_vehicle_needs_another_role_than_here() -> None:
     for row in rows:
         here = max(needed_role(command(row.command, first)) for first in (0.0, 1.0))  # one of them may stop
         assert here == MORE.get(row.command, row.needed_role), (row.command, row.help)
+
+
+DRIVE_NUMBERS = (
+    (16, 25), (30, 36), (80, 80), (82, 82), (84, 85), (92, 94), (115, 115), (176, 179), (181, 198), (200, 208),
+    (210, 211), (213, 214), (216, 216), (220, 224), (252, 252), (260, 260), (262, 262), (300, 300), (400, 400),
+    (405, 406), (521, 522), (525, 525), (527, 528), (530, 532), (534, 534), (601, 601), (611, 611), (1000, 1001),
+    (2000, 2005), (2010, 2010), (2500, 2505), (2510, 2511), (2520, 2520), (2800, 2800), (3000, 3001), (4000, 4001),
+    (5300, 5300), (10001, 10001), (30001, 30002), (32100, 32100), (42600, 42600), (43000, 43003),
+)  # fmt: skip
+"""First and last numbers of the runs of MAV_CMDs that the role drive may send."""
+
+
+def test_the_commands_of_drivers_by_number() -> None:
+    assert {number for first, last in DRIVE_NUMBERS for number in range(first, last + 1)} == DRIVE_COMMANDS

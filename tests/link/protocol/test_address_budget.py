@@ -127,3 +127,50 @@ def test_a_message_that_is_no_answer_proves_nothing() -> None:
     assert isinstance(sync, m.Timesync)
     budget.note_answer(m.Timesync(1, sync.ts1))
     assert budget.proven
+
+
+def test_an_answer_with_another_number_proves_nothing() -> None:
+    for wrong in (m.Timesync(7, 1), m.Timesync(0, 1), m.Ping(1, 1, 1, 1)):
+        budget = AddressBudget()
+        list(budget.questions(0.0))
+        budget.note_answer(wrong)
+        assert not budget.proven
+
+
+def test_what_is_proven_stays_so() -> None:
+    for later in (m.Timesync(7, 1), m.Ping(1, 1, 1, 1)):
+        budget = AddressBudget()
+        ping, _ = budget.questions(0.0)
+        assert isinstance(ping, m.Ping)
+        budget.note_answer(m.Ping(ping.time_usec, 1, 1, 1))
+        budget.note_answer(later)
+        assert budget.proven
+
+
+def test_the_questions_are_to_everybody_and_no_answers() -> None:
+    ping, sync = AddressBudget().questions(0.0)
+    assert isinstance(ping, m.Ping)
+    assert isinstance(sync, m.Timesync)
+    assert (ping.seq, ping.target_system, ping.target_component) == (1, 0, 0)
+    assert sync.tc1 == 0
+
+
+def test_two_addresses_are_asked_with_numbers_that_differ() -> None:
+    numbers = set()
+    for _ in range(100):
+        ping, sync = AddressBudget().questions(0.0)
+        assert isinstance(ping, m.Ping)
+        assert isinstance(sync, m.Timesync)
+        assert ping.time_usec == sync.ts1
+        numbers.add(ping.time_usec)
+    assert len(numbers) == 100
+    assert max(numbers) > 1 << 56, "nobody can guess them"
+
+
+def test_the_last_byte_of_the_budget_may_be_sent() -> None:
+    budget = AddressBudget()
+    assert not budget.take(m.SysStatus.id, 1)
+    budget.grant(m.Heartbeat.id, 3)
+    assert not budget.take(m.SysStatus.id, 301)
+    assert budget.take(m.SysStatus.id, 300)
+    assert not budget.take(m.SysStatus.id, 1)

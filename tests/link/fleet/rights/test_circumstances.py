@@ -122,3 +122,52 @@ def test_a_flood_of_senders_or_autopilots_is_bounded() -> None:
         known.note_heartbeat(beat(ARDUPILOT, ROVER, number % 250 + 1, number // 250 + 1))
     assert max(len(senders) for senders in known._transfers.values()) == 64
     assert len(known._holds) == 512
+
+
+def test_what_is_no_heartbeat_tells_of_no_autopilot() -> None:
+    known = Circumstances()
+    known.note_heartbeat(read(m.ParamRequestList(1, 1)))
+    assert not allowed(known, HOLDS[0])
+
+
+def test_a_known_autopilot_changes_where_no_other_fits() -> None:
+    known = Circumstances()
+    known.note_heartbeat(beat(ARDUPILOT, ROVER))
+    for number in range(1, 600):
+        known.note_heartbeat(beat(ARDUPILOT, ROVER, number % 200 + 2, number // 200 + 1))
+    assert len(known._holds) == 512
+    assert allowed(known, HOLDS[1])
+    known.note_heartbeat(beat(PX4, ROVER))
+    assert not allowed(known, HOLDS[1])
+
+
+@pytest.mark.parametrize("opcode", range(20))
+def test_a_file_is_open_after_these_operations(opcode: int) -> None:
+    known = Circumstances()
+    known.note_transfer(files(opcode), "alice/1", 0.0)
+    assert allowed(known, files(2)) is (opcode not in {4, 5, 6, 7, 11, 15})
+
+
+def test_a_transfer_counts_for_10_s_and_not_longer() -> None:
+    known = Circumstances()
+    known.note_transfer(files(15), "alice/1", 0.0)
+    assert not allowed(known, files(2), now=10.0)
+    assert allowed(known, files(2), now=10.1)
+
+
+def test_of_too_many_senders_the_one_silent_for_longest_goes() -> None:
+    known = Circumstances()
+    for number in range(64):
+        known.note_transfer(files(15), f"bob/{99 - number}", float(number))
+    known.note_transfer(files(15), "bob/99", 100.0)  # not new, and no longer the oldest
+    (senders,) = known._transfers.values()
+    assert len(senders) == 64
+    known.note_transfer(files(15), "carol/1", 101.0)
+    assert set(senders) == {f"bob/{number}" for number in range(36, 98)} | {"bob/99", "carol/1"}
+
+
+def test_a_frame_of_no_transfer_is_not_remembered() -> None:
+    known = Circumstances()
+    known.note_transfer(read(m.ParamRequestList(1, 1)), "alice/1", 0.0)
+    known.note_transfer(files(3), "alice/1", 0.0)
+    assert known._transfers == {}

@@ -1,0 +1,97 @@
+"""The guard of a terminal whose screen is killed or ends in order, with real processes and a real terminal."""
+
+from __future__ import annotations
+
+import os
+import pty
+import select
+import signal
+import tty
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from groundstation.watchdog.terminal_guard import guard_terminal
+from groundstation.watchdog.terminal_reset import RESET
+from tests.waits import wait_until
+
+
+class Terminal:
+    """A terminal in raw mode, and a process with a guard of it."""
+
+    def __init__(self) -> None:
+        self.master, self.slave = pty.openpty()
+        self.cooked = tty.tcgetattr(self.slave)
+
+    def run(self, end: Callable[[], None]) -> int:
+        """Run `end` in another process under the guard, and return how that process ended."""
+        child = os.fork()
+        if not child:
+            code = 1
+            try:
+                with guard_terminal(os.ttyname(self.slave)):
+                    tty.setraw(self.slave)
+                    end()
+                code = 0
+            finally:
+                os._exit(code)
+        return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+    def read_reset(self) -> bytes:
+        """Return what the guard writes."""
+        found = b""
+        while len(found) < len(RESET) and select.select([self.master], [], [], 20.0)[0]:
+            found += os.read(self.master, 4096)
+        return found
+
+    def is_untouched(self) -> bool:
+        return not select.select([self.master], [], [], 0.0)[0] and tty.tcgetattr(self.slave) != self.cooked
+
+
+@pytest.fixture
+def terminal() -> Iterator[Terminal]:
+    terminal = Terminal()
+    yield terminal
+    os.close(terminal.master)
+    os.close(terminal.slave)
+
+
+def test_a_killed_screen_leaves_its_terminal_in_order(terminal: Terminal) -> None:
+    assert terminal.run(lambda: os.kill(os.getpid(), signal.SIGKILL)) == -signal.SIGKILL
+    assert terminal.read_reset() == RESET
+    while tty.tcgetattr(terminal.slave) != terminal.cooked:
+        select.select([], [], [], 0.01)  # the guard restores the line after it has written
+
+
+def test_the_guard_outlives_the_hangup_of_its_session(terminal: Terminal) -> None:
+    """A session that ends hangs up all of its processes, and the group of the terminal."""
+
+    def hang_up() -> None:
+        (guard,) = map(int, Path(f"/proc/self/task/{os.getpid()}/children").read_text().split())
+        wait_until(lambda: os.getsid(guard) == guard and _ignores_hangup(guard))
+        os.kill(guard, signal.SIGHUP)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    terminal.run(hang_up)
+    assert terminal.read_reset() == RESET
+
+
+def _ignores_hangup(process: int) -> bool:
+    (line,) = (line for line in Path(f"/proc/{process}/status").read_text().splitlines() if line.startswith("SigIgn"))
+    return bool(int(line.split()[1], 16) & 1 << (signal.SIGHUP - 1))
+
+
+def test_a_screen_that_ends_in_order_leaves_its_guard_nothing_to_do(terminal: Terminal) -> None:
+    assert terminal.run(lambda: None) == 0
+    assert terminal.is_untouched()
+
+
+def test_a_screen_that_fails_is_no_killed_one(terminal: Terminal) -> None:
+    """Its own clean-up has restored the terminal."""
+
+    def fail() -> None:
+        raise SystemExit(3)
+
+    assert terminal.run(fail) == 1
+    assert terminal.is_untouched()
