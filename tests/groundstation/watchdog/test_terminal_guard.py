@@ -6,6 +6,7 @@ import os
 import pty
 import select
 import signal
+import termios
 import tty
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -22,7 +23,7 @@ class Terminal:
 
     def __init__(self) -> None:
         self.master, self.slave = pty.openpty()
-        self.cooked = tty.tcgetattr(self.slave)
+        self.cooked = termios.tcgetattr(self.slave)
 
     def run(self, end: Callable[[], None]) -> int:
         """Run `end` in another process under the guard, and return how that process ended."""
@@ -46,7 +47,7 @@ class Terminal:
         return found
 
     def is_untouched(self) -> bool:
-        return not select.select([self.master], [], [], 0.0)[0] and tty.tcgetattr(self.slave) != self.cooked
+        return not select.select([self.master], [], [], 0.0)[0] and termios.tcgetattr(self.slave) != self.cooked
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def terminal() -> Iterator[Terminal]:
 def test_a_killed_screen_leaves_its_terminal_in_order(terminal: Terminal) -> None:
     assert terminal.run(lambda: os.kill(os.getpid(), signal.SIGKILL)) == -signal.SIGKILL
     assert terminal.read_reset() == RESET
-    while tty.tcgetattr(terminal.slave) != terminal.cooked:
+    while termios.tcgetattr(terminal.slave) != terminal.cooked:
         select.select([], [], [], 0.01)  # the guard restores the line after it has written
 
 

@@ -107,10 +107,10 @@ def test_an_opcode_of_zero_is_not_sent() -> None:
 
 
 def test_the_role_of_commands_and_files_depends_on_their_content() -> None:
-    for message in (m.CommandLong, m.CommandInt, m.SetMode, m.FileTransferProtocol):
-        assert depends_on_content(message.id)
-    for message in (m.Heartbeat, m.ManualControl, m.ParamSet, m.MissionAck):
-        assert not depends_on_content(message.id)
+    for number in (m.CommandLong.id, m.CommandInt.id, m.SetMode.id, m.FileTransferProtocol.id):
+        assert depends_on_content(number)
+    for number in (m.Heartbeat.id, m.ManualControl.id, m.ParamSet.id, m.MissionAck.id):
+        assert not depends_on_content(number)
 
 
 SET_UP_BY_ANOTHER_NAME = {
