@@ -103,7 +103,7 @@ def loop() -> Iterator[Loop]:
         yield Loop(stack)
 
 
-def test_killed_station_neutral_at_20_hz_until_the_rover_is_disarmed(loop: Loop) -> None:
+def test_a_killed_station_is_neutral_until_the_rover_disarms(loop: Loop) -> None:
     loop.report(DRIVING, loop.line.fileno())
     demands = loop.run_to_the_end(answer=True)
     assert {(each.target, each.x, each.y, each.z, each.r) for each in demands} == {(2, 32767, 0, 0, 32767)}
@@ -122,7 +122,7 @@ def test_a_station_that_ends_in_order_needs_no_neutral(loop: Loop) -> None:
     assert loop.written() == b""
 
 
-def test_a_report_without_descriptors_keeps_those_of_the_one_before(loop: Loop) -> None:
+def test_a_report_without_descriptors_keeps_the_last_ones(loop: Loop) -> None:
     loop.report(DRIVING, loop.line.fileno())
     loop.report(StationReport(vehicles=(ARDUROVER,), routes=DRIVING.routes, keeps_descriptors=True))
     assert loop.run_to_the_end(answer=True)
@@ -183,7 +183,7 @@ def test_a_screen_that_has_quit_keeps_its_terminal(loop: Loop, leaves: Callable[
     assert loop.written() == b""
 
 
-def test_intents_other_than_quit_leave_a_killed_screen_to_be_reset(loop: Loop) -> None:
+def test_other_intents_than_quit_do_not_stop_the_reset(loop: Loop) -> None:
     loop.report(StationReport())
     loop.screen.send(encode(IntentBatch(1.0, (RenewLease(),))))
     loop.screen.close()
@@ -196,7 +196,7 @@ def report_after_a_while(loop: Loop, report: StationReport) -> None:
     loop.report(report)
 
 
-def test_a_killed_screen_of_a_running_station_resets_the_terminal(loop: Loop) -> None:
+def test_a_killed_screen_of_a_running_station_is_reset(loop: Loop) -> None:
     """The station goes on for a while without a screen, and says that it is gone."""
     runs = threading.Thread(target=loop.process.run)
     loop.report(StationReport())

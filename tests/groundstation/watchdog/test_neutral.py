@@ -37,7 +37,7 @@ def test_the_proof_is_a_demand_for_neutral_without_operator() -> None:
     )  # fmt: skip
 
 
-def test_the_neutral_of_ardupilot_is_for_its_system_with_no_button() -> None:
+def test_the_neutral_of_ardupilot_presses_no_button() -> None:
     ardurover = msgspec.structs.replace(ROVER, session=None, autopilot=Autopilot.ARDUPILOT)
     assert read(frames(ardurover).next_frame(1.5)) == ManualControl(4, 32767, 0, 0, 32767, 0)
 

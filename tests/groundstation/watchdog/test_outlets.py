@@ -62,7 +62,7 @@ def test_an_unconnected_socket_sends_to_the_address_of_the_route() -> None:
         assert not is_open(descriptor)
 
 
-def test_a_report_without_descriptors_keeps_those_of_the_one_before() -> None:
+def test_a_report_without_descriptors_keeps_the_last_ones() -> None:
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as before,
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as after,

@@ -76,7 +76,7 @@ def test_only_the_vehicle_itself_ends_the_neutral(frame: bytes, believed: bool) 
     assert bool(watchdog.tick(2.0)) is not believed
 
 
-def test_without_keys_no_frame_of_a_vehicle_that_signs_is_believed() -> None:
+def test_without_keys_no_vehicle_that_signs_is_believed() -> None:
     rover = msgspec.structs.replace(ROVER, verified=True)
     watchdog = Watchdog()
     watchdog.handle_report(StationReport(vehicles=(rover,), routes=(DemandRoute(0, None, 3),)), 0.1)

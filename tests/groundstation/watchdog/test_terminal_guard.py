@@ -83,7 +83,7 @@ def _ignores_hangup(process: int) -> bool:
     return bool(int(line.split()[1], 16) & 1 << (signal.SIGHUP - 1))
 
 
-def test_a_screen_that_ends_in_order_leaves_its_guard_nothing_to_do(terminal: Terminal) -> None:
+def test_a_screen_that_ends_in_order_is_not_reset(terminal: Terminal) -> None:
     assert terminal.run(lambda: None) == 0
     assert terminal.is_untouched()
 

@@ -331,7 +331,7 @@ def test_disarmed_counts_2500_ms_after_the_last_armed(after: float, disarmed: bo
     assert watchdog.finished(103.5) is disarmed
 
 
-def test_a_frame_of_a_vehicle_that_does_not_sign_ends_the_neutral() -> None:
+def test_a_vehicle_that_does_not_sign_ends_the_neutral() -> None:
     watchdog = watching(ARDUROVER)
     watchdog.handle_end(100.0)
     sent(watchdog, 100.0, 0.1)
