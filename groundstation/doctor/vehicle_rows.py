@@ -122,9 +122,13 @@ def failsafes(facts: DoctorFacts) -> ChainFinding:
 
 def fence(facts: DoctorFacts) -> ChainFinding:
     """Judge the fence."""
-    view, bits = facts.vehicle, facts.sensors
-    if view is None:
-        return AFTER_VEHICLE
+    return AFTER_VEHICLE if facts.vehicle is None else _fence(facts.vehicle, facts)
+
+
+def _fence(view: VehicleView, facts: DoctorFacts) -> ChainFinding:
+    bits = facts.sensors
+    if view.breach:
+        return fault(f"{view.name} is {view.breach}", "drive back in MANUAL", "app.log")
     if "fence" in view.failsafes or "fence" in view.limits:
         return fault("breached, or it stops the vehicle here", "drive back in MANUAL", "app.log")
     if bits is None or not bits.present & Sensor.GEOFENCE:

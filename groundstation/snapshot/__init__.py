@@ -115,6 +115,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Newest key-to-motor latency: from sending a changed demand to the report that it is applied; s."""
     failsafes: tuple[str, ...] = ()
     """Names of the active failsafes, e.g. "gcs loss"."""
+    breach: str = ""
+    """That a vehicle without our failsafes is outside its fence, e.g. "outside the fence"; "" if not, or not known."""
     failsafe_in: float | None = None
     """Seconds to the next failsafe action."""
     without_link: str | None = None

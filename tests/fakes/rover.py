@@ -140,6 +140,7 @@ _TELEMETRY: dict[int, Callable[[FakeArduPilot, float], m.Message]] = {
     m.ActuatorOutputStatus.id: lambda *_: m.ActuatorOutputStatus(0, 2, [0.0, -0.5] + [0.0] * 30),
     m.EkfStatusReport.id: lambda *_: m.EkfStatusReport(0x033F, 0.1, 0.05, 0.1, 0.2, 0.0),
     m.EstimatorStatus.id: lambda *_: m.EstimatorStatus(0, 0x033F, 0.1, 0.1, 0.0, 0.1, 0.0, 0.0, 0.4, 0.4),
+    m.FenceStatus.id: lambda *_: m.FenceStatus(0, 0, 0, 0, 0),
     m.Vibration.id: lambda *_: m.Vibration(0, 1.0, 2.0, 3.0, 0, 0, 0),
     m.MissionCurrent.id: lambda *_: m.MissionCurrent(0),
     m.NavControllerOutput.id: lambda *_: m.NavControllerOutput(0.0, 0.0, 0, 0, 12, 0.0, 0.0, 0.0),

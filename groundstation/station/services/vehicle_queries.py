@@ -11,12 +11,18 @@ from groundstation.station.driving.commander import Commander
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.services.service_desk import ServiceDesk
 from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.probes.stream_requests import stream_rate
 from groundstation.vehicles.state.message_log import MessageLog
 from link.core import Outgoing, Received
 
 VERSION_TRIES, VERSION_PERIOD = 3, 2.0
 """How often AUTOPILOT_VERSION is requested of a vehicle, and s between: a vehicle may accept and not send it."""
+
+
+HOME_DELAY, HOME_TRIES, HOME_PERIOD = 2.0, 3, 10.0
+"""s in which a vehicle may send HOME_POSITION by itself; how often it is requested, and s between. A vehicle without a
+home sends it when it has one."""
 
 
 class VehicleQueries:
@@ -33,6 +39,8 @@ class VehicleQueries:
         self._outbox: list[Outgoing] = []
         self._versions: dict[int, tuple[int, float]] = {}
         """System id -> how often its AUTOPILOT_VERSION was requested, and when it may be again."""
+        self._homes: dict[tuple[int, int], tuple[int, float]] = {}
+        """System and component -> how often HOME_POSITION was requested, and when it may be again."""
 
     def receive(self, contact: Contact, received: Received, now: float) -> None:
         """Handle a message of a vehicle."""
@@ -40,6 +48,8 @@ class VehicleQueries:
         if own and contact.stream_requests.handle_message(received.message, now):
             contact.check_settings_again()
             contact.state.restart()
+            contact.details.home = None
+            self._homes.pop((received.system, received.component), None)
         if contact.settings_check is not None:
             self._log_warnings(contact, contact.settings_check.receive(received, now), now)
 
@@ -52,6 +62,7 @@ class VehicleQueries:
                 self._query_settings(contact, now)
                 self._query_params(contact, now)
                 self._request_telemetry(contact, now)
+                self._request_home(contact, now)
 
     def request_version(self, contact: Contact, now: float) -> None:
         """Request AUTOPILOT_VERSION, if it is not known: called while a screen shows it."""
@@ -61,6 +72,17 @@ class VehicleQueries:
         if wanted and not self._is_requesting(contact):
             self._versions[state.system] = (tries + 1, now + VERSION_PERIOD)
             self._commander.request_message(state, m.AutopilotVersion.id, now)
+
+    def _request_home(self, contact: Contact, now: float) -> None:
+        """Request HOME_POSITION of ArduPilot and PX4: ArduPilot sends it only when it changes."""
+        state = contact.state
+        tries, due = self._homes.get((state.system, state.component), (0, now + HOME_DELAY))
+        if state.autopilot not in FOREIGN_AUTOPILOTS or contact.details.home is not None or tries >= HOME_TRIES:
+            return
+        if now >= due and not self._is_requesting(contact):
+            self._commander.request_message(state, m.HomePosition.id, now)
+            tries, due = tries + 1, now + HOME_PERIOD
+        self._homes[state.system, state.component] = tries, due
 
     def _is_requesting(self, contact: Contact) -> bool:
         """Return whether a REQUEST_MESSAGE is not acknowledged yet: another one would take its answer."""

@@ -140,6 +140,14 @@ def _failsafe(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.DANGER, f"failsafe: {', '.join(vehicle.failsafes)}{soon}")
 
 
+def _breach(now: DisplayState) -> Iterator[Alert]:
+    vehicle = now.snapshot.vehicle
+    if vehicle is not None and vehicle.breach:
+        level = AlertLevel.DANGER if vehicle.armed else AlertLevel.WARNING
+        how = "" if vehicle.drivable else f", {now.key('vehicle.manual')} changes to MANUAL"
+        yield Alert(level, f"{vehicle.name} is {vehicle.breach} ({vehicle.mode}): drive it back{how}")
+
+
 STATES = {5: "CRITICAL (a failsafe or fault)", 6: "EMERGENCY"}
 """MAV_STATE of the HEARTBEAT that a driver must know -> its text."""
 
@@ -278,11 +286,10 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _handover, _twins, _state, _key, _gate, _obeys,
-    _operator,
-    _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording, _vehicles,
+    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _breach, _handover, _twins, _state, _key, _gate,
+    _obeys, _operator, _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording, _vehicles,
 )  # fmt: skip
 """Most urgent first."""
 
-REPLAY_RULES: tuple[Rule, ...] = (_station, _silence, _emergency, _failsafe, _state)
+REPLAY_RULES: tuple[Rule, ...] = (_station, _silence, _emergency, _failsafe, _breach, _state)
 """Those that tell what was so in the log; the others say what to do now."""

@@ -69,13 +69,14 @@ STREAM_RATES: dict[int, StreamRate] = {
     m.EkfStatusReport.id: StreamRate(0.5, DataStream.EXTRA3, Autopilot.ARDUPILOT),
     m.EstimatorStatus.id: StreamRate(0.5, DataStream.EXTRA3, Autopilot.PX4),
     m.Vibration.id: StreamRate(0.5, DataStream.EXTRA3),
+    m.FenceStatus.id: StreamRate(1.0, DataStream.EXTENDED_STATUS, Autopilot.ARDUPILOT),
     m.MissionCurrent.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
     m.NavControllerOutput.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
 }
 """Message id -> how to request it. Telemetry to request from a foreign vehicle is one row here."""
 
 LOAD = sum((m.MESSAGES[number].unpacker.size + FRAME) * wanted.rate for number, wanted in STREAM_RATES.items())
-"""Bytes/s of all of them together, of both autopilots: 1790."""
+"""Bytes/s of all of them together, of both autopilots: 1807."""
 
 
 class StreamRequests:

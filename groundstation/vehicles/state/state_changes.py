@@ -1,4 +1,4 @@
-"""Changes of one vehicle's state as lines of the log: armed or not, mode, and the ground station in control."""
+"""Changes of one vehicle's state as lines of the log: armed or not, mode, fence, and the ground station in control."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ class _Seen(msgspec.Struct, frozen=True):
     armed: bool
     mode: str
     driver: int | None
+    breach: str
 
 
 class StateChanges:
@@ -24,7 +25,7 @@ class StateChanges:
 
     def update(self, state: VehicleState) -> Iterator[str]:
         """Yield one text for each change; none for the first state."""
-        before, now = self._before, _Seen(state.armed, state.mode, state.driver)
+        before, now = self._before, _Seen(state.armed, state.mode, state.driver, state.breach)
         self._before = now
         if before is None or now == before:
             return
@@ -32,6 +33,8 @@ class StateChanges:
             yield "armed" if now.armed else "disarmed"
         if now.mode != before.mode:
             yield f"mode {now.mode}, was {before.mode}"
+        if now.breach != before.breach:
+            yield now.breach or "inside the fence again"
         if now.driver != before.driver and (now.driver or before.driver):
             yield self._control(now.driver)
 

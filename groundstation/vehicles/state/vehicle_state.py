@@ -53,6 +53,11 @@ ESTOP = int(DriveLimit.ESTOP)
 """A number, because `&` with a flag makes another flag, 120 times a second while driving."""
 
 
+FENCE_BOUNDARY = 3
+"""FENCE_BREACH_BOUNDARY."""
+_BREACHES = {1: "below the lowest altitude of the fence", 2: "above the highest altitude of the fence"}
+
+
 class VehicleState:
     """One vehicle as reported by its messages. `system` and `component` are those of its HEARTBEAT."""
 
@@ -89,6 +94,9 @@ class VehicleState:
         self._drive: m.RoverDriveStatus | None = None
         self._landed: int = LandedState.UNDEFINED
         self._failsafe: m.RoverFailsafeStatus | None = None
+        self._breach_type = 0
+        """FENCE_BREACH of FENCE_STATUS; 0: none."""
+        self._is_breached = False
         self._frame: LocalFrame | None = None
         """Metres around the first place, for a vehicle without LOCAL_POSITION_NED."""
         self.trail = Track()
@@ -153,6 +161,13 @@ class VehicleState:
         return flag_words(Failsafe, self._failsafe.active) if self._failsafe else ()
 
     @property
+    def breach(self) -> str:
+        """That the vehicle reports a breach of its fence; "" if it does not. Our own reports a failsafe."""
+        if self.has_rover_dialect or not (self._is_breached or self._breach_type):
+            return ""
+        return _BREACHES.get(self._breach_type, "outside the fence")
+
+    @property
     def driver(self) -> int | None:
         """System id of the ground station in control, 0: none; None: the vehicle does not tell."""
         return self.control.driver
@@ -204,6 +219,7 @@ class VehicleState:
             key_to_motor=self.key_timings.build_view(),
             failsafes=self.failsafes,
             failsafe_in=self._failsafe_in(now),
+            breach=self.breach,
             **self._values,
             **station,
         )
@@ -262,9 +278,17 @@ class VehicleState:
     def _system(self, message: m.SysStatus, now: float) -> None:
         if message.onboard_control_sensors_present & Sensor.PREARM:
             self._prearm(bool(message.onboard_control_sensors_health & Sensor.PREARM), now)
+        in_use = message.onboard_control_sensors_present & message.onboard_control_sensors_enabled
+        self._is_breached = bool(in_use & ~message.onboard_control_sensors_health & Sensor.GEOFENCE)
+        if not self._is_breached:
+            self._breach_type = 0
         if m.BatteryStatus not in self._times:
             volts = None if message.voltage_battery == UNKNOWN_U16 else message.voltage_battery / 1000
             self._battery(volts, message.current_battery, message.battery_remaining)
+
+    def _fence_status(self, message: m.FenceStatus, now: float) -> None:
+        self._breach_type = (message.breach_type or FENCE_BOUNDARY) if message.breach_status else 0
+        self._is_breached = bool(message.breach_status)
 
     def _battery_status(self, message: m.BatteryStatus, now: float) -> None:
         if message.id == 0:
@@ -358,6 +382,7 @@ _HANDLERS: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.GpsRawInt: VehicleState._gps,
     m.SysStatus: VehicleState._system,
     m.BatteryStatus: VehicleState._battery_status,
+    m.FenceStatus: VehicleState._fence_status,
     m.ServoOutputRaw: lambda state, message, now: state.foreign.handle_servos(message, now),
     m.ActuatorOutputStatus: lambda state, message, now: state.foreign.handle_actuators(message, now),
     m.RcChannels: lambda state, message, now: state.foreign.handle_rc(message, now),

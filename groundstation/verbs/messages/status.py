@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import state_name
+from dialects.enums import SystemState, state_name
 from groundstation.snapshot import VehicleView
 from groundstation.station.links.link_stats import lost_frames
 from groundstation.vehicles.requests.requests import RequestState
@@ -27,6 +27,7 @@ ASKED = (m.SysStatus, m.BatteryStatus, m.GpsRawInt, m.GlobalPositionInt, m.VfrHu
 """Messages that `status` requests where they are not heard: ArduPilot sends nothing that nobody has requested."""
 ARRIVES_WITHIN = 0.3
 """s for a message after its request was accepted."""
+BAD_STATES = (SystemState.CRITICAL, SystemState.EMERGENCY)
 PERIOD = 1.0
 """s between two lines of `status --watch`."""
 CHANGES_PERIOD = 0.1
@@ -201,7 +202,10 @@ def _gps(view: VehicleView) -> str:
 
 
 def _failsafes(view: VehicleView) -> str:
-    return ", ".join(view.failsafes) or "none"
+    found = [*view.failsafes, *([view.breach] if view.breach else [])]
+    if not found and view.status in BAD_STATES:
+        return f"not named; HEARTBEAT says {state_name(view.status).upper()}"
+    return ", ".join(found) or "none"
 
 
 def _prearm(contact: VehicleContact, view: VehicleView) -> str:
@@ -244,7 +248,8 @@ def _fields(contact: VehicleContact, now: float) -> dict[str, Any]:
         "vehicle": state.system, "name": state.name, "firmware": contact.details.firmware or None, "mode": state.mode,
         "armed": state.armed, "emergency_stop": state.emergency_stop, "system_status": state_name(state.status),
         "gcs_main": state.driver, "prearm": view.prearm, "prearm_reason": view.prearm_reason or None,
-        "failsafes": list(view.failsafes), "voltage": view.battery_voltage, "battery_remaining": view.battery_remaining,
+        "failsafes": list(view.failsafes), "breach": view.breach or None,
+        "voltage": view.battery_voltage, "battery_remaining": view.battery_remaining,
         "fix_type": view.gps_fix, "satellites_visible": view.gps_satellites,
         "lat": place.latitude if place else None, "lon": place.longitude if place else None,
         "groundspeed": view.speed, "heading": None if view.heading is None else math.degrees(view.heading),

@@ -7,6 +7,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot, Command
 from groundstation.vehicles.probes.stream_requests import CAPACITY_SHARE, LOAD
+from groundstation.views.log import LogRequest
 from link.core import Peer, Received
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
@@ -41,6 +42,57 @@ def test_no_queries_while_the_screen_is_frozen() -> None:
     cockpit.leasing = False
     cockpit.run(5.0)
     assert len(vehicle.all(m.RequestDataStream)) == 0
+
+
+def homes(vehicle: FakeVehicle) -> int:
+    return sum(each.param1 == m.HomePosition.id for each in vehicle.commands(Command.REQUEST_MESSAGE))
+
+
+def test_home_is_requested_until_it_is_known() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(4.0)
+    assert homes(vehicle) == 1
+    vehicle.send(m.HomePosition(-353632620, 1491652370, 584000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0))
+    cockpit.run(30.0)
+    assert homes(vehicle) == 1
+    contact = cockpit.station.fleet.get(1)
+    assert contact is not None
+    assert contact.details.home is not None
+
+
+def test_home_is_requested_a_few_times_and_again_after_a_reboot() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(60.0)
+    assert homes(vehicle) == 3
+    vehicle.send(m.SystemTime(0, 600_000))
+    cockpit.run(1.0)
+    vehicle.send(m.SystemTime(0, 1_000))
+    cockpit.run(5.0)
+    assert homes(vehicle) == 4
+
+
+def test_home_of_our_own_rover_is_not_requested() -> None:
+    vehicle = FakeVehicle()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(10.0)
+    assert homes(vehicle) == 0
+
+
+def test_a_breach_is_requested_shown_and_logged() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(4.0)
+    assert m.FenceStatus.id in requested_rates(vehicle)
+    vehicle.send(m.FenceStatus(1, 1, 3, 104172, 1))
+    cockpit.run(0.1)
+    assert cockpit.view.breach == "outside the fence"
+    cockpit.run(2.0)  # the stand-in sends each second that it is inside
+    page = cockpit.station.log.build_page(LogRequest(), cockpit.now, cockpit.now)
+    assert page is not None
+    assert "ArduPilot rover 1: outside the fence" in [line.text for line in page.lines]
+    assert cockpit.view.breach == ""
 
 
 def test_the_capacity_is_that_of_the_vehicles_link() -> None:

@@ -50,6 +50,13 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (snapshot(operator=helm(ignored="a")), {}, AlertLevel.WARNING, "key ignored (a): release it, then press again"),
     (snapshot(vehicle=vehicle(status=5)), {}, AlertLevel.DANGER, "Rover 1 reports CRITICAL (a failsafe or fault)"),
     (snapshot(vehicle=vehicle(status=5, armed=False)), {}, AlertLevel.WARNING, "Rover 1 reports CRITICAL (a fail"),
+    (
+        snapshot(vehicle=vehicle(breach="outside the fence", mode="HOLD", drivable=False)),
+        {},
+        AlertLevel.DANGER,
+        "Rover 1 is outside the fence (HOLD): drive it back, 1 changes to MANUAL",
+    ),
+    (snapshot(vehicle=vehicle(breach="outside the fence", armed=False)), {}, AlertLevel.WARNING, "outside the fence"),
     (snapshot(vehicle=vehicle(status=6)), {}, AlertLevel.DANGER, "Rover 1 reports EMERGENCY: see the log"),
     (snapshot(vehicle=vehicle(status=5, failsafes=("a",))), {}, AlertLevel.DANGER, "failsafe: a"),
     (

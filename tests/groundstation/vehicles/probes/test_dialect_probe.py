@@ -36,7 +36,11 @@ class Kin(FakeVehicle):
 
 def asked(vehicle: FakeVehicle) -> list[float]:
     """When, each repeat counted."""
-    return [at for at, command in vehicle.all(m.CommandLong) if command.command == REQUEST]
+    return [
+        at
+        for at, command in vehicle.all(m.CommandLong)
+        if command.command == REQUEST and command.param1 == m.RoverDriveInfo.id
+    ]
 
 
 def test_requested_once_at_first_contact() -> None:

@@ -40,6 +40,22 @@ def heartbeat(mode: int = 0, base: int = 1, autopilot: int = 0, status: int = Sy
     return m.Heartbeat(10, autopilot, base, mode, status, 3)
 
 
+def fence_bits(*, healthy: bool, enabled: bool = True) -> m.SysStatus:
+    fence = int(Sensor.GEOFENCE)
+    return m.SysStatus(fence, fence * enabled, fence * healthy, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0)
+
+
+def test_a_breach_of_a_foreign_fence_is_named() -> None:
+    beat = heartbeat(autopilot=Autopilot.ARDUPILOT)
+    assert view(beat, fence_bits(healthy=False)).breach == "outside the fence"
+    assert view(beat, m.FenceStatus(1, 1, 3, 104172, 1)).breach == "outside the fence"
+    assert view(beat, m.FenceStatus(1, 1, 2, 104172, 0)).breach == "above the highest altitude of the fence"
+    assert view(beat, fence_bits(healthy=False), fence_bits(healthy=True)).breach == ""
+    assert view(beat, m.FenceStatus(1, 1, 3, 104172, 1), m.FenceStatus(0, 1, 0, 0, 1)).breach == ""
+    assert view(beat, m.FenceStatus(1, 1, 3, 104172, 1), fence_bits(healthy=True)).breach == ""
+    assert view(beat, fence_bits(healthy=False, enabled=False)).breach == ""
+
+
 def test_heartbeat() -> None:
     seen = view(heartbeat(mode=4, base=1 | 128, status=SystemState.ACTIVE))
     assert (seen.mode, seen.armed, seen.status, seen.name) == ("HOLD", True, SystemState.ACTIVE, "Rover 1")

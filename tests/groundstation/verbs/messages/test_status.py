@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 from dialects import messages as m
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.messages.status import _link_cells
+from groundstation.verbs.messages.status import _failsafes, _link_cells
 from groundstation.verbs.messages.status_changes import ChangePrinter
 from groundstation.verbs.session.contact import VehicleContact
 from link.core import LinkReport, SourceCount
@@ -21,7 +21,7 @@ from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
 
 Capture = pytest.CaptureFixture[str]
-PREARM = 0x10000000
+PREARM, FENCE = 0x10000000, 0x100000
 
 
 def test_status_requests_what_the_vehicle_does_not_send(capsys: Capture) -> None:
@@ -87,6 +87,16 @@ def test_a_text_that_lost_a_chunk_is_printed_with_a_gap(capsys: Capture) -> None
     printer.print_changes(3.5)
     assert capsys.readouterr().out[10:] == f"Vehicle 1: error: {'PreArm: '.ljust(50, 'b')} [...] end\n"
     assert contact.state.build_view(3.5).prearm_reason.endswith("[...] end")
+
+
+def test_status_names_a_breach_and_a_failsafe_without_a_name(capsys: Capture) -> None:
+    with foreign_vehicle() as vehicle:
+        vehicle.telemetry = {1: mav.MAVLink_sys_status_message(FENCE, FENCE, 0, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0)}
+        shown = run_verb(capsys, "status", "-e", vehicle.endpoint)
+        assert "failsafe  outside the fence" in shown.out
+    contact = VehicleContact((254, 190), 1, (1, 1), 0.0)
+    contact.receive(received(heartbeat(status=5)), 1.0)
+    assert _failsafes(contact.state.build_view(1.0)) == "not named; HEARTBEAT says CRITICAL"
 
 
 def test_plain_prints_changes_in_place_of_a_screen(capsys: Capture) -> None:
