@@ -88,7 +88,7 @@ _ROWS = (
                    ("tab",)),
     OperatorAction("vehicle.arm", "Arm", "Arm; when armed, one press disarms", "vehicle", Arm(), ("r",), confirm=True,
                    when_armed=Disarm()),
-    OperatorAction("vehicle.disarm", "Disarm", "Disarm", "vehicle", Disarm()),
+    OperatorAction("vehicle.disarm", "Disarm", "Motors off at once, armed or not", "vehicle", Disarm()),
     OperatorAction("vehicle.manual", "MANUAL", "Mode MANUAL: the keys drive", "vehicle", SetMode(mode="MANUAL"),
                    ("1",)),
     OperatorAction("vehicle.hold", "HOLD", "Mode HOLD: the vehicle stays stopped", "vehicle", SetMode(mode="HOLD"),

@@ -26,7 +26,7 @@ from groundstation.intents.vehicle import ReleaseControl
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app.navigation import ROOT, ScreenNavigator, find_row
 from groundstation.ui.app.palette import STYLE as PALETTE_STYLE
-from groundstation.ui.app.palette import ActionProvider, action_commands, theme_commands
+from groundstation.ui.app.palette import ActionProvider, action_commands, line_commands, theme_commands
 from groundstation.ui.app.quitting import Quitting
 from groundstation.ui.app.ticks import Ticks
 from groundstation.ui.app.view_subscription import ViewSubscription
@@ -411,7 +411,8 @@ class ConsoleApp(App[int]):
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """Return the palette's commands."""
-        yield from action_commands(self.choose_action)
+        yield from action_commands(self._keys, self.choose_action)
+        yield from line_commands(self._navigator.modes, self._navigator.open_command)
         yield from theme_commands(self._appearance.choose_theme)
 
     def choose_action(self, action: OperatorAction) -> None:

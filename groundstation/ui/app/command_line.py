@@ -39,9 +39,10 @@ class CommandLine(OwnDismissal[str], ModalScreen[str]):
     CommandLine LineField { dock: none; width: 1fr; padding: 0 1 0 0; }
     """
 
-    def __init__(self, context: ScreenContext) -> None:
+    def __init__(self, context: ScreenContext, text: str = "") -> None:
         super().__init__()
         self.context = context
+        self._first = text
         self.field = LineField()
         self._history = context.keep(CommandHistory)
         self._words: tuple[str, ...] = ()
@@ -56,7 +57,9 @@ class CommandLine(OwnDismissal[str], ModalScreen[str]):
 
     def on_mount(self) -> None:
         """Open the field."""
-        self._open("")
+        self._open(self._first)
+        if self._first:
+            self._change(self._first)
 
     @property
     def takes_text(self) -> bool:

@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from textual.app import App
+from textual.command import CommandPalette
 from textual.screen import Screen
 
 from groundstation.actions import ACTIONS
@@ -18,6 +19,7 @@ from groundstation.ui.app.command_history import CommandHistory
 from groundstation.ui.app.command_line import CommandLine
 from groundstation.ui.app.goto import BEFORE, GoToMenu
 from groundstation.ui.app.local_lines import find_local
+from groundstation.ui.app.palette import MODES_TEXT
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD, GateClosure
 from groundstation.views.base import ViewRequest
@@ -47,6 +49,8 @@ class ScreenNavigator:
         self._current = self._before = ROOT
         self._closing = 0
         self._held: ScreenRow | None = None
+        self.modes: tuple[str, ...] = ()
+        """Names of the modes of the vehicle, as the palette has last asked for them."""
 
     @property
     def actions(self) -> dict[str, Callable[[], None]]:
@@ -85,10 +89,10 @@ class ScreenNavigator:
         if not isinstance(self._app.screen, GoToMenu):
             self._app.push_screen(GoToMenu(self._context), self._follow)
 
-    def open_command(self) -> None:
-        """Open the command line."""
+    def open_command(self, text: str = "") -> None:
+        """Open the command line with a text on it."""
         if not isinstance(self._app.screen, CommandLine):
-            self._app.push_screen(CommandLine(self._context), self._end_line)
+            self._app.push_screen(CommandLine(self._context, text), self._end_line)
 
     def _end_line(self, result: str | None) -> None:
         """Do what the line does here, or show how it has ended."""
@@ -101,6 +105,8 @@ class ScreenNavigator:
     def show_line(self, view: LineView) -> None:
         """Show how a line stands: on the command line, else in the hint of the screen."""
         history = self._context.keep(CommandHistory)
+        if view.text == MODES_TEXT and view.words:
+            self.modes = tuple(word for word in view.words if not word.startswith("-"))
         if isinstance(self._app.screen, CommandLine):
             self._app.screen.show_view(view)
         elif view.number == history.number != history.told and view.state in (DONE, FAILED):
@@ -202,6 +208,9 @@ class ScreenNavigator:
         history = self._context.keep(CommandHistory)
         if isinstance(self._app.screen, CommandLine):
             return (*views, self._app.screen.request)
+        if isinstance(self._app.screen, CommandPalette):
+            vehicle = self._context.newest().snapshot.vehicle
+            return (*views, LineRequest(history.number, MODES_TEXT, 0 if vehicle is None else vehicle.system))
         return (*views, LineRequest(history.number)) if history.number != history.told else views
 
     def go_back(self) -> None:

@@ -51,7 +51,7 @@ def heard_value(view: ConnectView | None, cursor: int | None) -> RowTableValue:
 def _heard(each: HeardRow) -> tuple[Cell, ...]:
     if each.announced:
         return _announced(each)
-    control = "--" if each.driver is None else "nobody" if each.driver == 0 else f"driven by {each.driver}"
+    control = "--" if each.driver is None else "nobody" if each.driver == 0 else f"by {each.driver}"
     flow = f"{each.rate:.0f}/s {each.bytes_per_second / 1000:.1f} kB/s" if each.rate else "open" if each.open else "--"
     host, port = each.address.rpartition(":")[0], each.endpoint.rpartition(":")[2]
     place = f"{host} to udp {port}" if each.address else each.endpoint

@@ -236,6 +236,10 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, f"{who}: {asks}")
 
 
+_ELSEWHERE = (OTHER_SCREEN.reason, TEXT_FIELD.reason)
+"""Why a key was ignored that was text or a key of another screen: nothing has to be released."""
+
+
 def _operator(now: DisplayState) -> Iterator[Alert]:
     vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
     if vehicle is None or not vehicle.armed or not _driven_by_keys(vehicle):
@@ -244,7 +248,7 @@ def _operator(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, "keys do not drive: one is held from before; release it, then press again")
     elif not operator.gate_open and now.closure is None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
-    elif operator.ignored:
+    elif operator.ignored and operator.ignored not in _ELSEWHERE:
         yield Alert(AlertLevel.WARNING, f"key ignored ({operator.ignored}): release it, then press again")
     elif operator.style == "latch" and (operator.throttle or operator.steering):
         yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from groundstation.input.keymap import Keymap
+from groundstation.ui.keys.keynames import format_key, main_key
+from groundstation.ui.keys.mode_keys import MODE_KEYS
 
 SPLIT_HINT = "a key arrived in pieces (slow line) and did nothing; stop keys work. ^g opens screens"
 
@@ -36,6 +38,9 @@ class KeyHint:
         return self._text if now < self._until else None
 
     def _explain(self, key: str) -> str | None:
+        if key in MODE_KEYS:
+            opens = main_key(self._keymap, "app.map")
+            return f"{key} is {MODE_KEYS[key][0]} on the Map" + (f" ({format_key(opens)})" if opens else "")
         if len(key) != 1 or not key.isalpha():
             return None
         if not key.isascii():

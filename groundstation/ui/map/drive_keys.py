@@ -10,7 +10,8 @@ from typing import Protocol
 
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import VehicleView
-from groundstation.ui.map.model import MODE_KEYS, MapModel
+from groundstation.ui.keys.mode_keys import MODE_KEYS
+from groundstation.ui.map.model import MapModel
 from groundstation.ui.map.picture import title_of, way_text
 from groundstation.views.plan import PlanKind, PlanView
 
@@ -107,10 +108,20 @@ class DriveKeys:
         if self._drives_mission:
             self._screen.send((self._model.intents.pause(view),))
             return
+        if self._is_disarmed():
+            return
         edited = bool(self._model.editor.diff(PlanKind.MISSION).count)
         edits = ", as the vehicle has it: the edits are not uploaded" if edited else ""
         text = "go on with the mission" if self._paused else "start the mission"
         self._ask(f"{text}: {view.name} drives by itself{edits}", view, lambda: (self._model.intents.start(view),))
+
+    def _is_disarmed(self) -> bool:
+        """Return whether the vehicle could not obey, and say what to do first."""
+        vehicle = self._vehicle()
+        if vehicle is None or vehicle.armed:
+            return False
+        self._screen.say(f"{vehicle.name} is disarmed: arm it first, on Drive")
+        return True
 
     def _jump(self, view: PlanView) -> None:
         model, at = self._model, self._model.editor.selected
@@ -127,6 +138,8 @@ class DriveKeys:
         place = self._model.ground.cursor
         if place is None or self._model.ground.vehicle is None:
             self._screen.say("no position: the vehicle does not know where it is")
+            return
+        if self._is_disarmed():
             return
         way = way_text(self._model.ground.vehicle, self._model.ground.cursor_point)
         text = f"{view.name} drives to the cursor, {way}"

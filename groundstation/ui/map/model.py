@@ -11,6 +11,7 @@ from groundstation.geo import LocalFrame, Place, Point
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.display.tab_marks import TabMark
+from groundstation.ui.keys.mode_keys import MODE_KEYS
 from groundstation.ui.look.colours import BLUE
 from groundstation.ui.map.draw.ground import Ground
 from groundstation.ui.map.draw.layers import MapLayers, describe_layer
@@ -30,15 +31,6 @@ NEAR = 3.0
 """Cells within which ENTER takes the item under the cursor."""
 BAR = 10
 """Cells of a progress bar."""
-MODE_KEYS: dict[str, tuple[str, ...]] = {
-    "1": ("MANUAL",),
-    "2": ("HOLD", "AUTO_LOITER"),
-    "3": ("AUTO", "AUTO_MISSION", "MISSION"),
-    "4": ("GUIDED", "OFFBOARD"),
-    "5": ("RTL", "AUTO_RTL", "RETURN"),
-    "6": ("LOITER", "STEERING"),
-}
-"""Digit -> names of the mode, of which the vehicle has one or none."""
 PLAN_NAMES = {PlanKind.MISSION: "mission", PlanKind.FENCE: "fence", PlanKind.RALLY: "rally points"}
 NO_CURSOR = "no position: the map has no cursor"
 

@@ -15,6 +15,7 @@ from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.display.wrap import plain
+from groundstation.ui.keys.mode_keys import MODE_KEYS
 from groundstation.ui.map.draw.plan_map import PlanMap
 from groundstation.ui.map.draw.plan_map_value import PlanMapValue
 from groundstation.ui.map.drive_keys import DriveKeys
@@ -22,7 +23,7 @@ from groundstation.ui.map.file_keys import FileKeys
 from groundstation.ui.map.item_edit import change_item, choices
 from groundstation.ui.map.keys import MAP_KEYS, STEPS
 from groundstation.ui.map.look_keys import LookKeys
-from groundstation.ui.map.model import MODE_KEYS, MapModel
+from groundstation.ui.map.model import MapModel
 from groundstation.ui.map.panels import LinesPanel, PanelValue, ProgressStrip, ProgressValue, TextLine
 from groundstation.ui.map.picture import build_map, cursor_lines, layer_title
 from groundstation.ui.map.plan.fields import ItemField, fields_of, value_of

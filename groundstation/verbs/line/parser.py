@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import shlex
+from collections.abc import Collection
 from typing import NoReturn
 
 import msgspec
@@ -48,9 +49,16 @@ class ParsedLine(msgspec.Struct, frozen=True):
     options: argparse.Namespace
 
 
-def parse_line(text: str) -> ParsedLine:
-    """Return what a line asks for. Raises VerbError, also for what another screen does."""
+def parse_line(text: str, modes: Collection[str] = ()) -> ParsedLine:
+    """Return what a line asks for. The name of one of the `modes` alone, in any case, chooses that mode.
+
+    Raises VerbError, also for what another screen does.
+    """
     words = _split(text)
+    if len(words) == 1 and words[0].upper() in modes:
+        words = ["mode", words[0]]
+    elif words == ["rtl"]:  # an autopilot that has another name for it
+        words = ["home"]
     verb = words[0]
     if verb not in VERBS or describe_action(words):
         hint = describe_action(words) or describe_word(verb, VERBS) or f"{verb!r} is no verb; TAB lists them"

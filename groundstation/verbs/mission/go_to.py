@@ -112,7 +112,9 @@ async def speed(session: VerbSession, options: argparse.Namespace, output: Outpu
     report = await session.request(
         lambda number, now: commands.send(number, Command.DO_CHANGE_SPEED, params, "speed", now)
     )
-    return finish(session, report, output, f"drives by itself at {options.speed:g} m/s", speed=options.speed)
+    return finish(
+        session, report, output, f"goes at {options.speed:g} m/s when it drives by itself", speed=options.speed
+    )
 
 
 async def _finish(
@@ -126,7 +128,7 @@ async def _finish(
         return ExitCode.REFUSED
     code = finish(session, report, output, done, mode=state.mode)
     if code is ExitCode.DONE:
-        output.note(f"{state.name} drives by itself{session.afterwards}; `stop` stops it")
+        output.note(f"{state.name} drives by itself{session.afterwards}; `groundstation stop` stops it")
     return code
 
 

@@ -49,7 +49,8 @@ async def start(session: VerbSession, options: argparse.Namespace, output: Outpu
         raise VerbError(ExitCode.REFUSED, f"{state.name}: accepted, but its heartbeat reports {state.mode}")
     code = finish(session, report, output, "drives its mission", mode=state.mode)
     if accepted:
-        output.note(f"{state.name} drives by itself; `groundstation watch` next keeps it going, and `stop` stops it")
+        keeps = "; `groundstation watch` next keeps it going" if session.afterwards else ""
+        output.note(f"{state.name} drives by itself{keeps}; `groundstation stop` stops it")
     return code
 
 

@@ -27,8 +27,10 @@ def plain_keys(keys: tuple[str, ...]) -> list[str]:
 @pytest.mark.parametrize("name", KEYMAPS)
 @pytest.mark.parametrize("action", ACTIONS.values(), ids=ACTIONS)
 def test_every_action_has_a_plain_key_or_is_in_a_menu(action: OperatorAction, name: str) -> None:
-    menu = {row.action for row in SCREENS if row.digit} | {command.title for command in action_commands(print)}
-    assert plain_keys(Keymap(name, KEYMAPS[name]).get_keys(action.id)) or {action.id, action.label} & menu
+    keymap = Keymap(name, KEYMAPS[name])
+    titles = {command.title.partition("   ")[0] for command in action_commands(keymap, print)}
+    menu = {row.action for row in SCREENS if row.digit} | titles
+    assert plain_keys(keymap.get_keys(action.id)) or {action.id, action.label} & menu
 
 
 @pytest.mark.parametrize("name", KEYMAPS)
@@ -53,7 +55,7 @@ async def test_every_screen_opens_without_function_keys() -> None:
             if row.digit:
                 await screen.press("ctrl+g", row.digit)
                 assert isinstance(screen.app.screen, load_screen(row)), row.id
-        await screen.press("ctrl+p", *"keysandwhat")
-        await until(lambda: "Keys and what they do" in screen.text)
+        await screen.press("ctrl+p", *"help")
+        await until(lambda: "Help   ?" in screen.text)
         await screen.press("enter")
-        await until(lambda: "keys · map" in screen.text)
+        await until(lambda: "keys · Connect first" in screen.text)

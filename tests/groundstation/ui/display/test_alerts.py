@@ -278,3 +278,9 @@ def test_watched_vehicle_is_named_and_one_with_another_link_not() -> None:
 
     assert "Rover 1 is only watched: nothing is sent on udpin:127.0.0.1:14550" in texts(watched)
     assert not [text for text in texts(watched, other) if "watched" in text]
+
+
+@pytest.mark.parametrize("closure", [OTHER_SCREEN, TEXT_FIELD], ids=["screen", "text"])
+def test_a_letter_typed_elsewhere_is_no_alert_on_drive(closure: GateClosure) -> None:
+    now = DisplayState(snapshot(operator=helm(ignored=closure.reason)), STANDARD)
+    assert not [alert for alert in active_alerts(now) if "key ignored" in alert.text]

@@ -41,6 +41,7 @@ from tests.groundstation.ui.pilots import Console, console
 from tests.waits import until
 
 STANDING = picture(armed=False, mode="HOLD", speed=0.0)
+READY = picture(armed=True, mode="MANUAL", speed=0.0)
 ALL: tuple[View, ...] = (plan_view(), *pages(), track())
 
 
@@ -108,13 +109,24 @@ async def test_an_upload_while_armed_asks() -> None:
 )
 async def test_what_moves_the_vehicle_or_clears_its_plan_asks(key: str, words: str, kind: type) -> None:
     async with console((140, 45)) as screen:
-        await open_map(screen)
+        await open_map(screen, READY)
         await screen.press(key)
         await until(lambda: words in screen.text)
         await screen.press("x")
         assert screen.station.of(kind) == []
         await screen.press(key, "y")
         assert len(screen.station.of(kind)) == 1
+
+
+@pytest.mark.parametrize("key", ["P", "G"])
+async def test_disarmed_the_map_says_arm_first_and_asks_nothing(key: str) -> None:
+    async with console((140, 45)) as screen:
+        await open_map(screen, picture(armed=False))
+        await screen.press(key)
+        assert "Rover 1 is disarmed: arm it first, on Drive" in screen.text
+        await screen.press("y")
+        assert not screen.station.of(StartMission)
+        assert not screen.station.of(GoTo)
 
 
 async def test_what_stops_does_not_ask() -> None:
@@ -204,7 +216,7 @@ async def test_transfers_are_shown_and_cancelled() -> None:
 
 async def test_another_vehicle_does_not_get_the_request_of_the_first() -> None:
     async with console() as screen:
-        await open_map(screen)
+        await open_map(screen, READY)
         await screen.press("G")
         screen.station.offer_view(plan_view(system=2, name="Rover 2"))
         await screen.show(STANDING)

@@ -55,6 +55,20 @@ def test_a_mistake_is_one_line(text: str, error: str, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
+    ("text", "name", "mode"),
+    [("RTL", "mode", "RTL"), ("rtl", "mode", "rtl"), ("auto", "mode", "auto"), ("home", "home", None)],
+)
+def test_the_name_of_a_mode_alone_chooses_it(text: str, name: str, mode: str | None) -> None:
+    parsed = parse_line(text, {"AUTO", "RTL", "HOLD"})
+    assert parsed.name == name
+    assert getattr(parsed.options, "name", None) == mode
+
+
+def test_rtl_goes_home_where_no_mode_has_that_name() -> None:
+    assert parse_line("rtl", {"AUTO_RTL"}).name == "home"
+
+
+@pytest.mark.parametrize(
     ("text", "asks"),
     [
         ("mode HOLD", False), ("mode manual", False), ("mode AUTO", True), ("mode 17", True), ("disarm", False),
