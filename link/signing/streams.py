@@ -121,6 +121,5 @@ class StreamTable:
         key = max(self._counts, key=self._counts.__getitem__)
         stamp, oldest = min((stamp, each) for each, stamp in self.newest.items() if each.key == key)
         del self.newest[oldest]
-        self.stored.discard(oldest)
         self._counts[key] -= 1
         self.floors[key] = max(self.floors.get(key, 0), stamp)

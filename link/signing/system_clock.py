@@ -17,8 +17,13 @@ def is_synchronized() -> bool:
     fake-hwclock). Only this tells that from the right time. https://man7.org/linux/man-pages/man2/adjtimex.2.html
     """
     try:
-        libc = ctypes.CDLL(None, use_errno=True)
+        libc = ctypes.CDLL(None)
         state: int = libc.adjtimex(ctypes.create_string_buffer(TIMEX_SIZE))  # modes 0: only reads
     except (OSError, AttributeError):
         return False
+    return is_right(state)
+
+
+def is_right(state: int) -> bool:
+    """Return whether adjtimex(2) has returned a state of a clock that is kept right; -1 is an error."""
     return 0 <= state < TIME_ERROR

@@ -101,3 +101,15 @@ def test_a_name_or_secret_is_in_a_ring_once_and_there_is_a_limit() -> None:
         ring.add(new_key("more", Role.WATCH))
     with pytest.raises(ValueError, match="no key none"):
         ring.choose("none")
+
+
+def test_the_newest_of_the_keys_that_are_left_signs() -> None:
+    ring = KeyRing()
+    for name in ("one", "two", "three"):
+        ring = ring.add(new_key(name, Role.DRIVE), sign=True)
+    assert ring.remove("three").sign_with == "two"
+    assert ring.remove("one").sign_with == "three"
+
+
+def test_roles_rise_from_1() -> None:
+    assert [int(role) for role in Role] == [1, 2, 3]
