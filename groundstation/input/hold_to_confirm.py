@@ -51,7 +51,8 @@ class _Hold(msgspec.Struct):
     pressed: float
     seen: float
     """Time of the newest event."""
-    events: int = 1
+    followed: bool = False
+    """An event has come after the press."""
     repeats: int = 0
     """Events at most REPEAT_GAP after the one before."""
     longest_gap: float = 0.0
@@ -62,7 +63,7 @@ class _Hold(msgspec.Struct):
     @property
     def window(self) -> float:
         """Return the time after the newest event for which the key counts as held, s."""
-        if self.events == 1:
+        if not self.followed:
             return LONGEST_DELAY
         if self.spent and self.repeats >= MIN_REPEATS:
             return min(max(2.5 * self.longest_gap, REPEAT_WINDOW_MIN), REPEAT_WINDOW_MAX)
@@ -73,7 +74,7 @@ class _Hold(msgspec.Struct):
         gap, self.seen = now - self.seen, now
         if gap <= 0:
             return
-        self.events += 1
+        self.followed = True
         if gap <= REPEAT_GAP:
             self.repeats += 1
             self.longest_gap = max(self.longest_gap, gap)

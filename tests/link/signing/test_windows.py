@@ -38,7 +38,7 @@ def test_a_running_stream_may_fall_behind() -> None:
 
 
 @pytest.mark.parametrize(("ahead", "refusal"), [(0, None), (DAY, None), (DAY + 1, Refusal.TOO_NEW)])
-def test_a_right_clock_refuses_what_is_more_than_a_day_ahead(ahead: int, refusal: Refusal | None) -> None:
+def test_a_right_clock_refuses_more_than_a_day_ahead(ahead: int, refusal: Refusal | None) -> None:
     right = Signing(KeyRing().add(DRIVER), wall=NOON, now=0.0, synchronized=True)
     assert check(right.verifier, NOW + ahead) is refusal
     right = Signing(KeyRing().add(DRIVER), wall=NOON, now=0.0, synchronized=True)
@@ -46,7 +46,7 @@ def test_a_right_clock_refuses_what_is_more_than_a_day_ahead(ahead: int, refusal
     assert check(keep(DRIVER).verifier, NOW + ahead) is None, "nobody knows the right time"
 
 
-def test_the_time_of_a_key_follows_its_newest_frame_and_our_clock() -> None:
+def test_the_time_of_a_key_follows_its_newest_frame() -> None:
     verifier = unset()
     assert check(verifier, NOW) is None
     assert check(verifier, NOW + 1, 10.0) is None
