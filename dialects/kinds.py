@@ -16,6 +16,38 @@ from dialects.enums import Autopilot, ModeFlag, VehicleType, type_name
 from dialects.mode_tables import ARDUPILOT, AUTO_MAIN, HOLD, PX4, PX4_ALIASES, ROVER, VTOL, ModeTable, px4_number
 from dialects.modes import Mode
 
+NO_VEHICLES = frozenset(
+    {
+        rover.MAV_TYPE_GCS,
+        rover.MAV_TYPE_ONBOARD_CONTROLLER,
+        rover.MAV_TYPE_GIMBAL,
+        rover.MAV_TYPE_ADSB,
+        rover.MAV_TYPE_CAMERA,
+        rover.MAV_TYPE_CHARGING_STATION,
+        rover.MAV_TYPE_FLARM,
+        rover.MAV_TYPE_SERVO,
+        rover.MAV_TYPE_ODID,
+        rover.MAV_TYPE_BATTERY,
+        rover.MAV_TYPE_PARACHUTE,
+        rover.MAV_TYPE_LOG,
+        rover.MAV_TYPE_OSD,
+        rover.MAV_TYPE_IMU,
+        rover.MAV_TYPE_GPS,
+        rover.MAV_TYPE_WINCH,
+        rover.MAV_TYPE_ILLUMINATOR,
+        rover.MAV_TYPE_GRIPPER,
+        49,  # MAV_TYPE_RADIO, newer than pymavlink 2.4.50
+    }
+)
+"""MAV_TYPEs that are no vehicle: parts of one, and what only looks at vehicles.
+
+Many of them name an autopilot in their HEARTBEAT: a gimbal that of its vehicle, a script on board GENERIC.
+MAV_TYPE_GENERIC and ANTENNA_TRACKER are missing here, because autopilots send them.
+"""
+
+AUTOPILOT_COMPONENT: int = rover.MAV_COMP_ID_AUTOPILOT1
+"""Component id of the autopilot of a vehicle; a second autopilot or a script on board has another one."""
+
 MANUAL = "MANUAL"
 """The mode in which the demand goes to the motors, of all autopilots that have one."""
 

@@ -193,3 +193,18 @@ def printable(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
+
+
+def field_value(message: Message, name: str) -> Any:
+    """Return a value: a number, a text, or a list."""
+    if isinstance(message, ExtraMessage):
+        value = message.values[name]
+    elif isinstance(message, StatusText) and name == "text":
+        value = decode_text(message)
+    else:
+        value = getattr(message, name)
+    if isinstance(value, bytes):
+        value = value.split(b"\0", 1)[0].decode("utf-8", "replace")
+    if isinstance(value, str):
+        return printable(value)
+    return list(value) if isinstance(value, tuple | list) else value

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dialects.field_values import field_value
-from dialects.messages import Message
+from dialects.messages import Message, field_value
 
 PACKAGE = "mavlink"
 BASES = {

@@ -7,8 +7,7 @@ import struct
 from collections.abc import Iterator
 from typing import Any
 
-from dialects.field_values import field_value
-from dialects.messages import Message
+from dialects.messages import Message, field_value
 
 _FLOAT = struct.Struct("<f")
 

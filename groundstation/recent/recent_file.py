@@ -12,7 +12,7 @@ from pathlib import Path
 from platformdirs import user_state_path
 
 from groundstation.recent.recent import RecentEndpoints, RecentError, decode, encode
-from link.runtime.regular_file import read_regular_file
+from link.runtime.toml_file import read_regular_file
 from link.runtime.whole_file import PRIVATE, replace_file
 
 FILE = "recent.json"

@@ -1,13 +1,14 @@
-"""Reads TOML files; any error is one line. The caller interprets the content."""
+"""Reads TOML files, and other small files whole; any error is one line. The caller interprets the content."""
 
 from __future__ import annotations
 
+import errno
+import os
 import re
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-from link.runtime.regular_file import read_regular_file
 
 if TYPE_CHECKING:
     import tomllib  # imported where a file is read: it takes 5 ms of each start
@@ -94,3 +95,17 @@ def find_unsupported(value: Any, at: str = "") -> Iterator[str]:
         yield f"{at}: contains the character NUL; remove it"
     elif isinstance(value, int) and abs(value) > MAX_INTEGER:
         yield f"{at}: the number is too large"
+
+
+def read_regular_file(path: str | Path, limit: int) -> bytes:
+    """Return the content of a regular file of at most `limit` bytes. Raises OSError.
+
+    It never blocks on a pipe, and never reads a device without an end.
+    """
+    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "is not a regular file", str(path))
+        data = file.read(limit + 1)
+    if len(data) > limit:
+        raise OSError(errno.EFBIG, f"is larger than {limit} bytes", str(path))
+    return data

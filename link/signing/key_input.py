@@ -11,7 +11,7 @@ from collections.abc import Callable
 from enum import Enum
 from pathlib import Path
 
-from link.runtime.regular_file import read_regular_file
+from link.runtime.toml_file import read_regular_file
 from link.signing.key_words import WORDS, WordsError, complete_word, secret_from_words
 from link.signing.keys import PassphraseKind, find_secret_problem, key_from_passphrase
 

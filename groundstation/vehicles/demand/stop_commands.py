@@ -11,9 +11,9 @@ from enum import Enum
 import msgspec
 
 from dialects.enums import Command, ModeFlag
+from dialects.kinds import AUTOPILOT_COMPONENT
 from dialects.mode_tables import HOLD
 from dialects.modes import set_mode_params
-from dialects.vehicle_types import AUTOPILOT_COMPONENT
 from groundstation.vehicles.state.senders import Sender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.services.command.client import CommandClient

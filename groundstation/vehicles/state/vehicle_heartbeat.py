@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dialects.enums import Autopilot
+from dialects.kinds import AUTOPILOT_COMPONENT, NO_VEHICLES
 from dialects.messages import Heartbeat, Message
-from dialects.vehicle_types import AUTOPILOT_COMPONENT, NO_VEHICLES
 
 MAX_VEHICLES = 128
 """A hundred and some. A flood of invented system ids must not grow a table."""

@@ -10,8 +10,7 @@ from typing import Any
 import msgspec
 
 from dialects.enum_names import enum_names
-from dialects.field_values import field_value
-from dialects.messages import MESSAGES, Message
+from dialects.messages import MESSAGES, Message, field_value
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.nearest import describe_nearest
 

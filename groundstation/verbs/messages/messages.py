@@ -11,8 +11,7 @@ from datetime import UTC, datetime
 import msgspec
 
 from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
-from dialects.field_values import field_value
-from dialects.messages import Message
+from dialects.messages import Message, field_value
 from groundstation.formats.csv_row import csv_row
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from dialects import messages as m
-from dialects.vehicle_types import AUTOPILOT_COMPONENT
+from dialects.kinds import AUTOPILOT_COMPONENT
 from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.vehicles.demand.drive_gate import drive_refusal

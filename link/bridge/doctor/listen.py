@@ -11,8 +11,8 @@ import msgspec
 from link.bridge.doctor.facts import EndpointFacts
 from link.bridge.doctor.listener import EndpointListener
 from link.endpoint import SCHEMES, Endpoint
+from link.transport.processes import find_socket_holders
 from link.transport.serial_ports import find_holders
-from link.transport.socket_holders import find_socket_holders
 from link.transport.transport import LinkError, Transport
 from link.transport.transports import load_factory
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from link.endpoint import DEFAULT_BAUD
 from link.runtime.diagnosis import Finding, Row, fault, ok, unknown, warn
+from link.transport.processes import Kind, find_socket_holders
 from link.transport.serial_ports import SerialPort, find_serial_ports
-from link.transport.socket_holders import Kind, find_socket_holders
 
 USUAL_PORTS: tuple[tuple[Kind, int], ...] = (("udp", 14550), ("udp", 14551), ("udp", 14540), ("tcp", 5760))
 """Ports of ground stations, of a second one, of offboard programs (PX4), and of ArduPilot's simulator."""

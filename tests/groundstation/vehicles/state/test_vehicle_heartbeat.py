@@ -6,7 +6,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot
-from dialects.vehicle_types import NO_VEHICLES
+from dialects.kinds import NO_VEHICLES
 from groundstation.connect.heard import HeardVehicles
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import MessageLog

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects.enums import type_name
-from dialects.vehicle_types import NO_VEHICLES
+from dialects.kinds import NO_VEHICLES
 
 
 def test_each_mav_type_of_the_dialect_is_judged() -> None:

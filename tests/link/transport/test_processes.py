@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 
-from link.transport.socket_holders import HIDDEN, find_socket_holders
+from link.transport.processes import HIDDEN, find_socket_holders
 from tests.ports import free_port
 
 
