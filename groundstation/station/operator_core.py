@@ -66,10 +66,10 @@ class OperatorCore:
         reading = type(received.message) in READINGS
         if not reading:
             self._links.receive(received, now)
-            self._commander.receive_of_unheard(received)
+            self._commander.blind_stops.receive(received)
         self.relay.receive(received, now)
         contact = self.fleet.get_or_add(received, now)
-        if contact is not None and self._commander.blind_stop is not None:
+        if contact is not None and self._commander.blind_stops:
             self._commander.stop_late(contact.state, now)
         self._listener.hear(received, contact, now)
         if contact is None:
@@ -83,9 +83,13 @@ class OperatorCore:
         if not reading:
             self._receive_exchange(contact, received, now)
 
-    def stop_blindly(self, kind: StopKind, now: float) -> None:
-        """Stop all vehicles, also those that are not heard."""
-        self._commander.stop_blindly(now, kind)
+    def stop_blindly(self, kind: StopKind, system: int, now: float) -> None:
+        """Stop a vehicle that is not heard; 0: all vehicles."""
+        self._commander.stop_blindly(now, kind, system)
+
+    def stop(self, kind: StopKind, contact: Contact, now: float) -> None:
+        """Stop a vehicle, which need not be the selected one."""
+        self._commander.stop(contact.state, kind, now)
 
     def _receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
         """Handle what answers a request, makes one, or decides on something."""

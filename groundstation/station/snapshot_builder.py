@@ -27,7 +27,7 @@ class SnapshotBuilder:
             vehicle=self._vehicle(selected, now) if selected else None,
             left_armed=parts.departure.left_armed(now),
             id_conflict=links.id_conflict.text(now),
-            blind_stop=parts.commander.describe_blind_stop(),
+            blind_stop=parts.commander.blind_stops.describe(),
             vehicles=fleet.system_ids,
             not_shown=fleet.not_shown,
             also_armed=fleet.also_armed,

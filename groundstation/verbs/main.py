@@ -120,21 +120,26 @@ async def _run(
     _cancel_on_signals(caught)
     if not action.stops or options.through != AUTO:
         return await _run_once(action, options, output, group, options.through)
-    system, named = options.system, options.endpoints  # those of a station take their place
     until = asyncio.get_running_loop().time() + (options.timeout or STOP_WAIT)
 
     async def attempt(through: str, endpoints: Sequence[str]) -> int:
-        options.system, options.endpoints = system, list(endpoints) or named
-        return await _run_once(action, options, output, group, through)
+        ours = argparse.Namespace(**vars(options))  # those of a station take the place of some
+        ours.endpoints = list(endpoints) or options.endpoints
+        return await _run_once(action, ours, output, group, through, STOP_WITHIN)
 
     return await stop_by_any_way(attempt, output.note, until)
 
 
 async def _run_once(
-    action: VerbAction, options: argparse.Namespace, output: Output, group: VehicleGroup | None, through: str
+    action: VerbAction,
+    options: argparse.Namespace,
+    output: Output,
+    group: VehicleGroup | None,
+    through: str,
+    patience: float = math.inf,
 ) -> int:
-    """Do so once, by a station or by links of its own."""
-    station, endpoints = _find_way(action, options, output, through)
+    """Do so once, by a station or by links of its own. A station may be silent for `patience` s."""
+    station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))
     ids, kept = choose_identity(action, options, station)
     tap = action.tap(options, ids)
     own = station is None and not action.station and not getattr(options, "unsigned", False)
@@ -172,7 +177,7 @@ async def _run_once(
                 station=station,
                 log_tap=tap,
                 signing=signing,
-                patience=STOP_WITHIN if action.stops and through == AUTO else math.inf,
+                patience=patience,
             )
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
@@ -206,7 +211,7 @@ async def _run_for_group(
 
 
 def _find_way(
-    action: VerbAction, options: argparse.Namespace, output: Output, through: str
+    action: VerbAction, options: argparse.Namespace, output: Output, through: str, within: float
 ) -> tuple[StationLink | None, Sequence[str]]:
     """Return the station that the verb goes through, or None, and the endpoints. Raises VerbError, EndpointError."""
 
@@ -215,7 +220,6 @@ def _find_way(
 
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
     hello = Hello(VERB, VERSION, f"groundstation {output.verb}", takes_part=not action.watches, follows=action.follows)
-    within = STOP_WITHIN if action.stops and through == AUTO else HELLO_WITHIN
     station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
         return station, station.ready.endpoints

@@ -132,6 +132,19 @@ def test_a_station_is_lost_while_a_stop_goes_through_it(stack: ExitStack, verb: 
     assert VERBS[verb] in said
 
 
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_stop_goes_through_each_of_several_stations(stack: ExitStack, verb: str) -> None:
+    row, other = Stands(stack, Rover()), Stands(stack, Rover())
+    for each in (row, other):
+        Station(stack, each.endpoints)
+    row.drive()
+    other.drive()
+    said = Pressed(verb, "--wait", "1").stops(row)
+    assert "this stop goes through each" in said
+    assert said.count(VERBS[verb]) == 2
+    wait_until(lambda: not other.turning(), "the vehicle of the other station stops")
+
+
 def test_a_station_that_hangs_and_takes_no_more_programs(stack: ExitStack) -> None:
     row = Stands(stack, Rover())
     station = Station(stack, row.endpoints)

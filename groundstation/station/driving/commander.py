@@ -12,11 +12,11 @@ from dialects.messages import Message
 from dialects.mode_tables import HOLD
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.arming import ArmSequence, ArmStep, send_mode
+from groundstation.station.driving.blind_stops import EVERYBODY, BlindStops
 from groundstation.station.driving.claims import Claims
 from groundstation.station.driving.command_results import CommandResults
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.station.driving.stop_questions import FALLS, StopQuestions
-from groundstation.vehicles.demand.blind_stop import BlindStop
 from groundstation.vehicles.demand.stop_commands import (
     DANGEROUS,
     DISARM,
@@ -38,10 +38,6 @@ QUERY_COMMANDS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
 STOP_RETRY, STOP_TIMEOUT = 0.5, 6.0
 """s after which disarm and HOLD are repeated while a heartbeat reports that it is not so, as the emergency stop is, and
 after which that is reported as a failure."""
-
-
-BLIND_FOR = 30.0
-"""s for which a blind stop is repeated, as one of a verb: a radio link may be cut for some seconds."""
 
 
 class _Stop(msgspec.Struct):
@@ -69,11 +65,7 @@ class Commander:
         self._locks: dict[int, EmergencyLock] = {}
         self._claims = Claims()
         self._stop_questions = StopQuestions()
-        self._ids = (system, component)
-        self._blind: BlindStop | None = None
-        self._blind_until = 0.0
-        self._late: set[int] = set()
-        """Vehicles that were heard while the blind stop was sent."""
+        self.blind_stops = BlindStops((system, component), log)
         self._outbox: list[Outgoing] = []
         self._vehicles: dict[int, VehicleState] = {}
         """Vehicles that were sent a command, by system id."""
@@ -139,37 +131,29 @@ class Commander:
         self._locks[vehicle.system] = EmergencyLock(vehicle, now)
         self.tick(now)
 
-    def stop_blindly(self, now: float, kind: StopKind = StopKind.EMERGENCY) -> None:
-        """Stop all vehicles, also those that are not heard: they may hear us without having a place for us."""
-        if self._blind is None or self._blind.kind is not StopKind.EMERGENCY:
-            self._log.add(now, "station", f"{kind.value.upper()} sent to all vehicles (system 0)", Severity.EMERGENCY)
-            self._blind, self._late = BlindStop(kind, 0, self._ids, now), set()
-        self._blind_until = now + BLIND_FOR
+    def stop_blindly(self, now: float, kind: StopKind = StopKind.EMERGENCY, system: int = EVERYBODY) -> None:
+        """Stop all vehicles, or one, though not heard: they may hear us without having a place for us."""
+        self.blind_stops.begin(kind, system, now)
         self.tick(now)
 
-    @property
-    def blind_stop(self) -> BlindStop | None:
-        """The stop that goes to vehicles that are not heard, while it is sent."""
-        return self._blind
-
     def stop_late(self, vehicle: VehicleState, now: float) -> None:
-        """Stop a vehicle that is heard after the stop of all, in its own form, until it reports it."""
-        kind = self._blind.kind if self._blind is not None and vehicle.system not in self._late else None
-        self._late.add(vehicle.system)
-        if kind is StopKind.EMERGENCY and vehicle.system not in self._locks:
+        """Stop a vehicle that is heard after a blind stop."""
+        kind = self.blind_stops.hear(vehicle.system)
+        if kind is not None and not (kind is StopKind.EMERGENCY and vehicle.system in self._locks):
+            self.stop(vehicle, kind, now)
+
+    def stop(self, vehicle: VehicleState, kind: StopKind, now: float) -> None:
+        """Stop a vehicle in its own form, until it reports it."""
+        if kind is StopKind.EMERGENCY:
             self.emergency_stop(vehicle, now)
         elif kind is StopKind.DISARM:
             self.disarm(vehicle, now)
-        elif kind is StopKind.HOLD:
+        else:
             self.set_mode(vehicle, HOLD, now)
-
-    def describe_blind_stop(self) -> str:
-        """Return what is known of the stop of vehicles that are not heard; "" while none is sent."""
-        return f"{self._blind.kind.value.upper()} {self._blind.describe()}" if self._blind is not None else ""
 
     def clear_emergency_stop(self, vehicle: VehicleState, now: float) -> None:
         """Release the lock; it stays until the vehicle has accepted."""
-        self._blind = None
+        self.blind_stops.clear()
         if vehicle.system in self._locks or vehicle.emergency_stop:
             self._locks.setdefault(vehicle.system, _answered_lock(vehicle, now)).clear(self._client, now)
 
@@ -210,7 +194,7 @@ class Commander:
     @property
     def busy(self) -> bool:
         """Whether a command is under way or is to be repeated."""
-        stopping = self._stops or self._locks or self._blind
+        stopping = self._stops or self._locks or self.blind_stops
         return self._arming is not None or bool(stopping) or self._client.busy
 
     def is_pending(self, command: Command, vehicle: VehicleState) -> bool:
@@ -242,11 +226,6 @@ class Commander:
         self._client.receive(received, now)
         self._handle_outcomes(now)
 
-    def receive_of_unheard(self, received: Received) -> None:
-        """Take an answer to a blind stop."""
-        if self._blind is not None:
-            self._blind.receive(received)
-
     def handle_refused(self, message: Message, why: str, now: float) -> None:
         """End the command whose message is not sent, because our role does not allow it."""
         self._client.refuse(message, why)
@@ -261,7 +240,7 @@ class Commander:
         self._claims.update(now)
         for lock in self._locks.values():
             lock.tick(self._client, now)
-        self._send_blind_stop(now)
+        self._outbox += self.blind_stops.tick(now, heard=bool(self._vehicles))
         if self._arming is not None:
             self._arming.tick(self._client, now)
             self._end_arming(self._arming, now)
@@ -302,15 +281,6 @@ class Commander:
             stop.due = now + STOP_RETRY
             send_stop(self._client, vehicle, stop.stop, now, attempt=stop.tries)
             stop.tries += 1
-
-    def _send_blind_stop(self, now: float) -> None:
-        if self._blind is not None and now >= self._blind_until:
-            self._log.add(now, "station", self.describe_blind_stop(), Severity.CRITICAL)
-            self._blind = None
-        elif self._blind is not None:
-            self._outbox += [
-                Outgoing(message) for message in self._blind.tick(now, heard=bool(self._late or self._vehicles))
-            ]
 
     def _end_arming(self, arming: ArmSequence, now: float) -> None:
         if arming.step is ArmStep.DONE and self._arming is arming:

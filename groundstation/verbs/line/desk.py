@@ -10,6 +10,7 @@ from typing import Any
 from dialects.enums import Severity
 from groundstation.formats.errors import FileFormatError
 from groundstation.intents.line import RunLine
+from groundstation.station.driving.blind_stops import EVERYBODY
 from groundstation.station.station import Station
 from groundstation.vehicles.demand.stop_commands import STOP_VERBS
 from groundstation.vehicles.fleet import Contact
@@ -59,16 +60,16 @@ class LineDesk:
         task.add_done_callback(self._tasks.discard)
 
     def _stop_blindly(self, intent: RunLine, parsed: ParsedLine, now: float) -> bool:
-        """Carry out a stop while no vehicle was heard; return whether none was."""
-        if (
-            self._station.fleet.selected is not None
-            or parsed.options.vehicle
-            or getattr(parsed.options, "clear", False)
-        ):
+        """Carry out a stop for a vehicle that is not heard, or all while none is; return whether that is so."""
+        wanted = parsed.options.vehicle
+        if getattr(parsed.options, "clear", False) or isinstance(wanted, str):
             return False
-        self._station.stop_blindly(STOP_VERBS[parsed.name], now)
+        if self._station.fleet.get(wanted) if wanted else self._station.fleet.selected:
+            return False
+        self._station.stop_blindly(STOP_VERBS[parsed.name], wanted or EVERYBODY, now)
         self._flush()
-        self._end(intent, DONE, [], here(f"{parsed.name} is sent to all vehicles; none is heard yet"))
+        target = f"vehicle {wanted}, which is not heard" if wanted else "all vehicles; none is heard yet"
+        self._end(intent, DONE, [], here(f"{parsed.name} is sent to {target}"))
         return True
 
     def build(self, request: LineRequest) -> LineView:

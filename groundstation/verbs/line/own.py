@@ -8,7 +8,7 @@ from dialects.mode_tables import HOLD
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.handover import ANSWER_WITHIN
-from groundstation.vehicles.demand.stop_commands import shows_hold
+from groundstation.vehicles.demand.stop_commands import StopKind, shows_hold
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.line.session import LineOutput, LineSession
@@ -31,8 +31,7 @@ async def _wait_disarmed(session: LineSession) -> tuple[bool, str]:
 
 async def disarm(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
     """Disarm."""
-    _need_selected(session)
-    session.do(Stop(), Disarm())
+    session.stop(StopKind.DISARM, Stop(), Disarm())
     done, doubt = await _wait_disarmed(session)
     output.note(f"{session.vehicle.name} {'is disarmed' if done else f'is not known to be disarmed: {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
@@ -40,9 +39,8 @@ async def disarm(session: LineSession, options: argparse.Namespace, output: Line
 
 async def stop(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
     """Stop the sticks, and change to HOLD."""
-    _need_selected(session)
     state = session.vehicle
-    session.do(Stop(), SetMode(mode=HOLD))
+    session.stop(StopKind.HOLD, Stop(), SetMode(mode=HOLD))
 
     def find_doubt() -> str:
         return state.senders.find_doubt(session.now, lambda sender: shows_hold(state, sender))
@@ -54,10 +52,9 @@ async def stop(session: LineSession, options: argparse.Namespace, output: LineOu
 
 async def emergency_stop(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
     """Stop the motors and lock them."""
-    _need_selected(session)
     if options.clear:
         raise VerbError(ExitCode.USAGE, "estop --clear is the key t, held for 1 s on Drive, so that no text does it")
-    session.do(EmergencyStop())
+    session.stop(StopKind.EMERGENCY, EmergencyStop())
     done, doubt = await _wait_disarmed(session)
     output.note(f"{session.vehicle.name}: emergency stop{'' if done else f'; {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER

@@ -10,6 +10,7 @@ import msgspec
 
 from groundstation.intents.base import Intent
 from groundstation.station.station import Station
+from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.vehicles.services import VehicleServices
@@ -84,6 +85,14 @@ class LineSession:
         """Carry out intents, which go to the selected vehicle."""
         for intent in intents:
             self._station.handle_intent(intent, self.now)
+        self.flush()
+
+    def stop(self, kind: StopKind, *intents: Intent) -> None:
+        """Stop the vehicle: by the intents of its key if it is the selected one."""
+        if self.is_selected:
+            self.do(*intents)
+            return
+        self._station.stop(kind, self.contact.contact, self.now)
         self.flush()
 
     async def need_only_vehicle(self, wanted: int | str | None) -> None:

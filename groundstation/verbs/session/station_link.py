@@ -47,12 +47,21 @@ def station_choice(text: str) -> str:
 
 
 class StationLostError(VerbError):
-    """No station takes a verb, though one runs: it does not answer, has ended, or there are several."""
+    """No station takes a verb, though one runs: it does not answer, or has ended."""
 
     def __init__(self, code: ExitCode, text: str, endpoints: Sequence[str] = ()) -> None:
         super().__init__(code, text)
         self.endpoints = endpoints
         """Those that it had open, if it has said so."""
+
+
+class SeveralStationsError(VerbError):
+    """Several stations run, of which none is named."""
+
+    def __init__(self, pids: Sequence[int]) -> None:
+        which = ", ".join(map(str, pids))
+        super().__init__(ExitCode.USAGE, f"stations {which} run here: name one with --station PID")
+        self.pids = pids
 
 
 class StationLink:
@@ -88,10 +97,11 @@ def find_station(
     note: Callable[[str], None],
     within: float = HELLO_WITHIN,
 ) -> StationLink | None:
-    """Return the station that a verb goes through; None: it opens links of its own. Raises VerbError, StationLostError.
+    """Return the station that a verb goes through; None: it opens links of its own. Raises VerbError.
 
-    With `endpoints`, those that the user named, a station counts only if it has them open. `note` gets why stations
-    cannot be looked for. A station that does not answer `within` s is none.
+    That is StationLostError or SeveralStationsError where a stop has another way. With `endpoints`, those that the user
+    named, a station counts only if it has them open. `note` gets why stations cannot be looked for. A station that does
+    not answer `within` s is none.
     """
     if choice == NEVER:
         return None
@@ -106,8 +116,7 @@ def find_station(
         raise VerbError(ExitCode.USAGE, str(error)) from error
     found = _matching(pids, endpoints, hello, within) if endpoints else pids
     if len(found) > 1:
-        which = ", ".join(map(str, found))
-        raise StationLostError(ExitCode.USAGE, f"stations {which} run here: name one with --station PID")
+        raise SeveralStationsError(found)
     if found:
         return StationLink.open(found[0], hello, within)
     if choice == ONLY:

@@ -10,7 +10,9 @@ from groundstation.intents.driving import ClearEmergencyStop, EmergencyStop
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import EmergencyProgress
-from groundstation.vehicles.demand.stop_commands import FORCE_DISARM
+from groundstation.station.driving.blind_stops import EVERYBODY, BlindStops
+from groundstation.vehicles.demand.stop_commands import FORCE_DISARM, StopKind
+from groundstation.vehicles.state.message_log import MessageLog
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit
@@ -187,6 +189,41 @@ def test_a_vehicle_that_is_heard_after_a_stop_of_all_is_locked() -> None:
     cockpit.do(ClearEmergencyStop(held=1.0))
     cockpit.run(3.0)
     assert not vehicle.locked, "the stop of all ends with its release"
+
+
+def test_a_blind_stop_of_one_vehicle_goes_to_it_alone() -> None:
+    vehicle = MuteVehicle()
+    vehicle.armed = True
+    cockpit = Cockpit(vehicle)
+    cockpit.station.stop_blindly(StopKind.DISARM, 7, cockpit.now)
+    cockpit.run(1.0)
+    assert vehicle.armed
+    assert "vehicle 7 (system 7)" in cockpit.snapshot.blind_stop
+    cockpit.station.stop_blindly(StopKind.DISARM, 1, cockpit.now)
+    cockpit.run(0.3)
+    assert not vehicle.armed
+    assert "DISARM sent" in cockpit.snapshot.blind_stop
+
+
+def test_a_weaker_stop_does_not_replace_an_emergency_stop() -> None:
+    stops = BlindStops((255, 190), MessageLog())
+    stops.begin(StopKind.EMERGENCY, EVERYBODY, 0.0)
+    stops.begin(StopKind.HOLD, EVERYBODY, 1.0)
+    stops.begin(StopKind.HOLD, 4, 1.0)
+    assert stops.describe().startswith("EMERGENCY STOP sent")
+    assert stops.hear(4) is StopKind.EMERGENCY
+    assert stops.hear(4) is None
+    assert stops.tick(30.9, heard=True) != []
+    assert stops.tick(31.1, heard=True) == []
+    assert not stops
+
+
+def test_of_very_many_blind_stops_the_last_go_to_all() -> None:
+    stops = BlindStops((255, 190), MessageLog())
+    for system in range(1, 34):
+        stops.begin(StopKind.DISARM, system, 0.0)
+    assert stops.hear(33) is StopKind.DISARM
+    assert "(system 0)" in stops.describe()
 
 
 def test_the_second_press_reaches_vehicles_that_are_not_heard() -> None:

@@ -70,12 +70,13 @@ def now() -> float:
     return asyncio.get_running_loop().time()
 
 
-def with_station(vehicle: ForeignVehicle, use: Callable[[Lines], Awaitable[None]]) -> None:
+def with_station(vehicle: ForeignVehicle, use: Callable[[Lines], Awaitable[None]], *others: ForeignVehicle) -> None:
     """Run a station that has found the vehicle."""
+    endpoints = [each.endpoint for each in (vehicle, *others)]
 
     async def main() -> None:
-        station = Station([vehicle.endpoint], system=255, session=7, now=now())
-        links = open_links([vehicle.endpoint], system=255, component=COMPONENT)
+        station = Station(endpoints, system=255, session=7, now=now())
+        links = open_links(endpoints, system=255, component=COMPONENT)
         runner = Runner(station, links, period=0.02, route=False)
         running = asyncio.ensure_future(runner.run())
 
@@ -142,6 +143,23 @@ def test_refusals_and_mistakes_are_one_line() -> None:
         vehicle.answers[192] = (3, "")
         vehicle.silent.add(20)
         with_station(vehicle, use)
+
+
+def test_a_stop_needs_no_selected_and_no_heard_vehicle() -> None:
+    async def use(lines: Lines) -> None:
+        await lines.see(lambda: len(list(lines.station.fleet)) == 2)
+        unheard = await lines.run("disarm -v 9")
+        assert (unheard.state, unheard.note) == (DONE, "disarm is sent to vehicle 9, which is not heard")
+        selected = lines.vehicle.system
+        for vehicle in (one, two):
+            vehicle.armed = True
+            done = await lines.run(f"disarm -v {vehicle.system}")
+            assert done.state == DONE, done
+            assert not vehicle.armed
+        assert lines.vehicle.system == selected
+
+    with foreign_vehicle() as one, foreign_vehicle(system=2) as two:
+        with_station(one, use, two)
 
 
 def test_a_hostile_name_of_a_vehicle_completes_no_line() -> None:
