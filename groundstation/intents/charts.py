@@ -7,7 +7,7 @@ from groundstation.views.charts import FieldId
 
 
 class PinSeries(Intent, frozen=True):
-    """Record these fields also while no screen draws them, in place of those pinned before."""
+    """Record these fields also when they are not drawn any more, in place of those pinned before."""
 
     is_input = False
     valid_when_late = True

@@ -31,7 +31,7 @@ TAPS = "charts"
 
 
 class ChartDesk:
-    """Records only while something is drawn or pinned; marks are kept at all times."""
+    """Records what is pinned or was drawn last; marks are kept at all times."""
 
     def __init__(
         self,
@@ -66,7 +66,7 @@ class ChartDesk:
         return frozenset(field.system for field in self._recorded if not field.sent)
 
     def pin(self, fields: Iterable[FieldId]) -> None:
-        """Record these fields also while no screen draws them, in place of those pinned before."""
+        """Record these fields also when they are not drawn any more, in place of those pinned before."""
         self._recorder.pin(fields)
 
     def mark_key(self, intent: AnyIntent, now: float) -> None:
@@ -88,7 +88,7 @@ class ChartDesk:
     # ---- recording ----
 
     def _update_taps(self, now: float) -> None:
-        recorded = self._recorder.recorded(now)
+        recorded = self._recorder.recorded
         if recorded != self._recorded:
             self._recorded = recorded
             self._traffic.set_taps(TAPS, dict(_taps(recorded)))

@@ -13,9 +13,6 @@ from groundstation.views.charts import MAX_FIELDS, FieldId, SeriesPage, SeriesPo
 PAGE = 6000
 """Points and marks in one page: 100 kB, less than half a packet."""
 
-WATCHED_FOR = 1.0
-"""s after the last request for which a screen counts as open: five periods of its view."""
-
 
 class SeriesRecorder:
     """Points of all recorded fields and marks, numbered together in the order of their arrival."""
@@ -33,22 +30,22 @@ class SeriesRecorder:
         self._buffers: dict[FieldId, PointBuffer] = {}
         self._drawn: tuple[FieldId, ...] = ()
         self._pinned: tuple[FieldId, ...] = ()
-        self._asked_at = float("-inf")
 
     def pin(self, fields: Iterable[FieldId]) -> None:
-        """Record these fields also while no screen requests them, in place of those pinned before."""
+        """Record these fields also when they are not drawn any more, in place of those pinned before."""
         self._pinned = tuple(dict.fromkeys(fields))[:MAX_FIELDS]
         self._update_buffers()
 
-    def recorded(self, now: float) -> Mapping[FieldId, PointBuffer]:
-        """Return the buffers to fill now: those of pinned fields, and of drawn ones while a screen requests them."""
-        if now - self._asked_at <= WATCHED_FOR:
-            return dict(self._buffers)
-        return {field: self._buffers[field] for field in self._pinned}
+    @property
+    def recorded(self) -> Mapping[FieldId, PointBuffer]:
+        """The buffers to fill: those of pinned fields, and of what was drawn last, also while no screen draws it.
+
+        Keys drive on another screen than the one that draws: what it showed before the drive is wanted after it.
+        """
+        return dict(self._buffers)
 
     def build_page(self, request: SeriesRequest, now: float, wall: float) -> SeriesPage:
         """Return what is new since `request.after`, oldest first; it is recorded from the first request on."""
-        self._asked_at = now
         fields = tuple(dict.fromkeys(request.fields))[:MAX_FIELDS]
         if fields != self._drawn:
             self._drawn = fields

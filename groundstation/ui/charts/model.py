@@ -52,6 +52,7 @@ class ChartsModel:
         self.pinned: dict[FieldId, None] = {}
         self.infos: dict[FieldId, FieldInfo] = {}
         self._ready: list[NamedView] = []
+        self._opened = False
         self._folder = folder
         self._own, self._problem = load_views(folder)
         self._lines: dict[SeriesSpec, Line] = {}
@@ -88,6 +89,14 @@ class ChartsModel:
         self.infos = {info.field: info for info in page.known}
         self._ready = [ready_view(each) for each in page.ready]
         self.search.show_page(page)
+
+    def open_first(self) -> None:
+        """Show the first view that has a field, once and only where nothing was drawn before."""
+        view = next((each for each in self._ready if each.charts), None)
+        if view is not None and not self._opened:
+            self._opened = True
+            if not self.charts.charts:
+                self.show_view(view)
 
     def pop_note(self) -> str | None:
         """Return what the user should know, once."""
@@ -217,7 +226,7 @@ class ChartsModel:
         return PinSeries(tuple(self.pinned))
 
     def toggle_pin(self) -> PinSeries | None:
-        """Record the fields of the chosen line also while the screen is hidden, or not any more."""
+        """Record the fields of the chosen line also when they are not drawn any more, or end that."""
         spec = self.charts.chosen_spec
         if spec is None:
             return None

@@ -48,7 +48,7 @@ class ChartsScreen(ConsoleScreen):
         ScreenKey("up", "Field", "Choose the field above; down, and 1 to 6 for a chart, choose others"),
         ScreenKey("pageup", "Earlier", "Show an earlier time (Page Down: later, Home: the oldest, End: live)"),
         ScreenKey("c", "No cursor", "Remove both cursors"),
-        ScreenKey("p", "Pin", "Record the chosen field also while this screen is closed, or not any more"),
+        ScreenKey("p", "Pin", "Record the chosen field also when it is not drawn any more, or end that"),
         ScreenKey("s", "Rate", "Show how fast the chosen field changes, or its value again"),
         ScreenKey("f", "Factor", "Multiply the chosen field by a number"),
         ScreenKey("d", "Difference", "Subtract another field from the chosen one"),
@@ -89,6 +89,7 @@ class ChartsScreen(ConsoleScreen):
                 self._show()
         elif isinstance(view, FieldsPage):
             self._model.show_fields(view)
+            self._model.open_first()
             self.say(self._model.pop_note())
             self._show()
 

@@ -70,10 +70,6 @@ async def drive(size: tuple[int, int]) -> dict[str, frames.Picture]:
     async with armed_app(size) as (app, pilot):
         await pilot.press("f5")
         await pilot.pause(1.0)
-        await pilot.press("v")
-        for _ in range(6):
-            await pilot.press("p", "down")
-        await pilot.pause(1.0)
         await pilot.press("f1")
         await pilot.pause(1.0)
         for key, seconds in DRIVE:

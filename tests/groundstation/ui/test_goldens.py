@@ -127,12 +127,12 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "files_loading_80x24": (SMALL, waiting(), ("ctrl+g", "9")),
     "charts_empty_80x24": (SMALL, snapshot(), ("f5",)),
     "charts_empty_140x45": (WIDE, waiting(), ("f5",)),
-    "charts_80x24": (SMALL, snapshot(), ("f5", "v")),
-    "charts_140x45": (WIDE, snapshot(), ("f5", "v")),
-    "charts_list_80x24": (SMALL, snapshot(), ("f5", "v", "tab")),
-    "charts_measure_80x24": (SMALL, snapshot(), ("f5", "v", "z", *["shift+left"] * 2, "m", "left", "left")),
-    "charts_measure_140x45": (WIDE, snapshot(), ("f5", "v", "z", "shift+left", "m", *["shift+left"] * 4)),
-    "charts_add_140x45": (WIDE, snapshot(), ("f5", "v", "a", *"volt")),
+    "charts_80x24": (SMALL, snapshot(), ("f5",)),
+    "charts_140x45": (WIDE, snapshot(), ("f5",)),
+    "charts_list_80x24": (SMALL, snapshot(), ("f5", "tab")),
+    "charts_measure_80x24": (SMALL, snapshot(), ("f5", "z", *["shift+left"] * 2, "m", "left", "left")),
+    "charts_measure_140x45": (WIDE, snapshot(), ("f5", "z", "shift+left", "m", *["shift+left"] * 4)),
+    "charts_add_140x45": (WIDE, snapshot(), ("f5", "a", *"volt")),
     **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
@@ -195,12 +195,11 @@ def fill_recent(name: str) -> None:
 async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapshot) -> None:
     """Press the keys behind the one that opened the screen, and show what that asks for."""
     if "charts" in name:
-        await screen.press(*keys[1:2])
-        if "v" in keys:  # points that come before they are requested are dropped
+        if "empty" not in name:  # points that come before they are requested are dropped
             await until(lambda: any(getattr(each, "fields", ()) for each in screen.station.of(Watch)[-1].requests))
         screen.station.offer_view(drive())
         await screen.show(picture)
-        await screen.press(*keys[2:])
+        await screen.press(*keys[1:])
         if "a" in keys:
             screen.station.offer_view(fields_page("volt"))
         return

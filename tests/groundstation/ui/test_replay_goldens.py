@@ -124,7 +124,6 @@ async def test_a_request_says_that_nothing_is_sent() -> None:
 
 async def test_a_chart_shows_the_log_and_forgets_it_after_a_move() -> None:
     async with replay_console(open_drive(), WIDE, first="charts") as screen:
-        await screen.press("v")
         await screen.show()
         assert "groundspeed" in screen.text
         await screen.press("ctrl+g", "0")

@@ -92,7 +92,7 @@ def test_no_point_and_no_mark_is_lost_or_doubled_between_pages(steps: list[tuple
     got: dict[FieldId, list[tuple[float, float]]] = {A: [], B: []}
     marks: list[Mark] = []
     recorder.build_page(SeriesRequest((A, B)), now, now)
-    whole = dict(recorder.recorded(now))
+    whole = dict(recorder.recorded)
     for number, (what, step) in enumerate([*steps, ("a", 1.0), ("page", 1.0)]):
         now += step
         if what in ("a", "b"):
@@ -115,7 +115,7 @@ def test_a_page_fits_a_packet_and_the_next_ones_bring_the_rest() -> None:
     recorder = SeriesRecorder()
     fields = tuple(FieldId(1, 1, False, "M", f"f{number}") for number in range(MAX_FIELDS))
     recorder.pin(fields)
-    for field, buffer in recorder.recorded(0.0).items():
+    for field, buffer in recorder.recorded.items():
         for step in range(1500):
             buffer.add(step * 0.25, float(fields.index(field)))
     state, total, pages = 0, 0, 0
@@ -131,7 +131,7 @@ def test_a_page_fits_a_packet_and_the_next_ones_bring_the_rest() -> None:
 def test_numbers_of_forgotten_points_make_no_empty_pages() -> None:
     recorder = SeriesRecorder()
     recorder.build_page(SeriesRequest((A,)), 0.0, 0.0)
-    buffer = recorder.recorded(0.0)[A]
+    buffer = recorder.recorded[A]
     for step in range(60_000):
         buffer.add(step * 1.0, 1.0)
     page = recorder.build_page(SeriesRequest((A,)), 60_000.0, 0.0)
@@ -139,20 +139,21 @@ def test_numbers_of_forgotten_points_make_no_empty_pages() -> None:
     assert read(page, A)[-1] == (59_999.0, 1.0)
 
 
-def test_a_hidden_screen_records_pinned_fields_only() -> None:
+def test_what_was_drawn_last_and_what_is_pinned_is_recorded() -> None:
     recorder = SeriesRecorder()
     recorder.pin((B,))
     recorder.build_page(SeriesRequest((A, B)), 0.0, 0.0)
-    assert set(recorder.recorded(0.5)) == {A, B}
-    assert set(recorder.recorded(2.0)) == {B}
-    recorder.pin(())
-    assert set(recorder.recorded(2.0)) == set()
+    assert set(recorder.recorded) == {A, B}
     recorder.build_page(SeriesRequest((A,)), 3.0, 0.0)
-    assert set(recorder.recorded(3.0)) == {A}
+    assert set(recorder.recorded) == {A, B}
+    recorder.pin(())
+    assert set(recorder.recorded) == {A}
+    recorder.build_page(SeriesRequest(()), 4.0, 0.0)
+    assert set(recorder.recorded) == set()
 
 
 def test_a_request_for_too_many_fields_is_cut() -> None:
     recorder = SeriesRecorder()
     fields = tuple(FieldId(1, 1, False, "M", f"f{number}") for number in range(500))
     recorder.build_page(SeriesRequest(fields), 0.0, 0.0)
-    assert len(recorder.recorded(0.0)) == MAX_FIELDS
+    assert len(recorder.recorded) == MAX_FIELDS

@@ -25,7 +25,6 @@ async def open_charts(screen: Console, *keys: str) -> None:
     screen.station.offer_view(fields_page())
     await screen.show(snapshot())
     assert isinstance(screen.app.screen, ChartsScreen)
-    await screen.press("v")
     await until(lambda: series(screen).fields == (SPEED, DEMAND, TURN))
     screen.station.offer_view(drive())
     await screen.show(snapshot())
@@ -162,3 +161,14 @@ async def test_a_view_is_saved_under_a_name(tmp_path: Path) -> None:
         await open_charts(screen, "S", *"mine", "enter")
         await until(lambda: "view “mine” saved" in screen.text)
         assert os.listdir(tmp_path) == ["chart-views.json"]
+
+
+async def test_the_first_view_opens_by_itself_once() -> None:
+    async with console() as screen:
+        await open_charts(screen)
+        await screen.press("x", "x", "x")
+        screen.station.offer_view(fields_page())
+        await screen.show(snapshot())
+        assert series(screen).fields == ()
+        await screen.press("v")
+        await until(lambda: series(screen).fields != ())
