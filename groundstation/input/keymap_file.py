@@ -121,7 +121,7 @@ def parse_bindings(keys: Mapping[str, object]) -> dict[str, str]:
 
 
 def _suggest(action_id: str) -> str:
-    near = difflib.get_close_matches(action_id, ACTIONS, n=1, cutoff=0.8)
+    near = difflib.get_close_matches(action_id, ACTIONS, cutoff=0.8)
     return f"did you mean {near[0]}?" if near else f"choose {', '.join(ACTIONS)}"
 
 
@@ -130,7 +130,7 @@ def parse_key(key: object) -> str:
     if not isinstance(key, str) or not key:
         raise KeymapError(f"a key must be a string, not {key!r}")
     match = _MODIFIERS.match(key)
-    modifiers = match.group() if match and len(match.group()) < len(key) else ""
+    modifiers = match.group() if match else ""
     plain = key[len(modifiers) :]
     plain = PUNCTUATION.get(plain, plain)
     if plain not in NAMED_KEYS and not (len(plain) == 1 and plain.isprintable()):

@@ -70,7 +70,7 @@ class Sticks:
         self._expire(now)
         held = self._held.get(push.key)
         proves = push.repeat and not self.reports_releases
-        ignored = self._waits_for_quiet or push.key in self._blocked_until or self.pad.held(now)
+        ignored = self._waits_for_quiet or push.key in self._blocked_until
         if held is None or proves or ignored or (push.throttle, push.steering) != (held.throttle, held.steering):
             return False
         self._seen_at = self._last_event = now
@@ -79,9 +79,8 @@ class Sticks:
 
     def push_pad(self, push: DrivePad, now: float) -> bool:
         """Handle a demand of the gamepad; keys that are held no longer count. Returns False as PadStick.push."""
-        began = not self.pad.held(now)
         counts = self.pad.push(push, now)
-        if counts and began:
+        if counts:
             self._block_keys(now)
         return counts
 
@@ -89,7 +88,6 @@ class Sticks:
         """Handle a drive key that went up."""
         self.reports_releases = True
         self._held.pop(key, None)
-        self._blocked_until.pop(key, None)
 
     def set_reports_releases(self) -> None:
         """Stop using timers: the terminal has shown that it reports releases."""

@@ -152,3 +152,15 @@ def test_no_drive_key_is_lost_in_a_read_without_stops(presses: list[KeyEvent]) -
     assert [intent.key for intent in intents if isinstance(intent, (DriveKeyDown, DriveKeyUp))] == [
         press.key for press in drive
     ]
+
+
+def test_a_key_of_the_speed_may_repeat() -> None:
+    keys = STANDARD.get_keys("speed.faster")
+    press = KeyEvent(keys[0], repeat=True)
+    assert len(STANDARD.build_intents([press], armed=True, driving=False)) == 1
+
+
+def test_of_two_emergency_stops_one_is_sent() -> None:
+    key = STANDARD.get_keys("stop.emergency")[0]
+    intents = STANDARD.build_intents([KeyEvent(key), KeyEvent(key)], armed=True, driving=True)
+    assert intents == [EmergencyStop(), Stop()]

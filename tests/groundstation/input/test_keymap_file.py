@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.input.keymap import KEYMAPS, KeymapError
-from groundstation.input.keymap_file import PUNCTUATION, load_keymap, parse_keymap
+from groundstation.input.keymap_file import PUNCTUATION, flatten, load_keymap, parse_key, parse_keymap
 
 
 def write(folder: Path, text: str) -> str:
@@ -99,3 +99,31 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
 def test_the_example_of_the_help_works() -> None:
     keymap = parse_keymap({"base": "standard", "keys": {"drive.forward": ["e", "up"]}}, "example", "here")
     assert keymap.get_keys("drive.forward") == ("e", "up")
+
+
+def test_a_file_of_any_name_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "keys.conf"
+    path.write_text('[keys]\ndrive.forward = "e"\n')
+    assert load_keymap(str(path)).get_keys("drive.forward") == ("e",)
+
+
+def test_names_without_quotes_are_those_of_actions() -> None:
+    assert flatten({"drive": {"forward": "e"}, "drive.left": "s"}) == {"drive.forward": "e", "drive.left": "s"}
+
+
+@pytest.mark.parametrize("base", [["standard"], {}, 3])
+def test_a_base_of_another_type_is_reported(base: object) -> None:
+    with pytest.raises(KeymapError, match="unknown base"):
+        parse_keymap({"base": base}, "mine", "mine.toml")
+
+
+@pytest.mark.parametrize("key", ["", 3, "ctrl+", "\x01", "ctrl+\x01", "ab"])
+def test_what_is_no_key_is_reported(key: object) -> None:
+    with pytest.raises(KeymapError, match="a key must be a string" if key in ("", 3) else "unknown key"):
+        parse_key(key)
+
+
+def test_keys_with_modifiers() -> None:
+    assert [parse_key(key) for key in ("ctrl+x", "ctrl+alt+f24", "ctrl++", "+", "f1")] == [
+        "ctrl+x", "ctrl+alt+f24", "ctrl+plus", "plus", "f1",
+    ]  # fmt: skip

@@ -124,3 +124,45 @@ def test_an_unplugged_gamepad_is_neutral_at_once() -> None:
     frame = pad.core.update((), 0, None, pad.now + STEP)
     assert frame is not None
     assert (frame.name, frame.held, frame.throttle) == ("", False, 0.0)
+
+
+def test_the_first_frame_comes_at_once() -> None:
+    assert PadCore(PadMapping()).update((), 0, None, 0.0) == PadFrame(0.0)
+
+
+def test_a_frame_is_at_most_5_ms_early() -> None:
+    core = PadCore(PadMapping())
+    core.update((), 0, None, 0.0)
+    assert core.update((), 0, None, 0.494) is None
+    assert core.update((), 0, None, 0.5 - 0.005) is not None
+
+
+def test_a_button_with_an_action_is_told_at_the_rate_of_driving() -> None:
+    pad = Reader(buttons={"b": "drive.stop", "a": "vehicle.hold"})
+    assert pad.read(0.1, "b", "a", "x").buttons == ("a", "b")
+    pad.frames.clear()
+    pad.read(1.0, "b", "a", "x")
+    assert len(pad.frames) == pytest.approx(20, abs=1)
+
+
+def test_it_is_uncentred_only_while_the_button_is_down() -> None:
+    pad = Reader()
+    assert not pad.read(0.1, rightx=1.0).uncentred
+    frame = pad.read(0.1, RB, rightx=1.0)
+    assert (frame.uncentred, frame.steering) == (True, 0.0)
+    assert not pad.read(STEP, RB).uncentred
+    assert not pad.read(0.1, RB, rightx=1.0).uncentred
+
+
+def test_a_stick_that_begins_to_steer_is_told_at_once() -> None:
+    pad = Reader()
+    pad.read(0.1, RB)
+    begun = pad.now
+    assert pad.read(STEP, RB, rightx=1.0).read_at == pytest.approx(begun + STEP)
+
+
+def test_demands_have_two_digits() -> None:
+    pad = Reader(dead_zone=0.0, expo=0.0)
+    pad.read(0.1, RB)
+    assert pad.read(0.1, RB, lefty=0.12345).throttle == 0.12
+    assert pad.read(0.1, RB, lefty=0.126).throttle == 0.13

@@ -57,3 +57,16 @@ def test_buttons_are_further_keys_of_their_actions() -> None:
     assert [list(find_pad_problems(name, action)) for name, action in DEFAULT_BUTTONS.items()] == [[]] * len(
         DEFAULT_BUTTONS
     )
+
+
+def test_each_dead_man_button_has_a_name() -> None:
+    assert (PadMapping().deadman_name, PadMapping(deadman="leftstick").deadman_name) == ("RB", "L3")
+
+
+def test_a_button_may_do_nothing() -> None:
+    assert list(find_pad_problems("y", "")) == []
+
+
+def test_a_dead_man_button_of_another_type_is_no_conflict() -> None:
+    assert find_pad_conflict({"deadman": ["a"]}) is None
+    assert len(list(find_pad_problems("deadman", ["a"]))) == 1

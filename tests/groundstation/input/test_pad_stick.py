@@ -44,3 +44,33 @@ def test_after_a_pause_the_button_must_be_pressed_again() -> None:
     assert not stick.held(100.5)
     assert stick.push(DrivePad(0.5, -2.0, 100.6), 100.6)
     assert stick.axes == Axes(0.5, -1.0)
+
+
+def test_before_any_reading_nothing_drives() -> None:
+    stick = PadStick()
+    assert not stick.held(0.0)
+    assert stick.axes == Axes(0.0, 0.0)
+
+
+def test_at_the_end_of_its_time_a_reading_no_longer_counts() -> None:
+    stick = PadStick()
+    assert stick.push(DrivePad(1.0, 0.0, 100.0), 100.0)
+    assert stick.until == 100.25
+    assert not stick.held(100.25)
+    for read_at in (99.75, 99.0):
+        assert not stick.push(DrivePad(1.0, 0.0, read_at), 100.0)
+        assert not stick.held(100.0)
+
+
+@pytest.mark.parametrize(("throttle", "steering"), [(math.nan, 0.0), (0.0, math.inf), (math.nan, math.nan)])
+def test_what_is_no_number_ends_the_drive(throttle: float, steering: float) -> None:
+    stick = PadStick()
+    assert stick.push(DrivePad(1.0, 0.0, 100.0), 100.0)
+    assert not stick.push(DrivePad(throttle, steering, 100.1, repeat=True), 100.1)
+    assert not stick.held(100.1)
+
+
+def test_axes_are_at_most_full() -> None:
+    stick = PadStick()
+    stick.push(DrivePad(1.25, -1.25, 100.0), 100.0)
+    assert stick.axes == Axes(1.0, -1.0)
