@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import msgspec
 
-from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop, ScaleLimits, SetStyle, Stop
+from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop, SetStyle, StepLimits, Stop
 from groundstation.intents.session import StartSimulator
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import (
@@ -22,8 +22,8 @@ from groundstation.intents.vehicle import (
 )
 from groundstation.screens import SCREENS
 
-FASTER, SLOWER = 1.1, 0.9
-"""Factors of one press of a speed key, those of teleop_twist_keyboard."""
+FASTER, SLOWER = 0.1, -0.1
+"""Change of a limit by one press of a speed key, in the full range: two presses that undo each other leave no trace."""
 
 
 class OperatorAction(msgspec.Struct, frozen=True):
@@ -53,7 +53,7 @@ def _drive(name: str, label: str, text: str, throttle: int, steering: int, *keys
 
 
 def _speed(name: str, label: str, text: str, throttle: float, steering: float) -> OperatorAction:
-    limits = ScaleLimits(throttle=throttle, steering=steering)
+    limits = StepLimits(throttle=throttle, steering=steering)
     return OperatorAction(f"speed.{name}", label, text, "speed", limits, steady=True)
 
 
@@ -74,12 +74,12 @@ _ROWS = (
                    EmergencyStop(), ("exclamation_mark", "f9")),
     OperatorAction("stop.clear", "Clear e-stop", "Release the emergency stop; arming is a separate step", "stop",
                    ClearEmergencyStop(), ("t",), confirm=True),
-    _speed("faster", "Faster", "Raise both limits by 10 %; never moves the vehicle", FASTER, FASTER),
-    _speed("slower", "Slower", "Lower both limits by 10 %", SLOWER, SLOWER),
-    _speed("throttle_faster", "Throttle +", "Raise the throttle limit by 10 %", FASTER, 1.0),
-    _speed("throttle_slower", "Throttle -", "Lower the throttle limit by 10 %", SLOWER, 1.0),
-    _speed("steering_faster", "Steering +", "Raise the steering limit by 10 %", 1.0, FASTER),
-    _speed("steering_slower", "Steering -", "Lower the steering limit by 10 %", 1.0, SLOWER),
+    _speed("faster", "Faster", "Raise the speed and turn limits by 10 points; never moves the vehicle", FASTER, FASTER),
+    _speed("slower", "Slower", "Lower the speed and turn limits by 10 points", SLOWER, SLOWER),
+    _speed("throttle_faster", "Speed +", "Raise the speed limit by 10 points", FASTER, 0.0),
+    _speed("throttle_slower", "Speed -", "Lower the speed limit by 10 points", SLOWER, 0.0),
+    _speed("steering_faster", "Turn +", "Raise the turn limit by 10 points", 0.0, FASTER),
+    _speed("steering_slower", "Turn -", "Lower the turn limit by 10 points", 0.0, SLOWER),
     OperatorAction("view.pane", "View", "Next pane of the Drive screen", "view", keys=("v",), steady=True),
     OperatorAction("view.closer", "Closer", "Zoom in on the pane", "view", keys=("pageup",), steady=True),
     OperatorAction("view.wider", "Wider", "Zoom out of the pane", "view", keys=("pagedown",), steady=True),

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import msgspec
 
 from groundstation.actions import ACTIONS, OperatorAction
-from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, SetStyle, Stop
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, StepLimits, Stop
 from groundstation.intents.union import AnyIntent
 
 
@@ -35,7 +35,8 @@ _COMMON = {key: action.id for action in ACTIONS.values() for key in action.keys}
 KEYMAPS: dict[str, dict[str, str]] = {
     "standard": _COMMON
     | {"w": "drive.forward", "a": "drive.left", "s": "drive.backward", "d": "drive.right"}
-    | {"plus": "speed.faster", "equals_sign": "speed.faster", "minus": "speed.slower"},
+    | {"plus": "speed.faster", "equals_sign": "speed.faster", "minus": "speed.slower"}
+    | {"right_curly_bracket": "speed.steering_faster", "left_curly_bracket": "speed.steering_slower"},
     "teleop": _COMMON
     | {"q": "speed.faster", "z": "speed.slower"}
     | {"w": "speed.throttle_faster", "x": "speed.throttle_slower"}
@@ -104,6 +105,6 @@ def _drive_intent(press: KeyEvent, push: DriveKeyDown) -> AnyIntent:
 def _keep_stops(intents: Sequence[AnyIntent]) -> list[AnyIntent]:
     """Return what is left of a read with a stop key in it: the emergency stop, then neutral, then what is safe."""
     emergency: list[AnyIntent] = [intent for intent in intents if isinstance(intent, EmergencyStop)]
-    moving = (DriveKeyDown, Stop, EmergencyStop, ScaleLimits, SetStyle)
+    moving = (DriveKeyDown, Stop, EmergencyStop, StepLimits, SetStyle)
     rest = [intent for intent in intents if not isinstance(intent, moving)]
     return [*emergency[:1], Stop(), *rest]

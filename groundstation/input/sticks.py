@@ -10,7 +10,7 @@ from dialects.axes import NEUTRAL, Axes
 from groundstation.input.key_repeat import PRESS_WINDOW, REPEAT_GAP, KeyTrace, RepeatWindows
 from groundstation.input.pad_stick import PadStick
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
-from groundstation.intents.driving import PAD, DriveKeyDown, DrivePad, ScaleLimits
+from groundstation.intents.driving import PAD, DriveKeyDown, DrivePad, StepLimits
 
 STEP = 0.1
 """What one press adds in the style "step", as a fraction of full deflection."""
@@ -139,10 +139,10 @@ class Sticks:
             self._windows.repeat_window if push.key in self._blocked_until else self._windows.press_window
         )
 
-    def scale_limits(self, change: ScaleLimits) -> None:
-        """Scale the limits. A factor that is not a positive number changes nothing."""
-        self.throttle_limit = _scaled(self.throttle_limit, change.throttle)
-        self.steering_limit = _scaled(self.steering_limit, change.steering)
+    def step_limits(self, change: StepLimits) -> None:
+        """Change the limits. A change that is no number changes nothing."""
+        self.throttle_limit = _changed(self.throttle_limit, change.throttle)
+        self.steering_limit = _changed(self.steering_limit, change.steering)
 
     def set_style(self, name: str) -> bool:
         """Go neutral and change the style. Returns False, without a change of style, for an unknown one."""
@@ -271,8 +271,8 @@ def _limit(value: float) -> float:
     return max(LOWEST_LIMIT, min(HIGHEST_LIMIT, value))
 
 
-def _scaled(limit: float, factor: float) -> float:
-    return _limit(limit * factor) if math.isfinite(factor) and factor > 0 else limit
+def _changed(limit: float, change: float) -> float:
+    return _limit(round(limit + change, 2)) if math.isfinite(change) else limit
 
 
 def _within(value: float, limit: float) -> float:

@@ -69,11 +69,11 @@ class ClearEmergencyStop(Intent, frozen=True):
     """s for which the key was held; refused below HOLD_TIME."""
 
 
-class ScaleLimits(Intent, frozen=True):
-    """Scale the limits of the sticks; never moves the vehicle. Factors above 0, e.g. 1.1."""
+class StepLimits(Intent, frozen=True):
+    """Change the limits of the sticks by a share of the full range, e.g. 0.1; never moves the vehicle."""
 
-    throttle: float = 1.0
-    steering: float = 1.0
+    throttle: float = 0.0
+    steering: float = 0.0
 
 
 class SetStyle(Intent, frozen=True):

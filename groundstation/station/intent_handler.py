@@ -25,8 +25,8 @@ from groundstation.intents.driving import (
     DrivePad,
     EmergencyStop,
     ReleasePad,
-    ScaleLimits,
     SetStyle,
+    StepLimits,
     Stop,
 )
 from groundstation.intents.links import CloseLink
@@ -167,8 +167,8 @@ class IntentHandler:
         if everything or self._fleet.selected is None:
             self._commander.stop_blindly(now)
 
-    def _scale_limits(self, intent: ScaleLimits, now: float) -> None:
-        self._operator.sticks.scale_limits(intent)
+    def _step_limits(self, intent: StepLimits, now: float) -> None:
+        self._operator.sticks.step_limits(intent)
 
     def _set_style(self, intent: SetStyle, now: float) -> None:
         if self._operator.sticks.set_style(intent.style):
@@ -250,7 +250,7 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     ReleasePad: IntentHandler._release_pad,
     Stop: IntentHandler._stop,
     EmergencyStop: IntentHandler._emergency_stop,
-    ScaleLimits: IntentHandler._scale_limits,
+    StepLimits: IntentHandler._step_limits,
     SetStyle: IntentHandler._set_style,
     ReportKeyReleases: IntentHandler._set_reports_releases,
     SetKeyGate: IntentHandler._set_gate,

@@ -251,7 +251,7 @@ def test_the_mouse_wheel_through_tmux(tmp_path: Path, protected: bool) -> None:
         for _ in range(10):
             terminal.type(notch(terminal.drawn))
         terminal.type(b"-")  # a key that neither drives nor stops, behind the wheel
-        terminal.until(lambda: "ScaleLimits" in report.read_text())
+        terminal.until(lambda: "StepLimits" in report.read_text())
         assert ("DriveKeyDown" in report.read_text()) is not protected
     finally:
         terminal.end(tmp_path)

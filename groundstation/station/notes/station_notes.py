@@ -10,7 +10,7 @@ from dialects.enums import Severity
 from dialects.enums import StationEventKind as Kind
 from dialects.messages import RoverStationEvent, encode_text, printable
 from groundstation.intents.base import Intent
-from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, ReleasePad, ScaleLimits, SetStyle, Stop
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, ReleasePad, SetStyle, StepLimits, Stop
 from groundstation.intents.services import ServiceIntent
 from groundstation.intents.session import ReportScreen, SetKeyGate
 from groundstation.station.driving.driving import DrivingController
@@ -58,8 +58,8 @@ class StationNotes:
             return
         if isinstance(intent, ReportScreen):
             self.add(now, Kind.SCREEN, intent.screen)
-        elif isinstance(intent, ScaleLimits):
-            self.add(now, Kind.ACTION, f"limits: throttle {self._limit(0)}, steering {self._limit(1)}")
+        elif isinstance(intent, StepLimits):
+            self.add(now, Kind.ACTION, f"limits: speed {self._limit(0)}, turn {self._limit(1)}")
         elif isinstance(intent, ServiceIntent):
             self._add(now, Kind.REQUEST, SERVICE_CALLS[type(intent)].what, target=intent.system or self._vehicle)
         self._follow(intent, now)

@@ -19,12 +19,12 @@ from groundstation.input.keymap import KeyEvent, Keymap, KeymapError
 from groundstation.input.keymap_file import parse_key
 from groundstation.input.sticks import Sticks
 from groundstation.intents.base import Intent
-from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, SetStyle, Stop
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, StepLimits, Stop
 from groundstation.intents.vehicle import Disarm, SetMode
 from groundstation.verbs.common.arguments import LONGEST_HOLD
 
 MAX_LINES = 10_000
-_PLAYED = (DriveKeyDown, Stop, EmergencyStop, ScaleLimits, SetStyle, SetMode)
+_PLAYED = (DriveKeyDown, Stop, EmergencyStop, StepLimits, SetStyle, SetMode)
 """What keys of a script may request, beside what `when_armed` of an action does."""
 
 
@@ -148,8 +148,8 @@ class KeyScript:
                 self._sticks.press(intent, now)
             case DriveKeyUp():
                 self._sticks.release(intent.key)
-            case ScaleLimits():
-                self._sticks.scale_limits(intent)
+            case StepLimits():
+                self._sticks.step_limits(intent)
             case SetStyle():
                 self._sticks.set_style(intent.style)
             case _:

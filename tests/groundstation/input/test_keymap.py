@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
-from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, SetStyle, Stop
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, StepLimits, Stop
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Disarm, RequestControl, SetMode
 
@@ -40,8 +40,8 @@ def test_arrows_and_wasd_drive() -> None:
 
 
 def test_teleop_speed_keys() -> None:
-    assert read("q", "w", "e", keymap=TELEOP) == [ScaleLimits(1.1, 1.1), ScaleLimits(1.1, 1.0), ScaleLimits(1.0, 1.1)]
-    assert read("z", "x", "c", keymap=TELEOP) == [ScaleLimits(0.9, 0.9), ScaleLimits(0.9, 1.0), ScaleLimits(1.0, 0.9)]
+    assert read("q", "w", "e", keymap=TELEOP) == [StepLimits(0.1, 0.1), StepLimits(0.1, 0.0), StepLimits(0.0, 0.1)]
+    assert read("z", "x", "c", keymap=TELEOP) == [StepLimits(-0.1, -0.1), StepLimits(-0.1, 0.0), StepLimits(0.0, -0.1)]
 
 
 def test_a_push_carries_the_key_and_whether_it_repeats() -> None:
@@ -89,8 +89,10 @@ def test_a_release_is_no_stop() -> None:
 
 
 def test_speed_keys_neither_stop_nor_drive() -> None:
-    assert read("plus", driving=True) == [ScaleLimits(1.1, 1.1)]
-    assert read("i", "minus") == [DriveKeyDown(key="i", throttle=1, steering=0), ScaleLimits(0.9, 0.9)]
+    assert read("plus", driving=True) == [StepLimits(0.1, 0.1)]
+    assert read("right_curly_bracket", driving=True) == [StepLimits(0.0, 0.1)]
+    assert read("left_curly_bracket", driving=True) == [StepLimits(0.0, -0.1)]
+    assert read("i", "minus") == [DriveKeyDown(key="i", throttle=1, steering=0), StepLimits(-0.1, -0.1)]
 
 
 def test_arming_is_left_to_a_held_key_and_disarming_is_one_press() -> None:
@@ -139,7 +141,7 @@ def test_a_read_with_a_stop_in_it_never_drives(presses: list[KeyEvent], armed: b
     stops = [press for press in presses if press.key in {"k", "space", "f9", "exclamation_mark"} and not press.release]
     assert not stops or Stop() in intents
     if Stop() in intents:
-        assert not any(isinstance(intent, (DriveKeyDown, ScaleLimits)) for intent in intents)
+        assert not any(isinstance(intent, (DriveKeyDown, StepLimits)) for intent in intents)
         assert isinstance(intents[0], (Stop, EmergencyStop))
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from dialects.axes import NEUTRAL, Axes
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents.driving import DriveKeyDown, ScaleLimits
+from groundstation.intents.driving import DriveKeyDown, StepLimits
 
 I = DriveKeyDown(key="i", throttle=1, steering=0)  # noqa: E741
 COMMA = DriveKeyDown(key="comma", throttle=-1, steering=0)
@@ -303,15 +303,23 @@ def test_step_stays_within_the_limit() -> None:
 def test_speed_never_moves_and_stays_in_its_range() -> None:
     sticks = Sticks(limit=0.6)
     for _ in range(50):
-        sticks.scale_limits(ScaleLimits(throttle=1.1, steering=0.9))
+        sticks.step_limits(StepLimits(throttle=0.1, steering=-0.1))
         assert sticks.axes(0.0) == NEUTRAL
     assert (sticks.throttle_limit, sticks.steering_limit) == (1.0, 0.1)
 
 
-@pytest.mark.parametrize("factor", [0.0, -1.0, math.nan, math.inf, -math.inf])
-def test_senseless_factors_change_nothing(factor: float) -> None:
+@pytest.mark.parametrize("factor", [0.0, math.nan, math.inf, -math.inf])
+def test_senseless_changes_change_nothing(factor: float) -> None:
     sticks = Sticks(limit=0.6)
-    sticks.scale_limits(ScaleLimits(throttle=factor, steering=factor))
+    sticks.step_limits(StepLimits(throttle=factor, steering=factor))
+    assert (sticks.throttle_limit, sticks.steering_limit) == (0.6, 0.6)
+
+
+def test_speed_keys_that_undo_each_other_leave_no_trace() -> None:
+    sticks = Sticks(limit=0.6)
+    for change in (0.1, 0.1, 0.1, -0.1, -0.1, -0.1):
+        sticks.step_limits(StepLimits(throttle=change))
+        assert round(sticks.throttle_limit * 100) % 10 == 0
     assert (sticks.throttle_limit, sticks.steering_limit) == (0.6, 0.6)
 
 

@@ -9,7 +9,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.actions import ACTIONS
-from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, ScaleLimits, SetStyle, Stop
+from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, SetStyle, StepLimits, Stop
 from groundstation.intents.session import Quit, ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, SelectVehicle
 from groundstation.station.intent_handler import VEHICLE_COMMANDS
@@ -80,12 +80,12 @@ def test_stop_wins_over_a_held_key_until_it_is_pressed_again() -> None:
 
 def test_speed_keys_change_the_demand_but_never_make_one() -> None:
     cockpit = armed_cockpit()
-    cockpit.do(ScaleLimits(throttle=1.1, steering=1.1))
+    cockpit.do(StepLimits(throttle=0.1, steering=0.1))
     cockpit.run(0.5)
     assert all(x == 0 for _, x, _ in cockpit.demands())
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.1)
-    assert cockpit.demands()[-1][1] == 660
+    assert cockpit.demands()[-1][1] == 700
 
 
 @pytest.mark.parametrize("held", [0.0, 0.99, math.nan])

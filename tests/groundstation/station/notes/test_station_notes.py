@@ -6,7 +6,7 @@ from dialects.enums import Severity
 from dialects.enums import StationEventKind as Kind
 from dialects.messages import RoverStationEvent, decode_text
 from groundstation.input.style import Style
-from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, ScaleLimits, SetStyle, Stop
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, SetStyle, StepLimits, Stop
 from groundstation.intents.services import FetchParams
 from groundstation.intents.session import ReportScreen, SetKeyGate
 from groundstation.intents.vehicle import Disarm, ReleaseControl
@@ -122,10 +122,10 @@ def test_a_screen_that_freezes_is_a_decision_with_its_reason() -> None:
 def test_actions_screens_requests_and_control_have_their_kinds() -> None:
     cockpit = armed_cockpit()
     book = Notebook(cockpit)
-    cockpit.do(ReportScreen("map"), ScaleLimits(throttle=0.5), FetchParams(request=1), ReleaseControl(), Disarm())
+    cockpit.do(ReportScreen("map"), StepLimits(throttle=-0.1), FetchParams(request=1), ReleaseControl(), Disarm())
     cockpit.run(2.0)
     assert book.of(Kind.SCREEN) == ["map"]
-    assert book.of(Kind.ACTION) == ["limits: throttle 30 %, steering 60 %", "disarm"]
+    assert book.of(Kind.ACTION) == ["limits: speed 50 %, turn 60 %", "disarm"]
     assert book.of(Kind.REQUEST)[0] == "fetch parameters"
     assert "release control" in book.of(Kind.CONTROL)
     assert "keys do not drive: releasing control" in book.of(Kind.DECISION)

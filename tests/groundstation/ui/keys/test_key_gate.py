@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from groundstation.input.keymap import KeyEvent
-from groundstation.intents.driving import HOLD_TIME, DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, Stop
+from groundstation.intents.driving import HOLD_TIME, DriveKeyDown, DriveKeyUp, EmergencyStop, StepLimits, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm, SetMode
 from groundstation.ui.keys.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, SHOW_PERIOD, TEXT_FIELD, GateClosure, KeyGate
@@ -81,7 +81,9 @@ def test_drive_keys_pass_a_shut_gate_for_the_station_to_remember(gate: KeyGate, 
     assert station.of(SetKeyGate)[-1].open is False
 
 
-@pytest.mark.parametrize(("key", "intent"), [("r", Disarm()), ("2", SetMode("HOLD")), ("minus", ScaleLimits(0.9, 0.9))])
+@pytest.mark.parametrize(
+    ("key", "intent"), [("r", Disarm()), ("2", SetMode("HOLD")), ("minus", StepLimits(-0.1, -0.1))]
+)
 def test_commands_pass_unless_keys_are_text(gate: KeyGate, station: Recorder, key: str, intent: object) -> None:
     gate.set_closure(SMALL)
     gate.handle_keys([press(key)])

@@ -11,7 +11,7 @@ from textual.message import Message
 from groundstation.gamepad.child import GamepadChild
 from groundstation.input.pad import PadFrame
 from groundstation.input.pad_mapping import ANY, PadMapping, add_buttons
-from groundstation.intents.driving import HOLD_TIME, DrivePad, EmergencyStop, ReleasePad, ScaleLimits, Stop
+from groundstation.intents.driving import HOLD_TIME, DrivePad, EmergencyStop, ReleasePad, StepLimits, Stop
 from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD, KeyGate
 from groundstation.ui.keys.keynames import format_key
@@ -70,9 +70,9 @@ def test_arming_needs_button_held_and_a_tap_of_another_acts_once(pad: Pad) -> No
     pad.take("y")
     pad.take("y")
     pad.take()
-    assert pad.station.of(ScaleLimits) == [ScaleLimits(throttle=1.1, steering=1.1)]
+    assert pad.station.of(StepLimits) == [StepLimits(throttle=0.1, steering=0.1)]
     pad.take("dpup")
-    assert len(pad.station.of(ScaleLimits)) == 2
+    assert len(pad.station.of(StepLimits)) == 2
     pad.take()
     assert pad.station.of(SetMode) == [SetMode(mode="MANUAL")]
     for _ in range(int(HOLD_TIME / 0.05)):

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.input.keymap import KeyEvent
-from groundstation.intents.driving import DriveKeyDown, ScaleLimits, Stop
+from groundstation.intents.driving import DriveKeyDown, StepLimits, Stop
 from groundstation.ui.terminal.console_driver import ConsoleDriver
 from groundstation.ui.terminal.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
 from groundstation.ui.terminal.key_parser import KeyEventParser
@@ -159,9 +159,9 @@ async def test_reports_that_arrive_byte_by_byte_send_nothing(report: str, monkey
         await until(lambda: CAPTURE_MOUSE.encode() in terminal.drawn)
         await terminal.type_each(report * 8, 0.003)
         terminal.type("-")
-        await until(lambda: station.of(ScaleLimits))
+        await until(lambda: station.of(StepLimits))
         # Bytes that a busy machine delays are a split key, which stops.
-        assert [each for each in station.wishes if not isinstance(each, Stop)] == station.of(ScaleLimits)[:1]
+        assert [each for each in station.wishes if not isinstance(each, Stop)] == station.of(StepLimits)[:1]
 
 
 @pytest.mark.parametrize("default", [True, False])

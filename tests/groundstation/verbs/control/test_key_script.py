@@ -74,6 +74,6 @@ def test_keys_that_request_something_of_the_vehicle() -> None:
 def test_keys_mean_what_the_key_map_says() -> None:
     teleop = Keymap("teleop", KEYMAPS["teleop"])
     axes, _ = play("0 press q\n0.1 press i\n", 0.2, keymap=teleop)
-    assert axes == [Axes(0.55, 0.0)]  # q is faster there
+    assert axes == [Axes(0.6, 0.0)]  # q is faster there
     with pytest.raises(FileFormatError, match="the key map teleop has no key 'd'"):
         parse_script("0 press d", "run.keys", teleop)
