@@ -4,44 +4,30 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import signal
 import socket
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
-
-import msgspec
 
 from dialects.enums import Severity, StationEventKind
 from dialects.messages import printable
 from groundstation.connect.desk import ConnectDesk
 from groundstation.connect.signing import StationSigning
 from groundstation.disk.desk import DiskDesk
-from groundstation.host.listener import Caller, ProgramListener
-from groundstation.host.names import answer_names
+from groundstation.host.programs import ProgramSet
 from groundstation.host.screens import Lifetime, ScreenSet
-from groundstation.host.snapshot_pace import SLOT, SnapshotPace
-from groundstation.host.verbs import VerbSet
+from groundstation.host.snapshot_sender import SlotTimer, SnapshotSender
 from groundstation.intents.driving import Stop
 from groundstation.intents.session import Quit
 from groundstation.intents.union import AnyIntent
-from groundstation.ipc import protocol_version
 from groundstation.recording.station_recording import StationRecording
 from groundstation.sitl.sitl import SimulatorControl
-from groundstation.snapshot import Snapshot
 from groundstation.station.driving.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.process.crash_neutral import CrashNeutral
-from groundstation.station.process.crash_snapshot import crash_snapshot
-from groundstation.station.process.lasting_alerts import LastingAlerts
 from groundstation.station.station import Station
-from groundstation.station_socket import names, relay
-from groundstation.station_socket.hello import NAMES, SCREEN, VERB
 from groundstation.watchdog.feed import WatchdogFeed
 from link.protocol.sent_frames import SentFrames
 from link.runner import Runner
-from link.runtime.multiples import next_multiple
-from link.transport.local_addresses import LocalAddresses
 from link.transport.transport import Link
 
 log = logging.getLogger(__name__)
@@ -77,8 +63,7 @@ class StationHost:
         self._station = station
         self._pipe, self._screen = pipe, screen
         self.screens = ScreenSet(station, self, lifetime)
-        self._listener = ProgramListener(self._take)
-        self._screen_version = protocol_version()  # of the code that runs, not of what is installed meanwhile
+        self._snapshots = SnapshotSender(station, self.screens)
         self._watchdog = watchdog
         self._core = CrashNeutral(station)
         self._recording = recording
@@ -92,18 +77,10 @@ class StationHost:
             sent=watchdog.record_sent,
             signing=signing.keeper if signing else None,
         )
-        self.verbs = VerbSet(station, ids, self._runner.flush)
+        self._programs = ProgramSet(station, self.screens, ids, self._runner.flush)
         self._disk = DiskDesk(station, self._runner.flush)
         self.connect = ConnectDesk(self._runner, station, ids, sent, simulators)
-        self._last_snapshot = Snapshot()
-        self._pace = SnapshotPace()
-        self._slot: asyncio.Handle | None = None
-        """The next call of `_run_slot`."""
-        self._slot_period = SLOT
-        self._slot_at = 0.0
-        """When it was called last."""
-        self._addresses = LocalAddresses()
-        self._lasting_alerts = LastingAlerts()
+        self._slots = SlotTimer(self._keep_up, self._snapshots.call_period)
         self._broken = self._ending = False
 
     async def run(self, listens: Callable[[], None]) -> int:
@@ -117,20 +94,17 @@ class StationHost:
             loop.add_signal_handler(number, self._shut_down)
         if self._pipe is not None:
             self.screens.add(self._pipe, self._screen, owner=True)
-        if problem := self._listener.start():
+        if problem := self._programs.start():
             self.add_to_log(loop.time(), f"no other program can use this station: {problem}")
         listens()
-        self._slot = loop.call_soon(self._run_slot)
-        self._station.on_rest_end = self._rouse
-        self._station.fleet.on_first = lambda: loop.call_soon(lambda: self._send_snapshot(loop.time()))
+        self._slots.start()
+        self._station.on_rest_end = self._slots.rouse
+        self._station.fleet.on_first = lambda: loop.call_soon(lambda: self._snapshots.send(loop.time()))
         try:
             await self._runner.run()
         finally:
-            if self._slot is not None:
-                self._slot.cancel()
-            self._listener.close()
-            self.screens.close()
-            self.verbs.close()
+            self._slots.end()
+            self._programs.close()
             self.connect.close()
             self._disk.close()
             self._watchdog.close()
@@ -144,8 +118,8 @@ class StationHost:
 
     def handle(self, intent: AnyIntent, now: float, read_at: float) -> None:
         """Carry out an intent of a screen."""
-        self._pace.note(now)
-        self._rouse()
+        self._snapshots.pace.note(now)
+        self._slots.rouse()
         self._station.handle_intent(intent, now, read_at=read_at)
 
     def flush(self) -> None:
@@ -165,40 +139,6 @@ class StationHost:
         elif not self._broken:
             self._station.handle_intent(intent, asyncio.get_running_loop().time())
 
-    def _take(self, caller: Caller) -> str | None:
-        """Take a program that has connected. Return why not."""
-        hello = caller.hello
-        if self._ending:
-            return "this station ends"
-        versions = {SCREEN: self._screen_version, VERB: relay.VERSION, NAMES: names.VERSION}
-        if hello.version != versions.get(hello.kind):
-            return f"this station (pid {os.getpid()}) has another version: end it and start it again"
-        if hello.kind == SCREEN:
-            return self.screens.add(caller.sock, hello.name, watches=hello.watches)
-        if hello.kind == NAMES:
-            answer_names(caller.sock, hello.name, self._station)
-            return None
-        self.verbs.add(caller.sock, f"{hello.name} (pid {caller.pid})", hello)
-        return None
-
-    def _run_slot(self) -> None:
-        """Do what is due for the links and the screens, and plan the next slot."""
-        if self._broken:
-            return
-        loop = asyncio.get_running_loop()
-        self._slot_at = loop.time()
-        self._keep_up(self._slot_at)  # an exception ends the station, see _handle_loop_exception
-        now = loop.time()
-        self._slot_period = self._pace.call_period(now, rests=self._station.rests)
-        self._slot = loop.call_at(next_multiple(self._slot_period, now), self._run_slot)
-
-    def _rouse(self) -> None:
-        """Let the next slot come SLOT after the one before, or at once, if it is one of a rest."""
-        if self._slot is not None and self._slot_period > SLOT:
-            self._slot.cancel()
-            self._slot_period = SLOT
-            self._slot = asyncio.get_running_loop().call_at(self._slot_at + SLOT, self._run_slot)
-
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""
         if not self._watchdog.report(self._station.report_to_watchdog(now), now, rests=self._station.rests):
@@ -212,18 +152,7 @@ class StationHost:
         if self._recording:
             self._recording.tick(now)
         self._disk.run()
-        if self._pace.is_due(now, rests=self._station.rests, decisive=self._station.decisive(now)):
-            self._send_snapshot(now)
-        self.screens.send_views(now)
-
-    def _send_snapshot(self, now: float) -> None:
-        self._station.surroundings.addresses = self._addresses.find(now)
-        wall = time.time() - (asyncio.get_running_loop().time() - now)  # of the same moment as `now`
-        shown = self._station.snapshot(now, wall)
-        self._last_snapshot = msgspec.structs.replace(shown, number=self._last_snapshot.number + 1)
-        for text in self._lasting_alerts.new_in(self._last_snapshot):
-            log.warning(text)
-        self.screens.show(self._last_snapshot, now)
+        self._snapshots.send_due(now)
 
     def _poll_keys(self, now: float) -> None:
         """Take over keys that have changed: for all links, and for the watchdog, which goes on in our place."""
@@ -247,8 +176,9 @@ class StationHost:
         if self._ending:
             return
         self._ending = True
+        self._programs.refuse()
         loop = asyncio.get_running_loop()
-        self.verbs.close()
+        self._programs.end_verbs()
         self._station.handle_intent(Stop("quitting"), loop.time())
         self._station.handle_intent(intent, loop.time())
         self._runner.flush()
@@ -258,7 +188,7 @@ class StationHost:
         loop = asyncio.get_running_loop()
         if self._core.finished or loop.time() >= deadline:
             if not self._broken:
-                self._send_snapshot(loop.time())  # tells the screen what is left armed
+                self._snapshots.send(loop.time())  # tells the screen what is left armed
             self._runner.stop()
         else:
             loop.call_later(TICK, self._end_when_finished, deadline)
@@ -268,12 +198,14 @@ class StationHost:
         if self._broken:
             return
         self._broken = self._ending = True
+        self._programs.refuse()
+        self._slots.end()
         now = asyncio.get_running_loop().time()
         what = printable(f"station crashed ({type(error).__name__}: {error}): sending neutral, then exiting")
         log.critical(what, exc_info=error)
         self._core.activate(now)
         self._runner.flush()
-        self.screens.show(crash_snapshot(self._last_snapshot, what, time.time()), now)
+        self._snapshots.send_crash(what, now)
         self._end_when_finished(now + END_WITHIN)
         self._station.notes.add(now, StationEventKind.DECISION, what, Severity.CRITICAL)
 

@@ -1,0 +1,92 @@
+"""ProgramSet: the programs that use a station: screens, verbs, and shells that complete names."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import socket
+from collections.abc import Callable
+
+from groundstation.host.listener import Caller, ProgramListener
+from groundstation.host.names import answer_names
+from groundstation.host.screens import ScreenSet
+from groundstation.host.verb_port import VerbPort
+from groundstation.ipc import protocol_version
+from groundstation.station.station import Station
+from groundstation.station_socket import names, relay
+from groundstation.station_socket.hello import NAMES, SCREEN, VERB, Hello
+from groundstation.station_socket.relay import VerbReady
+
+
+class VerbSet:
+    """Verbs that go through a station. `ids` are those of the station; `flush` sends what verbs have queued."""
+
+    def __init__(self, station: Station, ids: tuple[int, int], flush: Callable[[], None]) -> None:
+        self._station = station
+        self._ids = ids
+        self._flush = flush
+        self._ports: set[VerbPort] = set()
+
+    def add(self, sock: socket.socket, name: str, hello: Hello) -> None:
+        """Take a verb; the loop runs."""
+        station = self._station
+        follows = hello.follows and station.relay.may_follow(asyncio.get_running_loop().time())
+        port = VerbPort(sock, station.relay, (name, hello.takes_part, follows), self._flush, self._remove)
+        self._ports.add(port)
+        port.start(VerbReady(*self._ids, station.operator.session, station.surroundings.endpoints, follows))
+
+    def close(self) -> None:
+        """End all connections."""
+        for port in list(self._ports):
+            self._remove(port)
+
+    def _remove(self, port: VerbPort) -> None:
+        self._ports.discard(port)
+        port.close()
+        self._flush()
+
+
+class ProgramSet:
+    """All programs of one station. `ids` and `flush` as those of VerbSet."""
+
+    def __init__(self, station: Station, screens: ScreenSet, ids: tuple[int, int], flush: Callable[[], None]) -> None:
+        self._station = station
+        self._screens = screens
+        self._verbs = VerbSet(station, ids, flush)
+        self._listener = ProgramListener(self._take)
+        self._screen_version = protocol_version()  # of the code that runs, not of what is installed meanwhile
+        self._ending = False
+
+    def start(self) -> str | None:
+        """Listen; the loop runs. Return why that is not possible."""
+        return self._listener.start()
+
+    def refuse(self) -> None:
+        """Take no more programs: the station ends."""
+        self._ending = True
+
+    def end_verbs(self) -> None:
+        """End all verbs."""
+        self._verbs.close()
+
+    def close(self) -> None:
+        """End all connections."""
+        self._listener.close()
+        self._screens.close()
+        self._verbs.close()
+
+    def _take(self, caller: Caller) -> str | None:
+        """Take a program that has connected. Return why not."""
+        hello = caller.hello
+        if self._ending:
+            return "this station ends"
+        versions = {SCREEN: self._screen_version, VERB: relay.VERSION, NAMES: names.VERSION}
+        if hello.version != versions.get(hello.kind):
+            return f"this station (pid {os.getpid()}) has another version: end it and start it again"
+        if hello.kind == SCREEN:
+            return self._screens.add(caller.sock, hello.name, watches=hello.watches)
+        if hello.kind == NAMES:
+            answer_names(caller.sock, hello.name, self._station)
+            return None
+        self._verbs.add(caller.sock, f"{hello.name} (pid {caller.pid})", hello)
+        return None
