@@ -60,6 +60,7 @@ DAY = 86_400 * 100_000
         ("groundstation.input.key_repeat.PRESS_WINDOW_MAX", 1.1),
         ("groundstation.input.key_repeat.JITTER", 0.1),
         ("groundstation.input.key_repeat.PROOF", 5),
+        ("groundstation.input.pad.EARLY", 0.005),
         ("groundstation.input.pad.HELD_PERIOD", 0.05),
         ("groundstation.input.pad.IDLE_PERIOD", 0.5),
         ("groundstation.input.keymap_file.MAX_SIZE", 262_144),

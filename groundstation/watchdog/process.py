@@ -56,7 +56,10 @@ class WatchdogProcess:
             now = time.monotonic()
             for route, target, frame in self._watchdog.tick(now):
                 self._watchdog.record_sent(target, self._outlets.write(route, frame))
-            self._show(self._watchdog.outage(now))
+            outage = self._watchdog.outage(now)
+            self._show(outage)
+            if self._station_gone or outage.text:
+                self._reset_terminal()
         self._check_screen()
         self._reset_terminal(LAST_TRY)
 
@@ -77,8 +80,6 @@ class WatchdogProcess:
                 self._screen_gone = True
             else:
                 self._read_vehicle(descriptor)
-        if self._screen_gone and (self._station_gone or self._watchdog.outage(time.monotonic()).text):
-            self._reset_terminal()
 
     def _read_reports(self) -> None:
         while True:

@@ -117,7 +117,7 @@ def test_a_base_of_another_type_is_reported(base: object) -> None:
         parse_keymap({"base": base}, "mine", "mine.toml")
 
 
-@pytest.mark.parametrize("key", ["", 3, "ctrl+", "\x01", "ctrl+\x01", "ab"])
+@pytest.mark.parametrize("key", ["", 3, "f0", "f25", "ctrl+", "\x01", "ctrl+\x01", "ab"])
 def test_what_is_no_key_is_reported(key: object) -> None:
     with pytest.raises(KeymapError, match="a key must be a string" if key in ("", 3) else "unknown key"):
         parse_key(key)

@@ -127,7 +127,8 @@ def test_an_unplugged_gamepad_is_neutral_at_once() -> None:
 
 
 def test_the_first_frame_comes_at_once() -> None:
-    assert PadCore(PadMapping()).update((), 0, None, 0.0) == PadFrame(0.0)
+    frame = PadCore(PadMapping()).update((), 0, None, 0.0)
+    assert frame == PadFrame(0.0, (), 0, held=False, uncentred=False, throttle=0.0, steering=0.0, buttons=())
 
 
 def test_a_frame_is_at_most_5_ms_early() -> None:

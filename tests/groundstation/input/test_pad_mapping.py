@@ -70,3 +70,16 @@ def test_a_button_may_do_nothing() -> None:
 def test_a_dead_man_button_of_another_type_is_no_conflict() -> None:
     assert find_pad_conflict({"deadman": ["a"]}) is None
     assert len(list(find_pad_problems("deadman", ["a"]))) == 1
+
+
+@pytest.mark.parametrize(("name", "largest"), [("dead_zone", 0.5), ("expo", 1.0)])
+def test_shares_have_their_range(name: str, largest: float) -> None:
+    for value in (0.0, largest):
+        assert list(find_pad_problems(name, value)) == []
+    for value in (-0.01, largest + 0.01):
+        assert len(list(find_pad_problems(name, value))) == 1
+
+
+def test_the_usual_mapping_in_numbers() -> None:
+    mapping = PadMapping()
+    assert (mapping.dead_zone, mapping.expo) == (0.12, 0.3)

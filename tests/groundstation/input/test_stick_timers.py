@@ -189,6 +189,10 @@ def test_another_keyboard_does_not_go_on_with_a_press() -> None:
 # ---- styles and gamepad ----
 
 
+def test_the_usual_limit_is_60_percent() -> None:
+    assert (Sticks().throttle_limit, Sticks().steering_limit) == (0.6, 0.6)
+
+
 def test_blocked_and_changed_styles_are_neutral() -> None:
     sticks = timed(Style.LATCH)
     press(sticks, I, 0.0)

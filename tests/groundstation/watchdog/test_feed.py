@@ -10,7 +10,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from dialects.messages import ManualControl
+from dialects.messages import Heartbeat, ManualControl, RcChannelsOverride
 from groundstation.station.driving.driven import DrivenVehicle
 from groundstation.watchdog.feed import WatchdogFeed
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
@@ -33,7 +33,7 @@ class Rig:
         self.rover = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         self.rover.bind(("127.0.0.1", 0))
         self.rover.settimeout(5.0)
-        self.feed = WatchdogFeed(0, self.ours, (255, 190))
+        self.feed = WatchdogFeed(0, self.ours, (252, 191))
         self.now = 100.0
         self.link = self.open()
 
@@ -117,3 +117,98 @@ def test_descriptors_of_an_unsent_report_travel_with_the_next(rig: Rig) -> None:
     report, descriptors = rig.report()
     assert not report.keeps_descriptors
     assert rig.reaches_rover(*descriptors)
+
+
+def test_a_report_tells_all_that_the_watchdog_needs(rig: Rig) -> None:
+    rig.feed.set_flags(screen_has_quit=True)
+    rig.feed.set_flags(keys_version=2)
+    assert rig.feed.report([ROVER], rig.now, rests=True)
+    report = decode_report(rig.theirs.recv(MAX_REPORT))
+    assert (report.ids, report.vehicles, len(report.routes)) == ((252, 191), (ROVER,), 1)
+    assert (report.screen_has_quit, report.keys_version, report.rests) == (True, 2, True)
+    assert not (report.screen_is_gone)
+    assert not (report.ending)
+
+
+def test_overrides_are_demands_and_other_messages_are_not(rig: Rig) -> None:
+    rig.now += 10.0
+    rig.feed.record_sent(rig.link, rig.link.transport.fixed_address, Heartbeat(6, 8, 0, 0, 4, 3), 4, rig.now)
+    assert rig.report()[0].routes == ()
+    override = RcChannelsOverride(1, 1, *(0,) * 8)
+    rig.feed.record_sent(rig.link, rig.link.transport.fixed_address, override, 5, rig.now)
+    report, descriptors = rig.report()
+    assert [(route.vehicle, route.sequence) for route in report.routes] == [(0, 5)]
+    assert rig.reaches_rover(*descriptors)
+
+
+def test_a_route_is_that_of_its_own_vehicle(rig: Rig) -> None:
+    other = DrivenVehicle(system=2, component=1, name="rover 2", autopilot=3)
+    assert rig.feed.report([other, ROVER], rig.now)
+    data, descriptors, _, _ = socket.recv_fds(rig.theirs, MAX_REPORT, MAX_OUTLETS)
+    assert [route.vehicle for route in decode_report(data).routes] == [1]
+    assert rig.reaches_rover(*descriptors)
+
+
+@pytest.mark.parametrize(("after", "routes"), [(3.0, 1), (3.01, 0)])
+def test_a_route_is_kept_for_3_s_after_a_demand(rig: Rig, after: float, routes: int) -> None:
+    rig.now += after
+    report, descriptors = rig.report()
+    assert len(report.routes) == routes
+    for descriptor in descriptors:
+        os.close(descriptor)
+
+
+def test_a_link_that_is_closed_has_no_route(rig: Rig) -> None:
+    rig.link.close()
+    assert rig.report() == (StationReport(ids=(252, 191), vehicles=(ROVER,), keeps_descriptors=True), [])
+
+
+def test_a_report_has_32_routes_at_most(rig: Rig) -> None:
+    for port in range(40):
+        rig.feed.record_sent(rig.link, ("127.0.0.1", 1000 + port), DEMAND, 1, rig.now)
+    report, descriptors = rig.report()
+    assert len(report.routes) == len(descriptors) == 32
+    for descriptor in descriptors:
+        os.close(descriptor)
+
+
+def test_the_numbers_of_many_addresses_are_bounded(rig: Rig) -> None:
+    rig.demand(7)
+    for port in range(256):
+        rig.feed.record_sent(rig.link, ("192.0.2.1", port), Heartbeat(6, 8, 0, 0, 4, 3), 1, rig.now)
+    report, descriptors = rig.report()
+    assert [route.sequence for route in report.routes] == [7]
+    rig.feed.record_sent(rig.link, ("192.0.2.2", 1), Heartbeat(6, 8, 0, 0, 4, 3), 1, rig.now)
+    assert [route.sequence for route in rig.report()[0].routes] == [0]
+    os.close(*descriptors)
+
+
+def test_a_watchdog_that_is_gone_is_reported_once(rig: Rig, caplog: pytest.LogCaptureFixture) -> None:
+    assert rig.feed.alive
+    rig.theirs.close()
+    assert [rig.feed.report([ROVER], rig.now) for _ in range(3)] == [False, True, True]
+    assert not rig.feed.alive
+    assert "no report to the watchdog" in caplog.text
+
+
+def test_a_watchdog_that_stood_still_is_not_gone(rig: Rig) -> None:
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            rig.ours.send(b"full")
+    assert rig.feed.report([ROVER], rig.now)
+    rig.theirs.close()
+    assert not rig.feed.report([ROVER], rig.now)
+
+
+def test_a_feed_that_is_closed_ends_its_watchdog_in_order() -> None:
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with ours, theirs:
+        feed = WatchdogFeed.start(ours, None, (255, 190))
+        assert feed.report([ROVER], 100.0)
+        assert feed.report([], 100.0)
+        feed.close()
+        with contextlib.suppress(ChildProcessError):  # it has been waited for, unless this machine is busy
+            assert os.waitpid(feed._process, 0)[1] == 0
+        theirs.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            theirs.recv(1)

@@ -62,15 +62,20 @@ class Loop:
 
     def run_to_the_end(self, *, answer: bool = False) -> list[ManualControl]:
         """Run the loop until it returns, without a station; return what the rover got, which may say it is disarmed."""
-        self.station.close()
         runs = threading.Thread(target=self.process.run)
         runs.start()
+        self.station.close()
         demands = [self.receive(answer=True)] if answer else []
-        runs.join(20.0)
-        assert not runs.is_alive()
+        self.run_to_the_end_of(runs)
         while select.select([self.rover], [], [], 0.0)[0]:
             demands.append(self.receive())
         return demands
+
+    def run_to_the_end_of(self, runs: threading.Thread) -> None:
+        """End the station, and wait until the loop has returned."""
+        self.station.close()
+        runs.join(20.0)
+        assert not runs.is_alive()
 
     def receive(self, *, answer: bool = False) -> ManualControl:
         """Receive a demand, and answer it with a HEARTBEAT that says disarmed."""
@@ -145,9 +150,7 @@ def test_a_station_that_is_silent_and_goes_on_is_shown(loop: Loop) -> None:
     assert select.select([loop.screen], [], [], 20.0)[0]
     assert loop.outages()[0] == StationOutage()
     loop.report(StationReport(ending=True))
-    loop.station.close()
-    runs.join(20.0)
-    assert not runs.is_alive()
+    loop.run_to_the_end_of(runs)
 
 
 def test_both_killed_resets_the_terminal_once(loop: Loop) -> None:
@@ -206,10 +209,56 @@ def test_a_killed_screen_of_a_running_station_is_reset(loop: Loop) -> None:
     wait_until(lambda: select.select([loop.master], [], [], 0.0)[0], each=lambda: report_after_a_while(loop, gone))
     assert loop.written() == RESET
     loop.report(StationReport(ending=True))
-    loop.station.close()
-    runs.join(20.0)
-    assert not runs.is_alive()
+    loop.run_to_the_end_of(runs)
     assert loop.written() == b"", "once"
+
+
+def test_a_screen_that_sends_intents_is_not_gone(loop: Loop) -> None:
+    """They stay unread once the station is gone."""
+    loop.report(StationReport())
+    loop.screen.send(encode(IntentBatch(1.0, (RenewLease(),))))
+    loop.run_to_the_end()
+    assert loop.written() == b""
+
+
+def test_a_screen_that_is_gone_may_have_told_its_station_why(loop: Loop) -> None:
+    runs = threading.Thread(target=loop.process.run)
+    loop.report(StationReport(rests=True))
+    runs.start()
+    loop.screen.close()
+    wait_until(lambda: loop.process._screen_gone, each=lambda: report_after_a_while(loop, StationReport(rests=True)))
+    for report in (StationReport(screen_has_quit=True), StationReport(ending=True)):
+        loop.report(report)
+    loop.run_to_the_end_of(runs)
+    assert loop.written() == b""
+
+
+def test_a_silent_station_whose_screen_is_killed_is_reset(loop: Loop) -> None:
+    runs = threading.Thread(target=loop.process.run)
+    loop.report(StationReport())
+    runs.start()
+    loop.screen.close()
+    assert select.select([loop.master], [], [], 20.0)[0]
+    assert loop.written() == RESET
+    loop.run_to_the_end_of(runs)
+    assert loop.written() == b"", "once"
+
+
+def test_a_report_that_keeps_descriptors_may_change_addresses(loop: Loop) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ours:
+        for address, keeps in ((("127.0.0.1", 9), False), (loop.rover.getsockname(), True)):
+            report = StationReport(
+                vehicles=(ARDUROVER,), routes=(DemandRoute(0, address, 10),), keeps_descriptors=keeps
+            )
+            loop.report(report, *([] if keeps else [ours.fileno()]))
+        assert loop.run_to_the_end(answer=True)
+
+
+def test_without_keys_a_change_of_them_is_nothing(loop: Loop) -> None:
+    loop.process._read_keys = None
+    loop.report(StationReport(keys_version=3))
+    loop.run_to_the_end()
+    assert loop.outages() == [StationOutage(ENDED + "nothing is sent", True)]
 
 
 def test_the_forked_process_ends_with_its_station(loop: Loop) -> None:

@@ -82,3 +82,7 @@ def test_a_key_that_has_gone_signs_no_more() -> None:
     signing.set_ring(KeyRing())
     assert isinstance(read(made.next_frame(0.1)), RoverOperatorPresence)
     assert not is_signed(made.next_frame(0.1))
+
+
+def test_a_watchdog_without_keys_signs_nothing() -> None:
+    assert not is_signed(NeutralFrames(ROVER, (252, 191), DemandRoute(0, None, 0, WAY)).next_frame(0.0))
