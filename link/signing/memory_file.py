@@ -35,7 +35,7 @@ def load_memory(path: Path) -> SigningMemory:
     """Return what the last run kept; nothing if there is no file. Raises MemoryFileError."""
     try:
         with path.open("rb") as file:
-            data = file.read(MAX_SIZE + 1)
+            data = file.read(MAX_SIZE)
     except FileNotFoundError:
         return SigningMemory()
     except OSError as error:

@@ -25,7 +25,9 @@ _VEHICLE_TESTS = (
     "tests/vehicle/commands/test_actuator_test.py", "tests/vehicle/commands/test_buttons.py",
     "tests/vehicle/test_signed_drivers.py",
 )  # fmt: skip
-_ROLE_TESTS = ("tests/link/fleet/test_roles.py", "tests/link/fleet/test_keys.py", "tests/link/fleet/rights")
+_ROLE_TESTS = (
+    "tests/link/fleet/test_roles.py", "tests/link/fleet/test_keys.py", "tests/link/fleet/rights", "tests/test_bounds.py",
+)  # fmt: skip
 _STICK_TESTS = tuple(
     f"tests/groundstation/station/driving/test_{name}.py"
     for name in ("operator", "gamepad", "driving", "due_times", "screen_lease", "claims", "emergency")
@@ -45,7 +47,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
 }
 """Folders and modules to mutate: those that decide whether the wheels turn, which frames count and who gets in -> tests
 to run against them."""
-NOT_RUN = tuple(f"link/signing/{name}.py" for name in ("key_actions", "key_file", "key_input", "key_qr", "key_words"))
+NOT_RUN = tuple(
+    f"link/signing/{name}.py"
+    for name in ("key_actions", "key_file", "key_input", "key_options", "key_qr", "key_words", "missing_package")
+)
 """Modules of these folders that are mutated only if they are named: how people enter, show and keep keys."""
 DESELECTED = (
     "tests/vehicle/safety/test_estop_button.py",

@@ -9,7 +9,6 @@ import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from itertools import accumulate
 from pathlib import Path
 
 import pytest
@@ -120,14 +119,18 @@ class Runner:
             cost = defaultdict(float)
             for test, spent in seconds.items():
                 cost[test.partition("::")[0]] += spent
-        order = sorted(cost, key=lambda test: (*self._kills.rank(mutant, test), own not in test, cost[test]))
-        totals = accumulate(cost[test] for test in order)
-        # The file of a module runs for its constants however long that takes
-        return [
-            test
-            for test, total in zip(order, totals, strict=True)
-            if total <= self._limit or (own in test and not mutant.function)
-        ]
+        module = not mutant.function
+
+        def rank(test: str) -> tuple[float, ...]:
+            return *self._kills.rank(mutant, test), module and own not in test, cost[test]
+
+        chosen, total = [], 0.0
+        for test in sorted(cost, key=rank):
+            # A test that takes too long leaves room for others; the file of a module always runs for its constants
+            if total + cost[test] <= self._limit or (module and own in test):
+                chosen.append(test)
+                total += cost[test]
+        return chosen
 
 
 def _killer(folder: Path, status: int) -> str | None:

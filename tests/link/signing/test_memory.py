@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import stat
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 
 from link.signing.memory_file import FILE, MemoryFileError, load_memory, save_memory
 from link.signing.signing import SigningMemory
-from link.signing.streams import MAX_STREAMS, Stream
+from link.signing.streams import MAX_STREAMS, Span, Stream
 from link.signing.verifier import Refusal
 from link.signing_keeper import STORE_PERIOD, SigningKeeper
 from tests.link.signing.signed import ARM, DRIVER, NOON, NOW, keep, signed
@@ -40,6 +41,11 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
         f'{{"stamp":{1 << 48},"streams":[],"floors":{{}}}}',
         '{"stamp":1,"streams":[["ab",1,1,1]],"floors":{}}',
         f'{{"stamp":1,"streams":[{MANY}],"floors":{{}}}}',
+        '{"stamp":1,"streams":[["ab",1,1,1,-1]],"floors":{}}',
+        '{"stamp":1,"streams":[],"floors":{"ab":-1}}',
+        '{"stamp":1,"streams":[],"floors":{},"spans":[["ab",1,-1]]}',
+        '{"stamp":1,"streams":[],"floors":{},"spans":[' + ",".join(['["ab",1,1]'] * 17) + "]}",
+        '{"stamp":1,"streams":[],"floors":{},"more":1}',
         "\xff",
     ],
 )
@@ -49,6 +55,47 @@ def test_a_damaged_file_is_named_in_one_line(tmp_path: Path, text: str) -> None:
     with pytest.raises(MemoryFileError) as caught:
         load_memory(path)
     assert str(caught.value) == f"{path}: damaged; remove it, once the computer's clock is right"
+
+
+def test_a_full_file_of_the_last_timestamps_is_read(tmp_path: Path) -> None:
+    path, last = tmp_path / FILE, (1 << 48) - 1
+    full = SigningMemory(
+        last,
+        {Stream("ab", 1, number, 0): number and last for number in range(64)},
+        {"ab": 0},
+        (Span("ab", 0, last),) * 16,
+    )
+    save_memory(path, full)
+    assert load_memory(path) == full
+
+
+def test_a_file_of_an_older_program_is_that_of_a_crash(tmp_path: Path) -> None:
+    path = tmp_path / FILE
+    path.write_text('{"stamp":5,"streams":[],"floors":{}}')
+    assert load_memory(path) == SigningMemory(5, {}, {}, (), ended=False)
+
+
+def test_a_file_of_64_kib_is_read_and_no_larger_one(tmp_path: Path) -> None:
+    path, text = tmp_path / FILE, '{"stamp":5,"streams":[],"floors":{}}'
+    path.write_text(text.rjust(65536))
+    assert load_memory(path).stamp == 5
+    path.write_text(text.rjust(65537))
+    with pytest.raises(MemoryFileError):
+        load_memory(path)
+
+
+def test_its_folder_is_made_for_its_user_alone(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "deeper" / FILE
+    save_memory(path, MEMORY)
+    save_memory(path, MEMORY)
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give a file away")
+def test_a_file_of_root_belongs_to_the_owner_of_its_folder(tmp_path: Path) -> None:
+    os.chown(tmp_path, 12345, 12345)
+    save_memory(tmp_path / FILE, MEMORY)
+    assert (tmp_path / FILE).stat().st_uid == 12345
 
 
 def test_a_restart_replays_nothing(tmp_path: Path) -> None:

@@ -110,6 +110,16 @@ def test_a_known_sender_takes_no_place_of_another() -> None:
     assert [system for system in range(1, 66) if not verifier.is_pinned(system, 190, 0.0)] == [1]
 
 
+def test_by_default_nothing_is_ahead_and_no_run_has_crashed() -> None:
+    right = Signing(KeyRing().add(DRIVER), wall=NOON, now=0.0, synchronized=True)
+    assert right.verifier.check(signed(stamp=NOW + DAY + 1), 255, 190, 0.0) is Refusal.TOO_NEW
+    right.update(NOON + 1.0, 1.0)
+    assert not right.clock.synchronized
+    assert check(Verifier([DRIVER], SigningClock(NOON, 0.0)), NOW - 30 * TICKS) is None
+    assert SigningMemory() == SigningMemory(0, {}, {}, (), ended=False)
+    assert not right.memory(1.0).ended
+
+
 # ---- the table of streams ----
 
 
@@ -185,8 +195,9 @@ def test_a_clock_that_catches_up_is_trusted_at_that_moment() -> None:
 def test_a_clock_in_1970_is_not_right_whatever_the_system_says() -> None:
     clock = SigningClock(0.0, 0.0, synchronized=True)
     assert not clock.synchronized
-    clock.update(100.0, 1.0, synchronized=True)
-    assert not clock.synchronized
+    for wall in (100.0, 1_600_000_000.0):
+        clock.update(wall, 1.0, synchronized=True)
+        assert not clock.synchronized
 
 
 def test_a_clock_is_never_ahead_by_less_than_nothing() -> None:
