@@ -26,7 +26,8 @@ _VEHICLE_TESTS = (
     "tests/vehicle/test_signed_drivers.py",
 )  # fmt: skip
 _ROLE_TESTS = (
-    "tests/link/fleet/test_roles.py", "tests/link/fleet/test_keys.py", "tests/link/fleet/rights", "tests/test_bounds.py",
+    "tests/link/fleet/test_roles.py", "tests/link/fleet/test_keys.py", "tests/link/fleet/rights",
+    "tests/test_bounds.py",
 )  # fmt: skip
 _STICK_TESTS = tuple(
     f"tests/groundstation/station/driving/test_{name}.py"
@@ -42,7 +43,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "link/fleet/rights": _ROLE_TESTS,
     "groundstation/watchdog": ("tests/groundstation/watchdog", "tests/test_bounds.py"),
     "groundstation/input": ("tests/groundstation/input", *_STICK_TESTS, "tests/test_bounds.py"),
-    "groundstation/web": ("tests/groundstation/web",),
+    "groundstation/web/guard.py": ("tests/groundstation/web/test_guard.py",),
     "groundstation/station_socket": ("tests/groundstation/station_socket", "tests/test_bounds.py"),
 }
 """Folders and modules to mutate: those that decide whether the wheels turn, which frames count and who gets in -> tests
