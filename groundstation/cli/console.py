@@ -25,9 +25,11 @@ from groundstation.config.settings import Settings, ThemeName
 from groundstation.gamepad.child import GamepadChild, missing_package
 from groundstation.host_process import HostProcess
 from groundstation.input.pad_mapping import OFF, add_buttons, build_mapping
+from groundstation.input.style import Style
 from groundstation.recent.recent_file import RecentFile
 from groundstation.recording.options import RecordOptions
 from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
+from groundstation.ui.terminal.tmux import TmuxSession
 from link.runtime import stdio
 from link.runtime.whole_file import PRIVATE
 
@@ -48,10 +50,16 @@ def run(arguments: Sequence[str], process: HostProcess | None) -> int:
     return report_mistakes(lambda: _run(options, names, process), word)
 
 
+def _find_proxy_in_tmux() -> str:
+    session = TmuxSession.from_environment()
+    session.ask()
+    return session.proxy
+
+
 def _run(options: argparse.Namespace, names: Sequence[str], process: HostProcess | None) -> int:
     effective = load_settings(options)
     settings = effective.settings
-    if why := style_refusal(settings.style, find_proxy()):
+    if settings.style != Style.HOLD and (why := style_refusal(settings.style, find_proxy() or _find_proxy_in_tmux())):
         raise UsageError(f"--style {why}")
     endpoints = _endpoints(options, effective, names)
 

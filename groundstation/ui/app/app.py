@@ -90,7 +90,7 @@ class ConsoleApp(App[int]):
         """
         drawn_lines.free_with_widget()
         self._proxy = find_proxy()
-        self.gate = KeyGate(client, keymap, clock, holds_only=style_refusal("another one", self._proxy))
+        self.gate = KeyGate(client, keymap, clock, find_proxy=self._find_proxy)
         self._first = first
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
         super().__init__(driver_class=driver)
@@ -244,6 +244,9 @@ class ConsoleApp(App[int]):
         if shown is not None and shown.is_mounted:
             shown.show_state(now)
 
+    def _find_proxy(self) -> str:
+        return self._proxy or self._tmux.proxy
+
     def _display_state(self) -> DisplayState:
         return DisplayState(
             self._snapshot,
@@ -330,7 +333,7 @@ class ConsoleApp(App[int]):
                 terminal_stuck=self._terminal is not None and self._terminal.is_stuck(time.monotonic()),
                 replay=self._snapshot.replay is not None,
                 lent=self._log_child.running,
-                style=style_refusal(self._snapshot.operator.style, self._proxy),
+                style=style_refusal(self._snapshot.operator.style, self._find_proxy()),
                 driver=self._snapshot.lease.driver,
             )
         )

@@ -19,6 +19,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot, StationOutage
 from groundstation.ui.keys.keynames import is_character
+from groundstation.ui.terminal.frozen_terminal import style_refusal
 from groundstation.ui.terminal.tty_ping import TerminalPing
 from groundstation.views.base import View
 
@@ -105,10 +106,15 @@ class KeyGate:
     """
 
     def __init__(
-        self, client: StationConnection, keymap: Keymap, clock: Callable[[], float], *, holds_only: str = ""
+        self,
+        client: StationConnection,
+        keymap: Keymap,
+        clock: Callable[[], float],
+        *,
+        find_proxy: Callable[[], str] = lambda: "",
     ) -> None:
-        """`holds_only`: why no style but hold is chosen here; empty: each may be."""
-        self._holds_only = holds_only
+        """`find_proxy` returns what hides a frozen terminal, for which no style but hold is chosen; "": each may be."""
+        self._find_proxy = find_proxy
         self.keymap = keymap
         self._client = client
         self._clock = clock
@@ -154,8 +160,8 @@ class KeyGate:
 
     def allow(self, intent: AnyIntent) -> AnyIntent:
         """Return an intent, or the choice of the style hold in place of that of another one."""
-        if self._holds_only and isinstance(intent, SetStyle):
-            return SetStyle(style=Style.HOLD, why=self._holds_only)
+        if isinstance(intent, SetStyle) and (why := style_refusal("another one", self._find_proxy())):
+            return SetStyle(style=Style.HOLD, why=why)
         return intent
 
     def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:

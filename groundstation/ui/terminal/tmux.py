@@ -1,7 +1,7 @@
 """Detects that nobody is attached to the tmux session that the screen runs in.
 
 tmux answers the pings of the screen (tty_ping.py) itself, also when its last client was detached or killed, as by a
-lost SSH connection. So tmux is asked.
+lost SSH connection. So tmux is asked who its clients are, and over what they reach it.
 """
 
 from __future__ import annotations
@@ -9,8 +9,11 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import subprocess
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+from groundstation.ui.terminal.frozen_terminal import find_proxy_of_clients
 
 PERIOD = 1.0
 """s between questions; each starts a process, which takes a few ms of processor time."""
@@ -21,7 +24,8 @@ ANSWER_WITHIN = 2.0
 RELEASE_AFTER = 3.0
 """s without a client after which control is released: a dropped connection may come back at once."""
 
-QUESTION = ("tmux", "display-message", "-p", "#{session_attached}")
+QUESTION = ("tmux", "list-clients", "-F", "#{client_pid}", "-t")
+"""The name of a pane follows; it stands for its session."""
 
 
 class TmuxSession:
@@ -35,6 +39,8 @@ class TmuxSession:
         self.away: float | None = None
         """For how many s nobody was attached, if control was released in that time; None once we are in control again.
         """
+        self.proxy = ""
+        """What hides a frozen terminal of a client, e.g. "tmux over ssh"; "" if nothing is known that does."""
         self._controls_any = self._was_without = False
         self._task: asyncio.Task[None] | None = None
 
@@ -48,10 +54,16 @@ class TmuxSession:
         """Nobody is attached."""
         return self._detached_at is not None
 
-    def update(self, clients: int | None, now: float) -> None:
-        """Take an answer; None: not known, which changes nothing. A session that never had a client is a script's."""
+    def update(self, clients: Sequence[int] | None, now: float) -> None:
+        """Take an answer, the process ids of the clients; None: not known, which changes nothing.
+
+        A session that never had a client is a script's.
+        """
+        if clients is None:
+            return
+        self.proxy = find_proxy_of_clients(clients)
         self._had_client = self._had_client or bool(clients)
-        if clients == 0 and self._had_client and self._detached_at is None:
+        if not clients and self._had_client and self._detached_at is None:
             self._detached_at, self._released, self.away = now, False, None
         elif clients and self._detached_at is not None:
             self.away = now - self._detached_at if self._released else None
@@ -73,6 +85,14 @@ class TmuxSession:
 
     # ---- asking tmux ----
 
+    def ask(self) -> None:
+        """Ask tmux now, and wait for its answer, if there is one."""
+        if self._pane is not None:
+            with contextlib.suppress(OSError, subprocess.SubprocessError):
+                words = [*QUESTION, self._pane]
+                done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, timeout=ANSWER_WITHIN)
+                self.update(_read_clients(done.returncode, done.stdout), time.monotonic())
+
     def start(self, loop: asyncio.AbstractEventLoop) -> None:
         """Ask tmux from now on, if there is one."""
         if self._pane is not None:
@@ -85,16 +105,16 @@ class TmuxSession:
 
     async def _watch(self, pane: str) -> None:
         while True:
-            self.update(await count_clients(pane), time.monotonic())
+            self.update(await find_clients(pane), time.monotonic())
             await asyncio.sleep(PERIOD)
 
 
-async def count_clients(pane: str) -> int | None:
-    """Return the number of clients attached to the session of the pane; None if tmux does not tell."""
+async def find_clients(pane: str) -> Sequence[int] | None:
+    """Return the process ids of the clients attached to the session of the pane; None if tmux does not tell."""
     nothing = asyncio.subprocess.DEVNULL
     try:
         process = await asyncio.create_subprocess_exec(
-            *QUESTION[:2], "-t", pane, *QUESTION[2:], stdin=nothing, stdout=asyncio.subprocess.PIPE, stderr=nothing
+            *QUESTION, pane, stdin=nothing, stdout=asyncio.subprocess.PIPE, stderr=nothing
         )
     except OSError:
         return None
@@ -106,4 +126,8 @@ async def count_clients(pane: str) -> int | None:
             process.kill()
         await process.wait()
         return None
-    return int(answer) if process.returncode == 0 and answer.strip().isdigit() else None
+    return _read_clients(process.returncode, answer)
+
+
+def _read_clients(code: int | None, answer: bytes) -> Sequence[int] | None:
+    return [int(word) for word in answer.split() if word.isdigit()] if code == 0 else None

@@ -16,7 +16,7 @@ import pytest
 from groundstation.input.keymap import KeyEvent
 from groundstation.intents.driving import SetStyle
 from groundstation.ui.keys.key_gate import KeyGate
-from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
+from groundstation.ui.terminal.frozen_terminal import find_proxy, find_proxy_of_clients, style_refusal
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.ui.examples import Recorder
@@ -49,21 +49,35 @@ def test_ancestors_tell_who_answers_in_place_of_it(names: tuple[str, ...], proxy
     assert find_proxy({"STY": "1.pts-0.host"}, 10, tmp_path) == "GNU screen"
 
 
+@pytest.mark.parametrize(
+    ("names", "proxy"),
+    [
+        (("tmux: client", "bash", "mosh-server", "systemd"), "mosh"),
+        (("tmux: client", "bash", "sshd-session", "sshd", "systemd"), "tmux over ssh"),
+        (("tmux: client", "bash", "gnome-terminal", "systemd"), ""),
+    ],
+)
+def test_ancestors_of_a_client_of_tmux_tell_it(names: tuple[str, ...], proxy: str, tmp_path: Path) -> None:
+    assert find_proxy_of_clients((10,), make_processes(tmp_path, *names)) == proxy
+    assert find_proxy_of_clients((), tmp_path) == ""
+
+
 @pytest.mark.parametrize("style", ["latch", "step"])
 def test_only_hold_drives_behind_a_proxy(style: str) -> None:
     assert "mosh hides: style hold only, or plain ssh" in style_refusal(style, "mosh")
     assert style_refusal("hold", "mosh") == style_refusal(style, "") == ""
 
 
-@pytest.mark.parametrize(("holds_only", "chosen"), [("mosh hides it", "hold"), ("", "next")])
-def test_the_gate_lets_no_other_style_pass(holds_only: str, chosen: str) -> None:
+@pytest.mark.parametrize(("proxy", "chosen"), [("mosh", "hold"), ("", "next")])
+def test_the_gate_lets_no_other_style_pass(proxy: str, chosen: str) -> None:
     recorder = Recorder()
-    gate = KeyGate(recorder, STANDARD, lambda: 0.0, holds_only=holds_only)
+    gate = KeyGate(recorder, STANDARD, lambda: 0.0, find_proxy=lambda: proxy)
+    why = style_refusal("another one", proxy)
     gate.set_closure(None)
     gate.update(armed=False, driving=False)
     gate.handle_keys([KeyEvent("tab")])
-    assert [each for each in recorder.intents if isinstance(each, SetStyle)] == [SetStyle(style=chosen, why=holds_only)]
-    assert gate.allow(SetStyle(style="next")) == SetStyle(style=chosen, why=holds_only)
+    assert [each for each in recorder.intents if isinstance(each, SetStyle)] == [SetStyle(style=chosen, why=why)]
+    assert gate.allow(SetStyle(style="next")) == SetStyle(style=chosen, why=why)
     recorder.close()
 
 
@@ -140,9 +154,19 @@ def in_mosh(inside: Inside) -> None:
     inside.start("env", f"MOSH_KEY={found[2]}", "mosh-client", "127.0.0.1", found[1])
 
 
+def in_tmux_in_mosh(inside: Inside) -> None:
+    """Run it in a tmux whose client is below mosh-server."""
+    program, inside.script = inside.script, inside.script.with_name("inner.sh")
+    inner = shlex.join(["tmux", "-S", str(program.with_name("inner")), "-f", "/dev/null", "new-session", str(program)])
+    inside.script.write_text(f"#!/bin/sh\nexec env -u TMUX -u TMUX_PANE {inner}\n")
+    inside.script.chmod(0o755)
+    in_mosh(inside)
+
+
 PROXIES = [
     pytest.param(in_screen, "GNU screen", marks=needs("screen", "screen"), id="screen"),
     pytest.param(in_mosh, "mosh", marks=needs("mosh-server", "mosh"), id="mosh"),
+    pytest.param(in_tmux_in_mosh, "mosh", marks=needs("mosh-server", "mosh"), id="tmux in mosh"),
 ]
 
 

@@ -18,7 +18,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command
-from groundstation.ui.terminal.tmux import RELEASE_AFTER, TmuxSession, count_clients
+from groundstation.ui.terminal.tmux import RELEASE_AFTER, TmuxSession, find_clients
 from tests.e2e.programs import LET_GO
 from tests.fakes.lines import on_line
 from tests.fakes.rover import FakeArduPilot
@@ -38,28 +38,28 @@ needs_tmux = pytest.mark.skipif(
 def test_control_is_released_once_after_a_few_seconds() -> None:
     session = TmuxSession("%0")
     session.handle_control(True)
-    session.update(1, 100.0)
-    session.update(0, 101.0)
+    session.update((os.getpid(),), 100.0)
+    session.update((), 101.0)
     assert session.detached
     assert not session.pop_release(101.0 + RELEASE_AFTER - 0.1)
     session.update(None, 103.0)
     assert [session.pop_release(101.0 + RELEASE_AFTER) for _ in range(2)] == [True, False]
-    session.update(2, 111.0)
+    session.update((os.getpid(), os.getppid()), 111.0)
     assert not session.detached
     assert session.away == 10.0
 
 
 def test_client_that_comes_back_soon_finds_control_where_it_was() -> None:
     session = TmuxSession("%0")
-    session.update(1, 99.0)
-    session.update(0, 100.0)
-    session.update(1, 102.0)
+    session.update((os.getpid(),), 99.0)
+    session.update((), 100.0)
+    session.update((os.getpid(),), 102.0)
     assert (session.pop_release(110.0), session.detached, session.away) == (False, False, None)
 
 
 def test_a_session_that_never_had_a_client_is_driven_by_a_script() -> None:
     session = TmuxSession("%0")
-    session.update(0, 100.0)
+    session.update((), 100.0)
     assert not session.detached
     assert not session.pop_release(110.0)
 
@@ -67,26 +67,26 @@ def test_a_session_that_never_had_a_client_is_driven_by_a_script() -> None:
 def test_without_control_nothing_is_released_or_claimed() -> None:
     session = TmuxSession("%0")
     session.handle_control(False)
-    session.update(1, 99.0)
-    session.update(0, 100.0)
+    session.update((os.getpid(),), 99.0)
+    session.update((), 100.0)
     assert session.detached
     assert not session.pop_release(110.0)
-    session.update(1, 111.0)
+    session.update((os.getpid(),), 111.0)
     assert session.away is None
     other = TmuxSession("%0")
     other.handle_control(False, any_vehicle=True)
-    other.update(1, 99.0)
-    other.update(0, 100.0)
+    other.update((os.getpid(),), 99.0)
+    other.update((), 100.0)
     assert other.pop_release(110.0)
 
 
 def test_the_notice_ends_when_we_are_in_control_again() -> None:
     session = TmuxSession("%0")
     session.handle_control(True)
-    session.update(1, 99.0)
-    session.update(0, 100.0)
+    session.update((os.getpid(),), 99.0)
+    session.update((), 100.0)
     assert session.pop_release(104.0)
-    session.update(1, 105.0)
+    session.update((os.getpid(),), 105.0)
     session.handle_control(True)  # the vehicle has not reported the release yet
     assert session.away == 5.0
     for in_control in (False, True):
@@ -104,9 +104,9 @@ def test_only_a_pane_of_tmux_is_asked_about(environment: dict[str, str], asks: b
 
 async def test_without_tmux_nothing_is_known(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("TMUX", f"{tmp_path}/none,1,0")
-    assert await count_clients("%0") is None
+    assert await find_clients("%0") is None
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert await count_clients("%0") is None
+    assert await find_clients("%0") is None
 
 
 class Session:
