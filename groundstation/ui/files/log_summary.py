@@ -1,17 +1,23 @@
-"""What a telemetry log holds, at a glance: how long it is, and of which vehicles. Reads its two ends only.
+"""What a telemetry log holds, at a glance: how long it is, of which vehicles, for how long they were armed and drove.
+
+Reads its two ends and, of a large one, samples at equal steps between them.
 
 The screen's process does not load the dialect, so that frames are told by their headers alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import struct
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 import msgspec
 
 HEAD, TAIL = 64 * 1024, 8 * 1024
 """Bytes that are read at the beginning and at the end."""
+SAMPLES, SAMPLE = 256, 8 * 1024
+"""Places in a log, and bytes that are read at each: a second or more of usual telemetry."""
 STAMP = 8
 """Bytes of the time before each frame, us since 1970, big-endian."""
 LARGEST = STAMP + 293
@@ -20,7 +26,14 @@ LONGEST = 10 * 86_400.0
 """s; a longer log has a damaged time."""
 LATEST = 4_102_444_800.0
 """s since 1970: the year 2100. What has a later time is no log."""
+_SPEED = struct.Struct("<f")
 _V1, _V2, _SIGNED = 0xFE, 0xFD, 1
+_HEARTBEAT, _VFR_HUD = 0, 74
+_SAFETY_ARMED = 0x80
+DRIVES = 0.1
+"""m/s from which on a vehicle drives."""
+SHORT = 30.0
+"""s; a shorter log in which nothing was armed is the start of a program, and no drive."""
 _GCS, _NO_AUTOPILOT = 6, 8
 """MAV_TYPE of a ground station, and MAV_AUTOPILOT of what is no vehicle."""
 
@@ -32,6 +45,15 @@ class LogSummary(msgspec.Struct, frozen=True):
     """s from the first record to the last; None: the end is damaged."""
     systems: tuple[int, ...] = ()
     """Ids of the vehicles whose HEARTBEAT is in the beginning."""
+    armed: float | None = None
+    """s for which a vehicle was armed, about; None: not known."""
+    driven: float | None = None
+    """s for which one drove, about."""
+
+    @property
+    def is_start(self) -> bool:
+        """Nothing was armed, and it is short: a program was started and ended again."""
+        return self.armed == 0 and self.length is not None and self.length < SHORT
 
 
 def read_summary(path: Path) -> LogSummary | None:
@@ -41,9 +63,50 @@ def read_summary(path: Path) -> LogSummary | None:
             head = file.read(HEAD)
             size = file.seek(0, 2)
             file.seek(max(0, size - TAIL))
-            return summarize(head, file.read(TAIL))
+            found = summarize(head, file.read(TAIL))
+            if found is None or found.length is None:
+                return found
+            return _count(found, _read_samples(file, size))
     except OSError:
         return None
+
+
+def _read_samples(file: BinaryIO, size: int) -> Iterator[bytes]:
+    """Yield a file in pieces, of a large one samples at equal steps."""
+    step = max(SAMPLE, size // SAMPLES)
+    for at in range(0, size, step):
+        file.seek(at)
+        yield file.read(min(step, SAMPLE) + LARGEST)
+
+
+def _count(found: LogSummary, samples: Iterable[bytes]) -> LogSummary:
+    """Return a summary with the times armed and driven: the shares of the samples in which that was so."""
+    heartbeats, armed, speeds, driven = 0, 0, 0, 0
+    for data in samples:
+        for at in _chain(data):
+            message, payload = _message(data, at + STAMP)
+            if message == _HEARTBEAT and _vehicle(data, at + STAMP):
+                heartbeats += 1
+                armed += bool(payload[6] & _SAFETY_ARMED)
+            elif message == _VFR_HUD:
+                speeds += 1
+                driven += _SPEED.unpack_from(payload, 4)[0] >= DRIVES
+    length = found.length or 0.0
+    return LogSummary(found.length, found.systems,
+                      length * armed / heartbeats if heartbeats else None,
+                      length * driven / speeds if speeds else None)  # fmt: skip
+
+
+def _chain(data: bytes) -> Iterator[int]:
+    """Yield the records of the first chain of two or more in a sample, which may begin within one."""
+    for start in range(min(len(data), LARGEST)):
+        records = _records(data, start)
+        first, second = next(records, None), next(records, None)
+        if first is not None and second is not None:
+            yield first
+            yield second
+            yield from records
+            return
 
 
 def summarize(head: bytes, tail: bytes) -> LogSummary | None:
@@ -89,11 +152,17 @@ def _stamp(data: bytes, at: int) -> float:
     return int.from_bytes(data[at : at + STAMP], "big") / 1e6
 
 
+def _message(data: bytes, at: int) -> tuple[int, bytes]:
+    """Return the id of a message, and its payload with the zeros that MAVLink 2 leaves out."""
+    v2 = data[at] == _V2
+    begin = at + (10 if v2 else 6)
+    payload = data[begin : begin + data[at + 1]].ljust(20, b"\0")
+    return (int.from_bytes(data[at + 7 : at + 10], "little") if v2 else data[at + 5]), payload
+
+
 def _vehicle(data: bytes, at: int) -> int:
     """Return the system id of the HEARTBEAT of a vehicle; 0 for any other frame."""
-    v2 = data[at] == _V2
-    payload = data[at + (10 if v2 else 6) :][: data[at + 1]].ljust(9, b"\0")
-    message = int.from_bytes(data[at + 7 : at + 10], "little") if v2 else data[at + 5]
-    if message != 0 or payload[4] == _GCS or payload[5] == _NO_AUTOPILOT:
+    message, payload = _message(data, at)
+    if message != _HEARTBEAT or payload[4] == _GCS or payload[5] == _NO_AUTOPILOT:
         return 0
-    return data[at + (5 if v2 else 3)]
+    return data[at + (5 if data[at] == _V2 else 3)]

@@ -27,6 +27,7 @@ HERE_COLUMNS = (
     Column("file", 24, most=44),
     Column("vehicle", 10, 3),
     Column("length", 8, 2, right=True),
+    Column("driven", 7, 2, right=True),
     Column("size", 9, right=True),
     Column("changed", 16, 1),
     Column("", 14, most=44),
@@ -134,20 +135,30 @@ def here_value(model: FilesModel) -> RowTableValue:
 def _local(each: LocalFile, model: FilesModel) -> tuple[Cell, ...]:
     part = each.name.endswith(PART)
     changed = time.strftime("%Y-%m-%d %H:%M", time.localtime(each.changed))
-    vehicle, length = _summary(model.disk.summaries.get(each))
+    vehicle, length, driven = summary_cells(model.disk.summaries.get(each))
     name = Cell(each.name, AMBER if part else TEXT)
     if model.disk.recording is not None and model.disk.is_recorded(each):
-        size, length = size_text(model.disk.recording.size), length_text(model.disk.recording.seconds)
-        return name, dim(vehicle), Cell(length), Cell(size), dim(changed), Cell("● being recorded", RED)
-    return name, dim(vehicle), Cell(length), Cell(size_text(each.size)), dim(changed), _local_note(each, model, part)
+        size, seconds = size_text(model.disk.recording.size), length_text(model.disk.recording.seconds)
+        return name, vehicle, Cell(seconds), dim(""), Cell(size), dim(changed), Cell("● being recorded", RED)
+    size = size_text(each.size)
+    return name, vehicle, length, driven, Cell(size), dim(changed), _local_note(each, model, part)
 
 
-def _summary(found: LogSummary | None) -> tuple[str, str]:
-    """Return of which vehicles a log is, and how long."""
+def summary_cells(found: LogSummary | None) -> tuple[Cell, Cell, Cell]:
+    """Return of which vehicles a log is, how long, and for how long they drove: columns of each list of logs."""
     if found is None:
-        return "", ""
+        return dim(""), dim(""), dim("")
     systems = " ".join(map(str, found.systems))
-    return f"id {systems}" if systems else "--", "--" if found.length is None else length_text(found.length)
+    length = Cell("--" if found.length is None else length_text(found.length))
+    return dim(f"id {systems}" if systems else "--"), length, _driven(found)
+
+
+def _driven(found: LogSummary) -> Cell:
+    if found.driven:
+        return Cell(length_text(found.driven), GREEN)
+    if found.armed:
+        return Cell("armed", AMBER)
+    return dim("" if found.armed is None else "no")
 
 
 def length_text(seconds: float) -> str:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from groundstation.ui.base.local_files import LocalFile
-from groundstation.ui.files.tables import size_text
+from groundstation.ui.files.log_summary import LogSummary
+from groundstation.ui.files.tables import size_text, summary_cells
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE, YELLOW
 from groundstation.ui.replay.model import ReplayModel, event_time
 from groundstation.ui.widgets.columns import Column
@@ -14,7 +15,14 @@ from groundstation.ui.widgets.row_table import Cell, RowTableValue, dim
 from groundstation.views.replay import ReplayEvent
 
 COLUMNS = (Column("", 10), Column("", 5), Column("", 12, most=200))
-FILE_COLUMNS = (Column("log", 24, most=60), Column("size", 9, right=True), Column("changed", 16, 1))
+FILE_COLUMNS = (
+    Column("log", 24, most=60),
+    Column("vehicle", 10, 3),
+    Column("length", 8, 2, right=True),
+    Column("driven", 7, 2, right=True),
+    Column("size", 9, right=True),
+    Column("changed", 16, 1),
+)
 
 WARNING, ERROR = 4, 3
 """MAV_SEVERITY."""
@@ -51,16 +59,24 @@ def kind_colour(kind: str, severity: int) -> str:
     return AMBER if severity <= WARNING else _COLOURS.get(kind, TEXT)
 
 
-def logs_value(logs: Sequence[LocalFile], cursor: int | None = None) -> RowTableValue:
-    """Return the telemetry logs of the folder, for a screen without an open log."""
+def logs_value(
+    logs: Sequence[LocalFile],
+    summaries: Mapping[LocalFile, LogSummary | None],
+    cursor: int | None = None,
+    hidden: int = 0,
+) -> RowTableValue:
+    """Return the telemetry logs of the folder, for a screen without an open log; `hidden` more are not listed."""
     rows = tuple(
         (
             Cell(each.name, WHITE),
+            *summary_cells(summaries.get(each)),
             Cell(size_text(each.size)),
             dim(time.strftime("%Y-%m-%d %H:%M", time.localtime(each.changed))),
         )
         for each in logs
     )
     how = "ENTER opens the marked one" if rows else "there is none here"
-    notes = (dim(f"no log is open: {how}; `groundstation replay FILE` opens any"),)
+    notes: tuple[Cell, ...] = (dim(f"no log is open: {how}; `groundstation replay FILE` opens any"),)
+    if hidden:
+        notes += (dim(f"not listed: {hidden} below 30 s in which nothing was armed; Files (^g 9) has all"),)
     return RowTableValue(FILE_COLUMNS, rows, cursor if rows else None, notes)

@@ -12,7 +12,7 @@ from textual.widget import Widget
 from groundstation.intents import replay as r
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.base.list_keys import rows_to_move
-from groundstation.ui.base.local_files import list_logs
+from groundstation.ui.base.local_files import LocalFile
 from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.wrap import plain
@@ -21,6 +21,7 @@ from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
 from groundstation.ui.drive.panes import SPEED_CHART, PaneInput, speed_samples
 from groundstation.ui.files.export import ChosenLog, FileExport
 from groundstation.ui.files.exports import Exports
+from groundstation.ui.files.here import FilesHere
 from groundstation.ui.replay.events import events_value, logs_value
 from groundstation.ui.replay.model import ReplayModel, part_text, short_summary, summary
 from groundstation.ui.replay.timeline import AXIS, ReplayTimeline, TimelineValue
@@ -65,8 +66,9 @@ class ReplayScreen(ConsoleScreen):
         self._chart = SPEED_CHART(ChartValue(), id="chart")
         self._events = RowTable(events_value(self._model), id="events")
         self._timeline = ReplayTimeline(TimelineValue(), id="timeline")
-        self._logs = RowTable(logs_value(()), id="logs")
-        self._files = [each for each in list_logs(context.folder) if each.name.endswith(TLOG)]
+        self._logs = RowTable(logs_value((), {}), id="logs")
+        self._disk = FilesHere(context.folder)
+        self._disk.scan()
         self._cursor = 0
         self._views: dict[type[View], View] = {}
 
@@ -85,7 +87,9 @@ class ReplayScreen(ConsoleScreen):
         """List the logs, and mark the panel that the arrows move in."""
         self._events.add_class("-chosen")
         self.set_class(not self._open, "-empty")
-        self._logs.show(logs_value(self._files, self._cursor))
+        self._show_logs()
+        if not self._open:
+            self.run_worker(self._read_summaries())
 
     @property
     def _open(self) -> bool:
@@ -161,12 +165,32 @@ class ReplayScreen(ConsoleScreen):
     def _choose_log(self, event: events.Key) -> bool:
         if rows := rows_to_move(event.key, self._logs.size.height):
             self._cursor = max(0, min(self._cursor + rows, len(self._files) - 1))
-            self._logs.show(logs_value(self._files, self._cursor))
+            self._show_logs()
         elif event.key not in ("enter", "o"):
             return False
         elif not isinstance(event, KeyRepeat):
             self.open_log(self.context.folder / self._files[self._cursor].name if self._files else None)
         return True
+
+    @property
+    def _files(self) -> list[LocalFile]:
+        """The telemetry logs that are listed."""
+        return [each for each in self._disk.files if each.name.endswith(TLOG) and not self._is_start(each)]
+
+    def _is_start(self, file: LocalFile) -> bool:
+        found = self._disk.summaries.get(file)
+        return found is not None and found.is_start
+
+    async def _read_summaries(self) -> None:
+        marked = self._files[self._cursor] if self._files else None
+        await self._disk.read_summaries()
+        files = self._files
+        self._cursor = files.index(marked) if marked in files else max(0, min(self._cursor, len(files) - 1))
+        self._show_logs()
+
+    def _show_logs(self) -> None:
+        hidden = sum(map(self._is_start, self._disk.files))
+        self._logs.show(logs_value(self._files, self._disk.summaries, self._cursor, hidden))
 
     def _send(self, intent: AnyIntent) -> None:
         self._model.cursor = None

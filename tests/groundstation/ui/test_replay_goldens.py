@@ -67,7 +67,7 @@ async def test_the_map_says_that_the_log_has_no_plan_yet() -> None:
 
 
 async def test_without_a_log_the_logs_here_are_listed(tmp_path: Path) -> None:
-    (tmp_path / "drive.tlog").write_bytes(bytes(drive_log(5).data))
+    (tmp_path / "drive.tlog").write_bytes(bytes(drive_log(40).data))
     (tmp_path / "flight.bin").write_bytes(b"x")
     async with console(SMALL, folder=tmp_path) as screen:
         await screen.press("ctrl+g", "0")

@@ -30,7 +30,7 @@ def test_file_of_this_session_is_marked_with_its_present_size(tmp_path: Path) ->
         path = str(tmp_path / NAME)
         model.disk.show_recording(RecordingView(path=path, seconds=seconds, size=size))
     by_name = {line[0]: line for line in lines(model)}
-    assert by_name[NAME][2:4] == ["1:05", "420.0 kB"]
+    assert by_name[NAME][2:5] == ["1:05", "", "420.0 kB"]
     assert by_name[NAME][-1] == "● being recorded"
     assert "recorded" not in by_name["old.tlog"][-1]
     assert not any("●" in note for note in notes(model))
