@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from dialects.messages import Message
 from groundstation.intents.union import AnyIntent
+from groundstation.station.driving.permission import Permission
 from groundstation.vehicles.fleet import Contact
 from link.core import LinkReport, Outgoing, Received
 
@@ -41,13 +42,13 @@ class CoreListener:
     def end_tick(self, now: float) -> None:
         """Do what is due when the core has ticked."""
 
-    def begin_intent(self, intent: AnyIntent, now: float) -> None:
+    def begin_intent(self, intent: AnyIntent, permission: Permission, now: float) -> None:
         """Take an intent that is going to be carried out."""
 
     def repeat_key(self, push: AnyIntent, now: float) -> None:
-        """Take a repeat of a key that drives, which is no intent for anybody else."""
+        """Take a repeat of a key that drives, which is not an intent for anybody else."""
 
-    def follow(self, intent: AnyIntent | None, now: float) -> None:
+    def follow(self, intent: AnyIntent | None, permission: Permission, now: float) -> None:
         """Take that an intent was carried out, or (None) that time has passed."""
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:

@@ -46,11 +46,15 @@ from groundstation.intents.vehicle import (
 )
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.commander import Commander
+from groundstation.station.driving.permission import Permission
 from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.vehicles.state.vehicle_state import VehicleState
 
 SECOND_STOP_WITHIN = 3.0
 """s after an emergency stop within which another one goes to every vehicle, not only to ours."""
+
+MOVES_STICKS = frozenset((DriveKeyDown, DriveKeyUp, DrivePad, ReleasePad, StepLimits))
+"""Intents that change the demand and nothing that decides who may drive, so that it need not be judged again."""
 
 Handle = Callable[[Any, float], None]
 """Carries out one kind of intent; called with it and the time."""
@@ -76,6 +80,8 @@ class IntentHandler:
         self._commander, self._driving, self._services = parts.commander, parts.driving, parts.services
         self._departure, self._handover, self._link_closing = parts.departure, parts.handover, parts.link_closing
         self._emergency_at = -math.inf
+        self._permission = Permission("starting", "starting")
+        """Before the intent that is being carried out."""
         rows: dict[type[Intent], Handle] = {kind: partial(do, self) for kind, do in HANDLERS.items()}
         rows |= {kind: partial(self._send_command, command) for kind, command in VEHICLE_COMMANDS.items()}
         self._table = {kind: [handle] for kind, handle in rows.items()}
@@ -95,14 +101,21 @@ class IntentHandler:
         """All kinds of intents that somebody handles."""
         return frozenset((*self._table, *self._last))
 
-    def handle(self, intent: AnyIntent, now: float) -> None:
-        """Carry out an intent; its messages are ready to be sent when this returns."""
+    def handle(self, intent: AnyIntent, permission: Permission, now: float) -> Permission:
+        """Carry out an intent; its messages are ready to be sent when this returns.
+
+        `permission` was judged just before. Returns that which holds now.
+        """
         if intent.is_input:
             self._operator.record_input(now)
-        self._driving.update_permission(now)
+        self._permission = permission
+        self._driving.apply(permission, now)
         for handle in self._table.get(type(intent), ()):
             handle(intent, now)
-        self._driving.update(now)
+        if type(intent) not in MOVES_STICKS:
+            permission = self._driving.judge(now)
+        self._driving.update(permission, now)
+        return permission
 
     def finish(self, intent: AnyIntent, now: float) -> None:
         """Call the last handler of an intent, if it has one."""
@@ -116,7 +129,7 @@ class IntentHandler:
             return
         if command.neutral:
             self._operator.sticks.block(now)
-        if command.confirmed and (reason := self._unconfirmed_reason(intent, now)):
+        if command.confirmed and (reason := self._unconfirmed_reason(intent)):
             self._log.add(now, "station", f"{command.confirmed} refused: {reason}", Severity.WARNING)
             return
         command.send(self._commander, vehicle, intent, now)
@@ -127,20 +140,20 @@ class IntentHandler:
             return None
         return self._fleet.selected.state
 
-    def _unconfirmed_reason(self, intent: Any, now: float) -> str | None:
+    def _unconfirmed_reason(self, intent: Any) -> str | None:
         """Return why an intent that needs a held key is refused: a screen that is frozen or hidden confirms nothing."""
         if not intent.held >= HOLD_TIME:
             return f"the key was not held for {HOLD_TIME:.0f} s"
-        return self._operator.blocked_reason(now)
+        return self._permission.screen
 
     def _press(self, intent: DriveKeyDown, now: float) -> None:
-        self._operator.press(intent, now)
+        self._operator.press(intent, self._permission.screen, now)
 
     def _release(self, intent: DriveKeyUp, now: float) -> None:
         self._operator.sticks.release(intent.key)
 
     def _push_pad(self, intent: DrivePad, now: float) -> None:
-        self._operator.push_pad(intent, now)
+        self._operator.push_pad(intent, self._permission.screen, now)
 
     def _release_pad(self, intent: ReleasePad, now: float) -> None:
         self._operator.sticks.pad.release()

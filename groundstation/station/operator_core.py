@@ -119,12 +119,13 @@ class OperatorCore:
         if self.operator.live:
             self._queries.tick(now)
             self.services.tick(now)
+        permission = self.driving.judge(now)
         if self.operator.live and not self.driving.ending:
             self._timesync.tick(now)
-            self._outbox += self._heartbeat.tick(now, driving=self.driving.drives_any)
-        self.driving.update(now)
+            self._outbox += self._heartbeat.tick(now, driving=bool(permission.controlled))
+        self.driving.update(permission, now)
         self._log_driving(now)
-        self._listener.follow(None, now)
+        self._listener.follow(None, permission, now)
         self.departure.tick(now)
         self._update_rest(now)
         self._listener.end_tick(now)
@@ -155,7 +156,7 @@ class OperatorCore:
 
     def _update_rest(self, now: float) -> None:
         driven = any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
-        if self._busy or driven or self.driving.driven_vehicles(now) or self._heartbeat.is_greeting(now):
+        if driven or self._busy or self.driving.driven_vehicles(now) or self._heartbeat.is_greeting(now):
             self._active_at = now
         rests = now - self._active_at >= REST_AFTER
         if rests != self.rests:
@@ -171,7 +172,7 @@ class OperatorCore:
         vehicle = state and (state.system, state.armed, state.mode, state.driver, state.emergency_stop, state.failsafes)
         keys = (operator.sent_demand, operator.sticks.held_keys(now), operator.ignored(now))
         others = (self.fleet.also_armed, self._handover.busy, self.rests)
-        return (self.driving.blocked_reason(now), self.log.state, vehicle, keys, others)
+        return (self.driving.judge(now).reason, self.log.state, vehicle, keys, others)
 
     @property
     def due_at(self) -> float | None:
@@ -182,10 +183,11 @@ class OperatorCore:
         """Send the demand that is due before the next tick."""
         self._expire_lease(now)
         before = self.operator.sent_demand
-        self.driving.update(now)
+        permission = self.driving.judge(now)
+        self.driving.update(permission, now)
         if self.operator.sent_demand != before:
             self._log_driving(now)
-            self._listener.follow(None, now)
+            self._listener.follow(None, permission, now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -263,14 +265,15 @@ class OperatorCore:
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
         self._expire_lease(now)
+        permission = self.driving.judge(now)
         self._operator_log.handle(intent, now)
-        self._listener.begin_intent(intent, now)
+        self._listener.begin_intent(intent, permission, now)
         if intent.is_input:
             self.driving.key_read_at = now if read_at is None else read_at
-        self.intents.handle(intent, now)
+        permission = self.intents.handle(intent, permission, now)
         self.driving.key_read_at = None
         self._log_driving(now)
-        self._listener.follow(intent, now)
+        self._listener.follow(intent, permission, now)
         self._update_rest(now)
         self.intents.finish(intent, now)
 

@@ -13,15 +13,15 @@ from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.core_listener import CoreListener
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor.doctor_desk import DoctorDesk
+from groundstation.station.driving.permission import Permission
 from groundstation.station.intent_handler import Rows
 from groundstation.station.messages.message_detail import MessageDetail
 from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.station.notes.station_notes import StationNotes
 from groundstation.station.snapshot_builder import SnapshotBuilder
-from groundstation.station.view_feed import ViewFeed
 from groundstation.station.views.drive_display import DriveDisplay
 from groundstation.station.views.param_texts import ParamTexts
-from groundstation.station.views.sources import core_sources
+from groundstation.station.views.sources import build_view_feed
 from groundstation.vehicles.fleet import Contact
 from link.core import LinkReport, Outgoing, Received
 
@@ -36,21 +36,14 @@ class ScreenFeed(CoreListener):
         self._detail = MessageDetail(self._traffic)
         self._display = DriveDisplay(fleet, operator, links.timesync, parts.ids[0])
         self._snapshots = SnapshotBuilder(parts, self._display)
-        self._charts = ChartDesk(fleet, self._traffic, operator, links.stats, links.timesync)
+        self._charts = ChartDesk(fleet, self._traffic, links.stats, links.timesync)
         self.doctor = DoctorDesk(
             fleet, parts.services, parts.queries, links.stats, operator, parts.ids, lambda now: self.snapshot(now, now)
         )
-        self.notes = StationNotes(operator, fleet, parts.driving)
+        self.notes = StationNotes(operator, fleet)
         parts.log.listener = self.notes.add_line
-        self.views = ViewFeed(
-            {
-                **core_sources(parts, texts.files),
-                **self._charts.sources,
-                **self._detail.sources,
-                **self.doctor.sources,
-                **self._display.sources,
-            }
-        )
+        shown = (self._charts, self._detail, self.doctor, self._display)
+        self.views = build_view_feed(parts, texts.files, *(each.sources for each in shown))
 
     @property
     def handlers(self) -> Rows:
@@ -109,21 +102,19 @@ class ScreenFeed(CoreListener):
         self._detail.tick(now)
         self.doctor.examine_if_due(now)
 
-    def begin_intent(self, intent: AnyIntent, now: float) -> None:
-        """Mark a key in the charts; each input that is no motor's ends the test of a motor."""
-        self._charts.mark_key(intent, now)
+    def begin_intent(self, intent: AnyIntent, permission: Permission, now: float) -> None:
+        """Mark a key in the charts, where keys count; other inputs than those of Setup end the test of a motor."""
+        if permission.screen is None:
+            self._charts.mark_key(intent, now)
         self.doctor.end_test(intent, now)
 
     def repeat_key(self, push: AnyIntent, now: float) -> None:
         """Mark a repeat of a key that drives."""
         self._charts.mark_key(push, now)
 
-    def follow(self, intent: AnyIntent | None, now: float) -> None:
+    def follow(self, intent: AnyIntent | None, permission: Permission, now: float) -> None:
         """Note what an intent, or time, has changed."""
-        if intent is None:
-            self.notes.tick(now)
-        else:
-            self.notes.handle(intent, now)
+        self.notes.follow(intent, permission, now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take the reports of the open links."""

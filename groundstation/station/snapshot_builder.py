@@ -33,7 +33,7 @@ class SnapshotBuilder:
             also_armed=fleet.also_armed,
             handover=parts.handover.notice(now),
             operator=parts.operator.build_view(
-                parts.driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
+                parts.driving.judge(now).reason, bool(selected and selected.demand_stream.streaming), now
             ),
             links=links.stats.build_views(links.timesync.round_trip),
             signing=fleet.signing_of(selected, now),

@@ -10,7 +10,6 @@ from groundstation.station.charts.catalogue import FieldCatalogue, class_of, pla
 from groundstation.station.charts.marks import MarkWatcher
 from groundstation.station.charts.points import PointBuffer
 from groundstation.station.charts.recorder import SeriesRecorder
-from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.messages.fields import Reader, make_reader
 from groundstation.station.messages.message_kind import Tap
@@ -37,13 +36,11 @@ class ChartDesk:
         self,
         fleet: Fleet,
         traffic: MessageTraffic,
-        operator: OperatorSession,
         links: LinkStats,
         timesync: TimesyncClient,
     ) -> None:
         self._fleet = fleet
         self._traffic = traffic
-        self._operator = operator
         self._links = links
         self._timesync = timesync
         self._recorder = SeriesRecorder()
@@ -70,9 +67,8 @@ class ChartDesk:
         self._recorder.pin(fields)
 
     def mark_key(self, intent: AnyIntent, now: float) -> None:
-        """Mark an intent that is a key of the driver, where keys count."""
-        if self._operator.blocked_reason(now) is None:
-            self._watcher.press(intent, now)
+        """Mark an intent that is a key of the driver. Called where keys count."""
+        self._watcher.press(intent, now)
 
     def tick(self, now: float) -> None:
         """Mark what has changed, and record what this station measures."""

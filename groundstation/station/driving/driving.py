@@ -9,6 +9,7 @@ from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverO
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.driven import DEMAND_MEMORY, DrivenVehicle
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.station.driving.permission import Permission
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.readings.latency import SentDemand
@@ -45,17 +46,31 @@ class DrivingController:
         self.key_read_at: float | None = None
         """When the key was read that is handled just now; None: there is none."""
 
-    def update(self, now: float) -> None:
-        """Queue the demands that are due."""
-        self.update_permission(now)
+    def judge(self, now: float) -> Permission:
+        """Judge whether keys may drive. Called at the head of an event, and again when it may have changed that."""
+        screen = self._operator.blocked_reason(now)
+        controlled = frozenset(
+            contact.state.system for contact in self._fleet if contact.state.armed and self.is_in_control(contact)
+        )
+        return Permission(screen, self._blocked_reason(screen, controlled, now), controlled)
+
+    def apply(self, permission: Permission, now: float) -> None:
+        """Let keys drive, or not."""
+        if self._operator.set_driving_allowed(permission.reason is None, now) and self._fleet.selected is not None:
+            self._fleet.selected.demand_stream.resume(now)
+
+    def update(self, permission: Permission, now: float) -> None:
+        """Apply a permission, and queue the demands that are due."""
+        self.apply(permission, now)
         demand = self._operator.demand(now)
         due: list[float | None] = []
+        selected = self._fleet.selected
         for contact in self._fleet:
-            self._update_ours(contact)
-            chosen = contact is self._fleet.selected
-            axes = contact.demand_stream.next_due(
-                demand if chosen else NEUTRAL, chosen and self._may_stream(contact), now
-            )
+            controlled = contact.state.system in permission.controlled
+            self._update_ours(contact, controlled=controlled)
+            chosen = contact is selected
+            streaming = chosen and self._may_stream(contact, controlled=controlled)
+            axes = contact.demand_stream.next_due(demand if chosen else NEUTRAL, streaming, now)
             if axes is not None:
                 self._queue_demand(contact, axes, now)
             due.append(contact.demand_stream.due_at)
@@ -71,12 +86,6 @@ class DrivingController:
         if self._reported.get(state.system) != reported:
             self._reported[state.system] = reported
             self.due_at = now
-
-    def update_permission(self, now: float) -> None:
-        """Update whether keys may drive. Called before each intent is handled, and with each tick."""
-        allowed = self.blocked_reason(now) is None
-        if self._operator.set_driving_allowed(allowed, now) and self._fleet.selected is not None:
-            self._fleet.selected.demand_stream.resume(now)
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the demands to send now and clear the queue."""
@@ -143,24 +152,20 @@ class DrivingController:
         accepted = self._commander.is_claimed(state.system)
         return state.control.is_program(self._ids, self._operator.session, accepted=accepted)
 
-    @property
-    def drives_any(self) -> bool:
-        """We control an armed vehicle."""
-        return any(contact.state.armed and self.is_in_control(contact) for contact in self._fleet)
-
     def is_driven_by_twin(self, contact: Contact) -> bool:
         """Return whether another program with our system id controls this vehicle."""
         return contact.state.driver == self._system and not self.is_in_control(contact)
 
-    def blocked_reason(self, now: float) -> str | None:
+    def _blocked_reason(self, screen: str | None, controlled: frozenset[int], now: float) -> str | None:
         """Return why keys do not drive now, as a text for the driver; None when they do."""
         contact = self._fleet.selected
-        obstacle = "quitting" if self._ending else self._operator.blocked_reason(now)
+        obstacle = "quitting" if self._ending else screen
         if obstacle or contact is None:
             return obstacle or "no vehicle"
-        return contact.state.model.refusal or self._vehicle_blocked_reason(contact, now)
+        in_control = contact.state.system in controlled
+        return contact.state.model.refusal or self._vehicle_blocked_reason(contact, now, in_control=in_control)
 
-    def _vehicle_blocked_reason(self, contact: Contact, now: float) -> str | None:
+    def _vehicle_blocked_reason(self, contact: Contact, now: float, *, in_control: bool) -> str | None:
         state = contact.state
         if self._commander.is_locked(state.system) or state.emergency_stop:
             return "emergency stop"
@@ -170,15 +175,15 @@ class DrivingController:
             return "arming" if self._commander.is_arming(state.system) else "disarmed"
         if state.control.clash:
             return f"another program uses our id {self._system}: use --system"
-        if self.is_driven_by_twin(contact):
-            return f"another program with our id {self._system} is in control"
-        if not self.is_in_control(contact):
+        if not in_control:
+            if state.driver == self._system:
+                return f"another program with our id {self._system} is in control"
             return f"GCS {state.driver} is in control" if state.driver else "not in control"
         if contact.releasing or contact.closing:
             return "releasing control" if contact.releasing else "its link is being closed"
         return None if state.mode in state.model.keys else f"mode {state.mode}"
 
-    def _may_stream(self, contact: Contact) -> bool:
+    def _may_stream(self, contact: Contact, *, controlled: bool) -> bool:
         """Return whether demands go to this vehicle: only if armed and ours, so as not to fight another driver.
 
         A silent driver with our system id is this program before a restart: neutral demands take over from it.
@@ -190,14 +195,13 @@ class DrivingController:
             return False
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)
-        follows = self.is_driven_by_twin(contact) and state.control.silent
-        return state.armed and (self.is_in_control(contact) or follows)
+        follows = state.armed and state.driver == self._system and state.control.silent
+        return controlled or follows
 
-    def _update_ours(self, contact: Contact) -> None:
+    def _update_ours(self, contact: Contact, *, controlled: bool) -> None:
         """Note which vehicles this station has armed or drives; until the vehicle reports disarmed."""
         state = contact.state
-        drives = state.armed and state.model.is_driven and self.is_in_control(contact)
-        if self._commander.is_arming(state.system) or drives:
+        if self._commander.is_arming(state.system) or (controlled and state.model.is_driven):
             contact.ours = True
         elif not state.armed:
             contact.ours = False

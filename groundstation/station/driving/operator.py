@@ -142,9 +142,11 @@ class OperatorSession:
         self._input_count += 1
         self._last_input_at = now
 
-    def press(self, push: DriveKeyDown, now: float) -> None:
-        """Handle a drive key. One pressed while the screen blocks driving must not drive later either."""
-        reason = self.blocked_reason(now)
+    def press(self, push: DriveKeyDown, reason: str | None, now: float) -> None:
+        """Handle a drive key. One pressed while the screen blocks driving must not drive later either.
+
+        `reason`: why the screen blocks it, or None.
+        """
         if reason is not None:
             self.sticks.reject(push, now)
             self._ignored.record(reason, now)
@@ -161,9 +163,8 @@ class OperatorSession:
             self._ignored = _Ignored()
         return counts
 
-    def push_pad(self, push: DrivePad, now: float) -> None:
+    def push_pad(self, push: DrivePad, reason: str | None, now: float) -> None:
         """Handle a demand of the gamepad, by the rules of a drive key."""
-        reason = self.blocked_reason(now)
         if reason is not None:
             self.sticks.pad.release()
             self._ignored.record(reason, now)

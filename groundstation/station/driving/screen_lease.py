@@ -164,6 +164,6 @@ class ScreenLease(msgspec.Struct):
         new = screen or Screen(-1, "")
         self.operator.change_screen(new.gate, now, reports_releases=new.reports_releases)
         self.driving.drop_demands()
-        self.driving.update(now)
+        self.driving.update(self.driving.judge(now), now)
         text, severity = (f"the {new.name} drives", Severity.NOTICE) if screen else (NOBODY, Severity.WARNING)
         self.log.add(now, "station", text, severity)

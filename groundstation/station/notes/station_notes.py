@@ -13,8 +13,8 @@ from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, ReleasePad, SetStyle, StepLimits, Stop
 from groundstation.intents.services import ServiceIntent
 from groundstation.intents.session import ReportScreen, SetKeyGate
-from groundstation.station.driving.driving import DrivingController
 from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.driving.permission import Permission
 from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import OPERATOR, STATE
@@ -32,12 +32,11 @@ NoteSink = Callable[[float, RoverStationEvent], None]
 class StationNotes:
     """Follows the keys, the screen, the vehicle, the links and the message log; notes only changes."""
 
-    def __init__(self, operator: OperatorSession, fleet: Fleet, driving: DrivingController) -> None:
+    def __init__(self, operator: OperatorSession, fleet: Fleet) -> None:
         self.sink: NoteSink | None = None
         """Takes the notes with their times; None: nobody records."""
         self._operator = operator
         self._fleet = fleet
-        self._driving = driving
         self._held: tuple[str, ...] = ()
         self._axes = NEUTRAL
         self._vehicle = 0
@@ -47,13 +46,8 @@ class StationNotes:
 
     # ---- what the station calls ----
 
-    def tick(self, now: float) -> None:
-        """Note what has changed with time."""
-        if self.sink is not None:
-            self._follow(None, now)
-
-    def handle(self, intent: Intent, now: float) -> None:
-        """Note an intent that has been carried out."""
+    def follow(self, intent: Intent | None, permission: Permission, now: float) -> None:
+        """Note an intent that has been carried out, None for the time that has passed, and what has changed by it."""
         if self.sink is None:
             return
         if isinstance(intent, ReportScreen):
@@ -62,7 +56,11 @@ class StationNotes:
             self.add(now, Kind.ACTION, f"limits: speed {self._limit(0)}, turn {self._limit(1)}")
         elif isinstance(intent, ServiceIntent):
             self._add(now, Kind.REQUEST, SERVICE_CALLS[type(intent)].what, target=intent.system or self._vehicle)
-        self._follow(intent, now)
+        self._follow_vehicle(now)
+        self._follow_keys(intent, permission, now)
+        if permission.reason != self._blocked:
+            reason = self._blocked = permission.reason
+            self.add(now, Kind.DECISION, "keys drive" if reason is None else f"keys do not drive: {reason}")
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Note which links were opened and closed; noticed once a second."""
@@ -85,14 +83,6 @@ class StationNotes:
 
     # ---- changes ----
 
-    def _follow(self, intent: Intent | None, now: float) -> None:
-        self._follow_vehicle(now)
-        self._follow_keys(intent, now)
-        reason = self._driving.blocked_reason(now)
-        if reason != self._blocked:
-            self._blocked = reason
-            self.add(now, Kind.DECISION, "keys drive" if reason is None else f"keys do not drive: {reason}")
-
     def _follow_vehicle(self, now: float) -> None:
         selected = self._fleet.selected
         system = 0 if selected is None else selected.state.system
@@ -100,21 +90,23 @@ class StationNotes:
             self._vehicle = system
             self.add(now, Kind.VEHICLE_CHOSEN, selected.state.name if selected is not None else "none")
 
-    def _follow_keys(self, intent: Intent | None, now: float) -> None:
+    def _follow_keys(self, intent: Intent | None, permission: Permission, now: float) -> None:
         """Note each key that begins or ends to count, and a latched demand that changes."""
         before, axes_before = self._held, self._axes
         self._held, self._axes = self._operator.sticks.held_keys(now), self._operator.sticks.axes(now)
         down, up = _without(self._held, before), _without(before, self._held)
         for key in up:
-            self._add_key(now, Kind.KEYS_UP, f"{key}: {self._why_up(intent, now)}")
+            self._add_key(now, Kind.KEYS_UP, f"{key}: {_why_up(intent, permission)}")
         for key in down:
             self._add_key(now, Kind.KEYS_DOWN, key)
         if isinstance(intent, DriveKeyDown):
-            self._follow_press(intent, now, noted=bool(down), changed=self._axes != axes_before)
+            self._follow_press(intent, permission, now, noted=bool(down), changed=self._axes != axes_before)
         elif not down and not up and self._axes.neutral and not axes_before.neutral:
-            self._add_key(now, Kind.KEYS_UP, self._why_up(intent, now))
+            self._add_key(now, Kind.KEYS_UP, _why_up(intent, permission))
 
-    def _follow_press(self, push: DriveKeyDown, now: float, *, noted: bool, changed: bool) -> None:
+    def _follow_press(
+        self, push: DriveKeyDown, permission: Permission, now: float, *, noted: bool, changed: bool
+    ) -> None:
         """Note a press that changes a latched demand, and one that does not count although the screen lets it pass.
 
         On other screens and in text fields the same keys are letters, which are no business of the log.
@@ -123,7 +115,7 @@ class StationNotes:
             return
         if changed:
             self._add_key(now, Kind.KEYS_DOWN, push.key)
-        elif self._operator.blocked_reason(now) is None and (reason := self._operator.ignored(now)):
+        elif permission.screen is None and (reason := self._operator.ignored(now)):
             self._decide(now, f"key {push.key} does not count: {reason}")
 
     def _decide(self, now: float, text: str) -> None:
@@ -131,18 +123,6 @@ class StationNotes:
         if text != last or now - at > REPEATED_WITHIN:
             self.add(now, Kind.DECISION, text)
         self._decided = (text, now)
-
-    def _why_up(self, intent: Intent | None, now: float) -> str:
-        match intent:
-            case DriveKeyUp() | ReleasePad():
-                return "released"
-            case Stop() | SetKeyGate():
-                return intent.reason
-            case DriveKeyDown():
-                return f"{intent.key} in its place"
-            case SetStyle():
-                return "another drive style"
-        return self._driving.blocked_reason(now) or "no repeat"
 
     def _kind(self, label: str, text: str) -> Kind | None:
         if label in (OPERATOR, STATE, "station") and "control" in text:
@@ -180,3 +160,16 @@ class StationNotes:
 
 def _without(keys: Sequence[str], others: Sequence[str]) -> list[str]:
     return [key for key in keys if key not in others]
+
+
+def _why_up(intent: Intent | None, permission: Permission) -> str:
+    match intent:
+        case DriveKeyUp() | ReleasePad():
+            return "released"
+        case Stop() | SetKeyGate():
+            return intent.reason
+        case DriveKeyDown():
+            return f"{intent.key} in its place"
+        case SetStyle():
+            return "another drive style"
+    return permission.reason or "no repeat"

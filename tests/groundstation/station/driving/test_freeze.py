@@ -144,7 +144,7 @@ def test_renewing_expired_lease_releases_keys_and_is_told_once() -> None:
     session.renew_lease(100.0)
     session.set_gate(SetKeyGate(open=True), 100.0)
     session.sticks.set_reports_releases()
-    session.press(FORWARD, 100.1)
+    session.press(FORWARD, session.blocked_reason(100.1), 100.1)
     session.renew_lease(104.6)
     assert session.sticks.held_keys(104.6) == ()
     assert session.blocked_reason(104.6) == "screen was frozen"
