@@ -192,7 +192,7 @@ SCHEMES: dict[str, Scheme] = {
 }
 """Scheme -> its link type."""
 
-SCHEME_ALIASES = {"tcp": "tcpout", "udp": "udpin", "udpbcast": "udpout"}
+SCHEME_ALIASES = {"tcp": "tcpout", "udp": "udpin"}
 """MAVProxy's and pymavlink's names -> ours."""
 
 
@@ -242,6 +242,8 @@ def _hint(text: str, scheme: str) -> str:
         return f"did you mean serial:{path}:{baud}? "
     import difflib  # when it is needed: it takes 1 ms of each start
 
+    if scheme == "udpbcast":
+        return "broadcasts are not sent: name one machine with udpout:HOST:PORT, or listen with udpin; "
     near = difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
     if scheme in SCHEME_ALIASES or near:
         return f"did you mean {SCHEME_ALIASES.get(scheme) or near[0]}:{text.partition(':')[2].removeprefix('//')}? "

@@ -16,7 +16,7 @@ from groundstation.export.exporter import Exporter, ExportError, LogInfo, Nothin
 from groundstation.export.log_time import LogTime
 from groundstation.export.sample import Sample
 from groundstation.export.table import FORMATS
-from link.tlog.scan import MAX_RECORD, RAW_STREAM, Gap, LogFrame, is_raw_stream
+from link.tlog.scan import MAX_RECORD, Gap, LogFrame, foreign_log
 from link.tlog.tlog import read_log
 
 
@@ -125,8 +125,8 @@ class _Pass:
     """Goes through the records of a log. Raises ExportError if there is none."""
 
     def __init__(self, path: str, file: BinaryIO, choice: Choice, result: Result) -> None:
-        if is_raw_stream(file.read(MAX_RECORD)):
-            raise ExportError(f"{path}: {RAW_STREAM}")
+        if foreign := foreign_log(file.read(MAX_RECORD)):
+            raise ExportError(f"{path}: {foreign}")
         begin = next((each.stamp for part in read_log(file) for each in part if isinstance(each, LogFrame)), None)
         if begin is None:
             raise ExportError(f"{path}: this is no telemetry log: it has no MAVLink frame")

@@ -25,7 +25,7 @@ from groundstation.replay.time_text import TimeError, parse_time
 from groundstation.station.station import Station
 from groundstation.station_socket.hello import StationFailed
 from link.runtime.event_loop import run_loop
-from link.tlog.scan import RAW_STREAM, is_raw_stream, scan
+from link.tlog.scan import foreign_log, scan
 
 log = logging.getLogger(__name__)
 
@@ -89,8 +89,8 @@ def open_log(path: Path) -> FileSource:
     if not source.size:
         raise ReplayError(f"{path}: is empty")
     block = source.read(0, LOOK)
-    if is_raw_stream(block):
-        raise ReplayError(f"{path}: {RAW_STREAM}")
+    if foreign := foreign_log(block):
+        raise ReplayError(f"{path}: {foreign}")
     if not scan(block, 0, len(block), final=True).frames:
         raise ReplayError(f"{path}: is no telemetry log (.tlog): no MAVLink frame in its first {len(block)} bytes")
     return source

@@ -202,7 +202,7 @@ class VehicleServices:
         """The vehicle's memory of its parameters."""
         from groundstation.vehicles.requests.param_storage import ParamStorage
 
-        return ParamStorage(self.commands)
+        return ParamStorage(self.commands, self.book, lambda: self.autopilot)
 
     @cached_property
     def param_file(self) -> ParamComparing:

@@ -45,6 +45,8 @@ class FilesView(View, frozen=True, kw_only=True):
 
     system: int
     name: str
+    log_ending: str = ".bin"
+    """Ending of the name of a log: .ulg for PX4."""
     logs: tuple[VehicleLog, ...] | None = None
     """None: not listed yet."""
     folders: tuple[FolderRow, ...] = ()

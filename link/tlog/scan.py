@@ -219,6 +219,21 @@ def _is_valid(block: bytes, at: int, base: int) -> bool:
     return frame_at(block, at, base, trust_unknown=True, final=True) is not None
 
 
+FLIGHT_LOGS = {
+    b"ULog\x01\x12\x35": "is a flight log of PX4 (ULog), no telemetry log (.tlog): PlotJuggler opens it",
+    b"\xa3\x95\x80": "is a flight log of ArduPilot (DataFlash), no telemetry log (.tlog): MAVExplorer opens it",
+}
+"""First bytes -> what the file is. https://docs.px4.io/main/en/dev_log/ulog_file_format.html; AP_Logger/LogStructure.h:
+HEAD_BYTE1, HEAD_BYTE2, LOG_FORMAT_MSG."""
+
+
+def foreign_log(start: bytes) -> str:
+    """Return what a file that starts so is, if it is a log of another format; "" for any other."""
+    if is_raw_stream(start):
+        return RAW_STREAM
+    return next((text for head, text in FLIGHT_LOGS.items() if start.startswith(head)), "")
+
+
 def is_raw_stream(start: bytes) -> bool:
     """Return whether a file that starts so has frames without times: .rlog of Mission Planner, .tlog.raw of MAVProxy.
 

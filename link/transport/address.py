@@ -5,8 +5,11 @@ from __future__ import annotations
 import errno
 import socket
 
-from link.endpoint import Endpoint
+from link.endpoint import LISTENING, Endpoint
 from link.transport.transport import LinkError
+
+PRIVILEGED = 1024
+"""Ports below need root (ip(7), ip_unprivileged_port_start)."""
 
 
 def resolve(endpoint: Endpoint, kind: socket.SocketKind) -> tuple[tuple[str, int], socket.AddressFamily]:
@@ -35,6 +38,10 @@ def bind_error_text(endpoint: Endpoint, error: OSError) -> str:
             f"{endpoint.text}: {endpoint.host} is not an address of this machine; "
             "use one of its own, or 0.0.0.0 for all of them"
         )
+    if error.errno == errno.EACCES and endpoint.scheme == "udpout":  # socket(7): without SO_BROADCAST
+        return f"{endpoint.text}: {endpoint.host} is a broadcast address; name one machine, or listen with udpin"
+    if error.errno in (errno.EACCES, errno.EPERM) and endpoint.scheme in LISTENING and endpoint.port < PRIVILEGED:
+        return f"{endpoint.text}: not allowed; ports below {PRIVILEGED} need root, choose a higher one"
     if error.errno in (errno.EACCES, errno.EPERM):
-        return f"{endpoint.text}: not allowed; ports below 1024 need root, choose a higher one"
+        return f"{endpoint.text}: this system does not allow it; a firewall or a sandbox may forbid it"
     return f"{endpoint.text}: {error.strerror}"

@@ -63,6 +63,7 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
         ("14550", "must be one of"),
         ("udpinn:127.0.0.1:14550", "did you mean udpin:"),
         ("bluetooth:1:2", "must be one of"),
+        ("udpbcast:127.255.255.255:14550", "broadcasts are not sent: name one machine with udpout:HOST:PORT"),
         ("127.0.0.1:14550", "did you mean udpin:127.0.0.1:14550? it must be one of"),
         ("0.0.0.0:14550", "did you mean udpin:0.0.0.0:14550?"),
         ("localhost:14550", "did you mean udpin:localhost:14550?"),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import msgspec
 
-from dialects.enums import Sensor
+from dialects.enums import Autopilot, Sensor
 from groundstation.doctor.facts import DoctorFacts, SensorBits, SettingFact
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.links.link_stats import LinkStats
@@ -14,6 +14,7 @@ from groundstation.vehicles.calibration.calibration import CalibrationState
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.health.arming_checks import ArmingChecks
 from groundstation.vehicles.readings.motor_outputs import TestedMotor, motors_of
+from groundstation.vehicles.readings.outputs import PARAMS as FUNCTION_PARAMS
 from groundstation.vehicles.readings.outputs import servo_functions, servo_names
 from groundstation.vehicles.state.doctor_params import DoctorParams
 from groundstation.views.doctor import MotorRow, ParamFix, SensorRow, TerminalFacts
@@ -118,10 +119,12 @@ def _health(bits: SensorBits, sensor: Sensor) -> Health:
 
 
 def find_motors(contact: Contact | None) -> tuple[TestedMotor, ...]:
-    """Return the motors of a vehicle that can be tested."""
+    """Return the motors of a vehicle that can be tested: none before all are known, as their numbers would change."""
     if contact is None:
         return ()
     state = contact.state
+    if state.autopilot == Autopilot.ARDUPILOT and contact.drive.params.is_reading(FUNCTION_PARAMS.values()):
+        return ()
     functions = servo_functions(contact.drive.params.values)
     return motors_of(state.autopilot, state.drive_info, functions, rover_dialect=state.has_rover_dialect)
 

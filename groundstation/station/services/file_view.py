@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.folder_cache import ListedFolder
+from groundstation.vehicles.requests.transfer_requests import log_ending
 from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow, VehicleLog
 
 MAX_ROWS = 2000
@@ -18,6 +19,7 @@ def build_files(contact: Contact, request: FilesRequest) -> FilesView:
     return FilesView(
         system=contact.state.system,
         name=contact.state.name,
+        log_ending=log_ending(contact.state.autopilot),
         logs=None if logs is None else tuple(VehicleLog(each.number, each.begun, each.size) for each in logs),
         folders=tuple(_folders(request.folders, listed)),
     )

@@ -113,7 +113,7 @@ class FilesModel:
 
     def log_name(self, number: int) -> str:
         """Return the name of a log here, as `groundstation log get` gives it."""
-        return f"{self._at}-{number:05}.bin"
+        return f"{self._at}-{number:05}{self.view.log_ending if self.view is not None else '.bin'}"
 
     def is_arriving(self, name: str) -> bool:
         """Return whether a file here, or the beginning of one, is being downloaded."""

@@ -259,7 +259,7 @@ def _texts(
         side = "right" if view.off_line >= 0 else "left"
         texts.append(("off the line", f"{abs(view.off_line):.2f} m {side}"))
     if vehicle is not None and vehicle.speed is not None and math.isfinite(vehicle.speed):
-        texts.append(("speed", f"{vehicle.speed:.2f} m/s"))
+        texts.append(("speed", f"{vehicle.speed:z.2f} m/s"))
     if fence := fence_text(model, model.ground.vehicle, "inside"):
         texts.append(("fence", fence))
     return tuple(texts)

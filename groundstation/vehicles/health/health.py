@@ -9,7 +9,7 @@ from typing import Any
 from dialects import messages as m
 from groundstation.snapshot.drive import HealthLine
 from groundstation.vehicles.health.estimate_health import ekf_line, estimator_line
-from groundstation.vehicles.health.sensor_health import sensor_lines
+from groundstation.vehicles.health.sensor_health import MISSING, sensor_lines
 
 OLD = 10.0
 """s after which a line is shown as old: the slowest of these messages comes every 2 s."""
@@ -111,6 +111,8 @@ class HealthReadings:
                 known = found.get(line.name)
                 if known is None:
                     found[line.name] = _aged(line, now - at)
+                elif line.text == MISSING and known.good:  # PX4 enables what is to come, and a fix proves the receiver
+                    continue
                 elif line.good is False and known.good is not False:
                     found[line.name] = HealthLine(line.name, f"{line.text}, {known.text}", False)
         return tuple(sorted(found.values(), key=lambda line: (line.good is not False, line.good is None)))

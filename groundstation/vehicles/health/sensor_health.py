@@ -17,6 +17,9 @@ NAMES: dict[int, str] = {
 """Bit of MAV_SYS_STATUS_SENSOR -> name, at most 9 characters. Pre-arm has a place of its own on the screen."""
 
 
+MISSING = "missing"
+
+
 def sensor_lines(message: m.SysStatus) -> list[HealthLine]:
     """Return a line for each subsystem that is enabled, or present and not enabled; those to look at come first."""
     present, enabled, healthy = (
@@ -36,5 +39,5 @@ def _state(present: bool, enabled: bool, healthy: bool) -> tuple[str, bool | Non
     if not enabled:
         return "off", None
     if not present:
-        return "missing", False
+        return MISSING, False
     return ("ok", True) if healthy else ("not healthy", False)

@@ -22,6 +22,8 @@ FRESH = 3.0
 """s for which a report counts: three periods of the slowest stream, 1 Hz."""
 
 MAX_ACTUATORS = 4
+DRIVING = 2
+"""Outputs of a rover that are shown from the start. PX4 reports 16, of which further ones are shown once they move."""
 
 Outputs = tuple[float, ...]
 
@@ -34,6 +36,7 @@ class ForeignDrive:
         self._rc: m.RcChannels | None = None
         self._servos: m.ServoOutputRaw | None = None
         self._actuators: m.ActuatorOutputStatus | None = None
+        self._actuator_count = DRIVING
         self._times: dict[str, float] = {}
 
     def handle_rc(self, message: m.RcChannels, now: float) -> None:
@@ -46,6 +49,10 @@ class ForeignDrive:
 
     def handle_actuators(self, message: m.ActuatorOutputStatus, now: float) -> None:
         """Take an ACTUATOR_OUTPUT_STATUS."""
+        if self._actuators is not None:
+            pairs = zip(message.actuator[:MAX_ACTUATORS], self._actuators.actuator, strict=False)
+            moved = [number for number, (value, before) in enumerate(pairs, 1) if value != before]
+            self._actuator_count = max(self._actuator_count, *moved, 0)
         self._actuators, self._times["outputs"] = message, now
 
     def demand(self, now: float) -> tuple[float, float] | None:
@@ -85,7 +92,7 @@ class ForeignDrive:
         return ((channel, name, getattr(self._servos, f"servo{channel}_raw", 0)) for channel, name in names.items())
 
     def _actuator_views(self, message: m.ActuatorOutputStatus) -> tuple[OutputView, ...]:
-        values = message.actuator[: min(MAX_ACTUATORS, message.active)]
+        values = message.actuator[: min(self._actuator_count, message.active)]
         return tuple(
             OutputView(name=f"output {number}", value=value if abs(value) <= 1.0 else None)
             for number, value in enumerate(values, 1)

@@ -56,6 +56,11 @@ class _Transfer(msgspec.Struct):
         return not self.remote.lstrip("/").startswith("@")
 
 
+def log_ending(autopilot: int) -> str:
+    """Return the ending of a vehicle's log: ULog of PX4, else .bin."""
+    return ".ulg" if autopilot == Autopilot.PX4 else ".bin"
+
+
 def log_path(listed: FtpOutcome | None, log: RemoteLog) -> str | None:
     """Return the path of a log of our vehicle in the list of LOG_FOLDER; None if it is not at its place there."""
     files = [entry for entry in listed.entries if entry.size is not None] if listed is not None else []

@@ -36,6 +36,7 @@ class VehicleParams:
         )  # fmt: skip
         self.values: dict[str, float] = {}
         self._unrequested = dict(self._wanted)
+        self._given_up: set[str] = set()
         self._retry_at = math.inf
 
     def want(self, names: Iterable[str]) -> None:
@@ -56,6 +57,10 @@ class VehicleParams:
         before, self.values[param.name] = self.values.get(param.name), param.value
         return before != param.value
 
+    def is_reading(self, names: Iterable[str]) -> bool:
+        """Return whether one of these is neither known nor given up yet."""
+        return any(name not in self.values and name not in self._given_up for name in names)
+
     def tick(self, now: float) -> list[Outgoing]:
         """Return the read requests that are due."""
         if now >= self._retry_at:
@@ -66,4 +71,5 @@ class VehicleParams:
         if self._unrequested:
             self._unrequested, self._retry_at = {}, now + RETRY_PERIOD
         self._params.tick(now)
+        self._given_up |= {outcome.name for outcome in self._params.outcomes() if not outcome.done}
         return self._params.messages_to_send()

@@ -13,7 +13,7 @@ import asyncio
 import msgspec
 
 from dialects import messages as m
-from dialects.enums import Command, Result
+from dialects.enums import Command, Result, result_token
 from groundstation.station.driving.arming import ArmSequence, ArmStep, find_arming_doubt
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.requests.requests import RequestBook, RequestReport, RequestState
@@ -28,6 +28,7 @@ from link.services.command.client import CommandClient, CommandOutcome
 
 ASK_PERIOD = 1.0
 """s between two questions whether the pre-arm checks are passed."""
+FOR_NOW = result_token(Result.TEMPORARILY_REJECTED)
 ANSWER_WITHIN = 0.3
 """s for SYS_STATUS behind the acknowledgement of its request; a vehicle without pre-arm checks never reports them."""
 
@@ -93,9 +94,7 @@ async def arm(session: VerbSession, wait: float, output: Output) -> RequestRepor
     await _wait_until_ready(session, wait, output)
     contact.operator.demanding = contact.other_driver is None
     try:
-        report = await run_job(
-            session, "arm", lambda number, now: ArmJob(number, ArmSequence.start(contact.state, now))
-        )
+        report = await _arm_when_possible(session, session.began + wait)
     except asyncio.CancelledError:
         command = Command.COMPONENT_ARM_DISARM
         contact.client.send(command, 0, target_system=state.system, target_component=state.component, now=session.now)
@@ -105,6 +104,22 @@ async def arm(session: VerbSession, wait: float, output: Output) -> RequestRepor
         contact.operator.demanding = False
     await session.wait_for(lambda: contact.operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
     return report
+
+
+async def _arm_when_possible(session: VerbSession, until: float) -> RequestReport:
+    """Arm; again while a vehicle refuses for the moment.
+
+    PX4 does so until it has heard MANUAL_CONTROL for a while, which begins with this verb.
+    """
+    contact = session.contact
+    while True:
+        report = await run_job(
+            session, "arm", lambda number, now: ArmJob(number, ArmSequence.start(contact.state, now))
+        )
+        for_now = report.state is RequestState.REFUSED and report.detail.startswith(FOR_NOW)
+        if not for_now or session.now + ASK_PERIOD > until:
+            return report
+        await session.wait_for(lambda: False, ASK_PERIOD)
 
 
 async def _wait_until_ready(session: VerbSession, wait: float, output: Output) -> None:

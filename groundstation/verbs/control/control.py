@@ -58,7 +58,7 @@ async def give(session: VerbSession, options: argparse.Namespace, output: Output
     asked = _listen(session, options.system, options.station)
     report = await ask_for_control(session)
     if report.state is not RequestState.ACCEPTED:
-        return finish(session, report, output)
+        return _finish(session, report, output, "")
     output.note(f"waiting until GCS {options.station} asks for {session.vehicle.name}")
     if not await session.wait_for(asked, options.wait):
         await _release(session)

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 from dialects.enums import Autopilot
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
-from groundstation.vehicles.requests.transfer_requests import LOG_FOLDER, log_path
+from groundstation.vehicles.requests.transfer_requests import LOG_FOLDER, log_ending, log_path
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.common.transfer import download_to
@@ -37,7 +37,7 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
     log = _choose(await _logs(session), options.log)
     requests, files = session.services.logs, session.services.files
     path = await _path(session, log)
-    file = options.file or f"{session.vehicle.system}-{log.number:05}.bin"
+    file = options.file or f"{session.vehicle.system}-{log.number:05}{log_ending(session.vehicle.autopilot)}"
 
     async def fetch(have: bytes) -> tuple[RequestReport, bytes]:
         if path is None:

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import argparse
+import asyncio
 import fnmatch
 from collections.abc import Iterable, Sequence
 
 from groundstation.vehicles.requests.param_requests import param_type_name
-from groundstation.vehicles.requests.requests import RequestState
+from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.common.nearest import describe_nearest
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.reports import finish
-from groundstation.verbs.session.session import VerbSession
+from groundstation.verbs.session.session import RequestStart, VerbSession
 from link.services.param.client import Param
 from link.services.param.float32 import value_text
+from link.services.param.values import value_fault
 
 WILDCARDS = "*?["
+ANSWERED_WITHIN = 1.5
+"""s for one parameter: 0.1 s over UDP, up to 1 s over 57600 baud."""
 
 
 async def get(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -35,11 +40,16 @@ async def set_value(session: VerbSession, options: argparse.Namespace, output: O
     """Set one parameter; done when the vehicle reports the new value."""
     await session.need_only_vehicle(options.vehicle)
     name = _name(options.name)
-    report = await session.request(lambda number, now: session.services.params.set(number, name, options.value, now))
+    report = await _access(
+        session, name, lambda number, now: session.services.params.set(number, name, options.value, now)
+    )
     known = session.services.params.client.params.get(name)
     if report.state is RequestState.ACCEPTED and known is not None:
         output.line(f"{name} {value_text(known.value)} ({report.detail})")
-    return finish(session, report, output, param_id=name, param_value=known.value if known else None)
+    code = finish(session, report, output, param_id=name, param_value=known.value if known else None)
+    client = session.services.params.client
+    unfit = known is not None and value_fault(options.value, known.kind, bytewise=client.bytewise) is not None
+    return ExitCode.USAGE if code == ExitCode.REFUSED and unfit else code  # unfit: it was never sent
 
 
 async def store(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -66,13 +76,43 @@ async def reset(session: VerbSession, options: argparse.Namespace, output: Outpu
 async def _get_named(session: VerbSession, names: Sequence[str], output: Output) -> int:
     codes: set[int] = set()
     for name in names:
-        report = await session.request(lambda number, now, n=name: session.services.params.read(number, n, now))  # type: ignore[misc]
+        try:
+            report = await _read(session, name)
+        except VerbError as error:
+            output.error(str(error))
+            codes.add(error.code)
+            continue
         if report.state is RequestState.ACCEPTED:
             _print(session.services.params.client.params[name], output)
         else:
             output.error(f"{session.vehicle.name}: {report.text}")
         codes.add(code_of(report))
     return codes.pop() if len(codes) == 1 else ExitCode.PARTLY
+
+
+async def _read(session: VerbSession, name: str) -> RequestReport:
+    return await _access(session, name, lambda number, now: session.services.params.read(number, name, now))
+
+
+async def _access(session: VerbSession, name: str, start: RequestStart) -> RequestReport:
+    """Read or set a parameter. Raises VerbError for a name that the vehicle does not have.
+
+    ArduPilot does not answer for such a name. Where no answer has come in ANSWERED_WITHIN, the list tells.
+    """
+    client = session.services.params.client
+    asking = asyncio.ensure_future(session.request(start))
+    await asyncio.wait({asking}, timeout=ANSWERED_WITHIN)
+    if asking.done():
+        return await asking
+    listing = asyncio.ensure_future(session.request(session.services.params.fetch))
+    await asyncio.wait({asking, listing}, return_when=asyncio.FIRST_COMPLETED)
+    listed = listing.done() and listing.result().state is RequestState.ACCEPTED
+    if listed and name not in client.params:
+        asking.cancel()
+        hint = describe_nearest(name, client.params)
+        raise VerbError(ExitCode.DIFFERS, f"{session.vehicle.name}: it has no {name}{hint}")
+    listing.cancel()
+    return await asking
 
 
 async def fetch(session: VerbSession, output: Output) -> int:

@@ -58,7 +58,9 @@ def find_message(name: str) -> type[Message]:
     names = {kind.msgname: kind for kind in MESSAGES.values()}
     found = names.get(name.upper())
     if found is None:
-        raise VerbError(ExitCode.USAGE, f"there is no message {name!r}{describe_nearest(name.upper(), names)}")
+        hint = describe_nearest(name.upper(), names) or ";"
+        text = f"there is no message {name!r}{hint} Messages of ArduPilot alone: --dialect ardupilotmega.xml"
+        raise VerbError(ExitCode.USAGE, text)
     return found
 
 

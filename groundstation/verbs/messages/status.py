@@ -186,7 +186,7 @@ def _battery(view: VehicleView) -> str:
 
 
 def _speed(view: VehicleView) -> str:
-    return "--" if view.speed is None else f"{view.speed:.1f} m/s"
+    return "--" if view.speed is None else f"{view.speed:z.1f} m/s"
 
 
 def _position(contact: VehicleContact) -> str:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.enums import Command, MissionType, command_name
+from dialects.enums import Autopilot, Command, MissionType, command_name
 from dialects.mode_tables import HOLD
 from dialects.modes import Mode
 from groundstation.geo import LocalFrame, Place, find_way, is_on_earth
@@ -104,6 +104,9 @@ async def home(session: VerbSession, options: argparse.Namespace, output: Output
     return await _finish(session, report, output, "drives home", lambda: _returns(session) or _holds_at_home(session))
 
 
+SPEED_MODES = "ArduPilot takes a speed in AUTO, RTL and SMART_RTL, and in GUIDED on the way to a place (`goto`)"
+
+
 async def speed(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Set the speed of modes that drive by themselves; done when the vehicle has accepted."""
     await session.need_only_vehicle(options.vehicle)
@@ -112,6 +115,8 @@ async def speed(session: VerbSession, options: argparse.Namespace, output: Outpu
     report = await session.request(
         lambda number, now: commands.send(number, Command.DO_CHANGE_SPEED, params, "speed", now)
     )
+    if report.state is RequestState.REFUSED and session.vehicle.autopilot == Autopilot.ARDUPILOT:
+        output.note(f"{session.vehicle.name} is in {session.vehicle.mode}: {SPEED_MODES}")
     return finish(
         session, report, output, f"goes at {options.speed:g} m/s when it drives by itself", speed=options.speed
     )

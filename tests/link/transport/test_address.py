@@ -9,6 +9,20 @@ import pytest
 
 from link.endpoint import parse_endpoint
 from link.transport.address import bind_error_text
+from link.transport.transport import LinkError
+from link.transport.udp import open_udp
+
+
+def test_an_error_is_no_cause_that_does_not_fit() -> None:
+    refused = OSError(errno.EACCES, os.strerror(errno.EACCES))
+    high = bind_error_text(parse_endpoint("udpin:10.0.0.1:14550"), refused)
+    assert high == "udpin:10.0.0.1:14550: this system does not allow it; a firewall or a sandbox may forbid it"
+
+
+@pytest.mark.parametrize("address", ["127.255.255.255", "255.255.255.255"])
+def test_a_broadcast_address_is_named(address: str) -> None:
+    with pytest.raises(LinkError, match=f"{address} is a broadcast address; name one machine, or listen with udpin"):
+        open_udp(parse_endpoint(f"udpout:{address}:31590"))
 
 
 @pytest.mark.parametrize(

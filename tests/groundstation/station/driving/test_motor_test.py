@@ -12,6 +12,7 @@ from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyG
 from groundstation.intents.setup import StopMotorTest, TurnMotor
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.intents.watch import Watch
+from groundstation.station.doctor.doctor_facts import find_motors
 from groundstation.station.driving.motor_test import LONGEST
 from groundstation.vehicles.readings.motor_outputs import build_stop, build_turn, is_turn, motors_of
 from groundstation.views.doctor import DoctorRequest
@@ -209,12 +210,14 @@ def test_the_vehicles_refusal_is_shown_and_ends_it() -> None:
 # ---- foreign vehicles ----
 
 
-def motor_cockpit() -> Cockpit:
+def motor_cockpit(withheld: str = "", seconds: float = 3.0) -> Cockpit:
     vehicle = FakeArduPilot()
-    vehicle.params |= {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
+    functions = {f"SERVO{channel}_FUNCTION": 0.0 for channel in range(1, 9)}
+    vehicle.params |= {**functions, "SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
     cockpit = Cockpit(vehicle)
+    vehicle.params.withheld |= {withheld}
     cockpit.do(RenewLease(), ReportKeyReleases(), WATCH)
-    cockpit.run(3.0)
+    cockpit.run(seconds)
     return cockpit
 
 
@@ -230,6 +233,27 @@ def test_ardupilot_gets_short_requests_and_a_stop() -> None:
     cockpit.run(1.0)
     stops = cockpit.vehicle.commands(Command.DO_MOTOR_TEST)[len(sent) :]
     assert [(each.param1, each.param3, each.param4) for each in stops] == [(4, 0, 0)] * 3
+
+
+def test_motors_have_numbers_once_all_functions_are_read() -> None:
+    cockpit = motor_cockpit(withheld="SERVO1_FUNCTION", seconds=1.5)
+    contact = cockpit.station.fleet.get(1)
+    assert contact is not None
+    assert "SERVO3_FUNCTION" in contact.drive.params.values
+    assert find_motors(contact) == (), "SERVO3 would be motor 1"
+    cockpit.vehicle.params.withheld.clear()
+    cockpit.run(2.0)
+    assert [motor.name for motor in find_motors(contact)] == ["left wheel", "right wheel"]
+    cockpit.do(TurnMotor(system=1, motor=2, throttle=0.1))
+    cockpit.run(0.5)
+    assert {each.param1 for each in cockpit.vehicle.commands(Command.DO_MOTOR_TEST)} == {4}
+
+
+def test_a_function_that_is_never_answered_is_not_waited_for() -> None:
+    cockpit = motor_cockpit(withheld="SERVO8_FUNCTION")
+    cockpit.run(5.0)
+    contact = cockpit.station.fleet.get(1)
+    assert [motor.name for motor in find_motors(contact)] == ["left wheel", "right wheel"]
 
 
 def test_ardupilot_arms_itself_for_a_test_which_does_not_end_it() -> None:

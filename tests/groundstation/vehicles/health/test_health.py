@@ -41,6 +41,13 @@ def test_present_enabled_and_healthy_are_one_word() -> None:
     assert [line.good for line in lines.values()] == [False, False, True, True, None], "what to look at comes first"
 
 
+def test_a_fix_proves_a_receiver_that_px4_calls_missing() -> None:
+    gps = mav.MAVLink_gps_raw_int_message(0, 3, 0, 0, 0, 80, 65535, 0, 0, 10)
+    assert health(gps, sys_status(0, GPS, 0))["gps"] == HealthLine("gps", "3D, 10 satellites, hdop 0.8", True)
+    lost = mav.MAVLink_gps_raw_int_message(0, 1, 0, 0, 0, 65535, 65535, 0, 0, 255)
+    assert health(lost, sys_status(0, GPS, 0))["gps"].good is False
+
+
 def test_a_sensor_that_is_not_healthy_keeps_its_reading() -> None:
     gps = mav.MAVLink_gps_raw_int_message(0, 3, 0, 0, 0, 80, 65535, 0, 0, 14)
     assert health(gps)["gps"] == HealthLine("gps", "3D, 14 satellites, hdop 0.8", True)

@@ -73,6 +73,15 @@ def test_px4_tells_its_actuators() -> None:
     assert [output.value for output in drive.outputs(10.0)] == [None], "a pulse whose limits are not known"
 
 
+def test_outputs_of_px4_that_never_move_are_not_shown() -> None:
+    drive, still = ForeignDrive(), [900.0] * 29
+    drive.handle_actuators(m.ActuatorOutputStatus(0, 16, [1500.0, 1500.0, 900.0, *still]), 10.0)
+    drive.handle_actuators(m.ActuatorOutputStatus(0, 16, [1000.0, 1677.0, 900.0, *still]), 10.1)
+    assert [output.name for output in drive.outputs(10.1)] == ["output 1", "output 2"]
+    drive.handle_actuators(m.ActuatorOutputStatus(0, 16, [1000.0, 1677.0, 1200.0, *still]), 10.2)
+    assert [output.name for output in drive.outputs(10.2)] == ["output 1", "output 2", "output 3"]
+
+
 def test_parameters_that_name_channels_lead_to_those_of_channels() -> None:
     first = set(drive_params(Autopilot.ARDUPILOT, {}))
     assert {"SERVO1_FUNCTION", "RCMAP_ROLL", "SERVO1_MIN", "SERVO3_TRIM"} <= first

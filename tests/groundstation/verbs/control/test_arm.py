@@ -61,6 +61,16 @@ def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
         assert refused.err.endswith('arm: refused, FAILED (4), "PreArm: Compass not calibrated"\n')
 
 
+def test_px4_that_refuses_for_the_moment_is_asked_again(capsys: Capture) -> None:
+    answers = iter([1, 1, 0])  # TEMPORARILY_REJECTED until it has heard MANUAL_CONTROL for a while
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.answers[ARM] = lambda message: (next(answers, 0), "")
+        armed = arm(capsys, vehicle, "--wait", "60")
+        assert (armed.code, vehicle.armed) == (0, True), armed.err
+        again = [each for each in vehicle.messages if getattr(each, "command", 0) == ARM]
+        assert len(again) == 3
+
+
 def test_an_acknowledged_arming_that_the_heartbeat_does_not_show(capsys: Capture) -> None:
     with foreign_vehicle() as vehicle:
         vehicle.obeys = False

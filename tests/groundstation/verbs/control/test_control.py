@@ -11,7 +11,7 @@ from tests.groundstation.verbs.verb_runs import run_verb
 REQUEST_CONTROL = 32100
 
 
-@pytest.mark.parametrize("words", [("request",), ("release",)])
+@pytest.mark.parametrize("words", [("request",), ("release",), ("give", "255")])
 def test_a_vehicle_that_does_not_manage_control(capsys: pytest.CaptureFixture[str], words: tuple[str, ...]) -> None:
     with foreign_vehicle() as vehicle:
         vehicle.answers = {REQUEST_CONTROL: (3, ""), 512: (3, "")}

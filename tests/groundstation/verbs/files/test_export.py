@@ -62,16 +62,20 @@ def test_json_has_the_files_and_the_losses(folder: Path, capsys: pytest.CaptureF
         ("f.tlog --gpx f.gpx --from soon", "'soon' is no time in a log"),
         ("f.tlog --gpx f.gpx --from 0:02 --to 0:01", "--to is not after --from"),
         ("there --gpx f.gpx", "there: this is no telemetry log"),
+        ("a.ulg --gpx f.gpx", "a.ulg: is a flight log of PX4 (ULog), no telemetry log"),
+        ("a.bin --gpx f.gpx", "a.bin: is a flight log of ArduPilot (DataFlash), no telemetry log"),
     ],
 )
 def test_a_mistake_is_one_line(arguments: str, text: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "there").write_text("text")
+    (folder / "a.ulg").write_bytes(b"ULog\x01\x12\x35\x01" + bytes(500))
+    (folder / "a.bin").write_bytes(b"\xa3\x95\x80\x80" + bytes(500))
     (folder / "full").mkdir()
     (folder / "full" / "a.csv").write_text("")
     run = export(capsys, *arguments.split())
     assert run.code == ExitCode.USAGE
     assert text in run.err
-    assert sorted(each.name for each in folder.iterdir()) == ["f.tlog", "full", "there"]
+    assert sorted(each.name for each in folder.iterdir()) == ["a.bin", "a.ulg", "f.tlog", "full", "there"]
 
 
 @pytest.mark.parametrize(

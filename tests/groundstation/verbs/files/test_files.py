@@ -130,7 +130,7 @@ def test_logs(capsys: Capture, vehicle: ForeignVehicle, here: Path) -> None:
     listed = verb(capsys, vehicle, "log", "list")
     assert listed.out == ("    1  2023-11-14T22:13:21Z       5000\n    2  2023-11-14T22:13:22Z      60000\n")
     assert verb(capsys, vehicle, "log", "get", "latest").code == 0
-    assert (here / "1-00002.bin").read_bytes() == DATA
+    assert (here / f"1-00002{'.ulg' if vehicle.autopilot == PX4 else '.bin'}").read_bytes() == DATA
     (here / "b.bin.part").write_bytes(DATA[:3000])
     assert verb(capsys, vehicle, "log", "get", "1", "b.bin").code == 0
     assert (here / "b.bin").read_bytes() == DATA[:5000]

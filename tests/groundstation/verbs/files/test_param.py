@@ -84,16 +84,30 @@ def test_what_the_type_cannot_hold_is_not_sent(
     capsys: Capture, vehicle: ForeignVehicle, value: str, words: str
 ) -> None:
     refused = param(capsys, vehicle, "set", "FS_ACTION", value)
-    assert refused.code == ExitCode.REFUSED
+    assert refused.code == ExitCode.USAGE
     assert words in refused.err
     assert vehicle.of("PARAM_SET") == []
 
 
+@pytest.mark.parametrize("words", [("get", "FS_ACTON"), ("set", "FS_ACTON", "1")])
+def test_a_name_that_the_list_lacks_is_named_soon(
+    capsys: Capture, vehicle: ForeignVehicle, words: tuple[str, ...]
+) -> None:
+    unknown = param(capsys, vehicle, *words)
+    assert (unknown.code, unknown.out) == (ExitCode.DIFFERS, "")
+    assert unknown.err.endswith("it has no FS_ACTON: did you mean FS_ACTION?\n")
+    assert len(vehicle.of("PARAM_REQUEST_READ")) < 8
+    assert vehicle.of("PARAM_SET") == []
+
+
 def test_an_unanswered_name_ends_with_the_number_of_tries(capsys: Capture, vehicle: ForeignVehicle) -> None:
-    unknown = param(capsys, vehicle, "get", "NO_SUCH")
-    assert (unknown.code, unknown.out) == (ExitCode.NO_ANSWER, "")
-    assert unknown.err.endswith("read NO_SUCH: no answer, after 8 tries\n")
-    assert len(vehicle.of("PARAM_REQUEST_READ")) == 8
+    vehicle.params.withheld.add("FS_ACTION")
+    unanswered = param(capsys, vehicle, "get", "FS_ACTION")
+    if vehicle.autopilot == PX4:
+        assert (unanswered.code, unanswered.out) == (ExitCode.NO_ANSWER, "")
+        assert unanswered.err.splitlines()[-1].endswith("read FS_ACTION: no answer, after 8 tries")
+    else:  # the file of parameters has it
+        assert "FS_ACTION" in unanswered.err + unanswered.out
 
 
 def test_save_diff_and_load(capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path) -> None:
@@ -211,7 +225,7 @@ def test_a_whole_number_that_float32_changes_is_not_sent(capsys: Capture) -> Non
     with foreign_vehicle(ARDUPILOT) as vehicle:
         vehicle.params.replace({"OWN_OPTIONS": Param(1, 6), "OWN_FLOAT": Param(1.0)})
         refused = param(capsys, vehicle, "set", "OWN_OPTIONS", "1073741825")
-        assert refused.code == ExitCode.REFUSED
+        assert refused.code == ExitCode.USAGE
         assert "float32 carries 1073741824 or 1073741952, not 1073741825" in refused.err
         below = param(capsys, vehicle, "set", "OWN_OPTIONS", "-16777217")
         assert "float32 carries -16777218 or -16777216, not -16777217" in below.err
@@ -347,8 +361,9 @@ def test_files_that_cannot_be_read_or_written(capsys: Capture, vehicle: ForeignV
 
 
 def test_store_and_reset_are_commands_and_reset_wants_yes(capsys: Capture, vehicle: ForeignVehicle) -> None:
-    stored = param(capsys, vehicle, "store")
-    assert (stored.code, stored.err) == (0, f"groundstation: {_name(vehicle)} has stored its parameters\n")
+    stored, each = param(capsys, vehicle, "store"), ": ArduPilot stores each parameter when it is set"
+    why = each if vehicle.autopilot == ARDUPILOT else ""
+    assert (stored.code, stored.err) == (0, f"groundstation: {_name(vehicle)} has stored its parameters{why}\n")
     refused = param(capsys, vehicle, "reset")
     assert refused.code == ExitCode.USAGE
     assert refused.err.endswith("this resets ALL parameters of the vehicle; --yes does it\n")
@@ -357,7 +372,8 @@ def test_store_and_reset_are_commands_and_reset_wants_yes(capsys: Capture, vehic
     assert refused.code == ExitCode.REFUSED
     assert 'reset the parameters: refused, FAILED, "Disarm first"' in refused.err
     sent = [(each.param1, each.param2) for each in vehicle.of("COMMAND_LONG") if each.command == 245]
-    assert sent == [(1.0, -1.0), (2.0, -1.0)], "plans are left alone"
+    store = [] if vehicle.autopilot == ARDUPILOT else [(1.0, -1.0)]
+    assert sent == [*store, (2.0, -1.0)], "plans are left alone"
 
 
 def _name(vehicle: ForeignVehicle) -> str:

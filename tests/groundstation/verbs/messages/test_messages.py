@@ -163,6 +163,7 @@ MISTAKES = [
     ("request NOTHING", "there is no message 'NOTHING'"),
     ("rate ATTITUDE nan", "'nan' is not a number"),
     ("rate ATTITUDE 1000", "is not a rate from 0.001 to 200 Hz"),
+    ("request WIND", "Messages of ArduPilot alone: --dialect ardupilotmega.xml"),
     ("ping --count 0", "'0' is not a number from 1"),
     ("send", "required"),
     ("send STATUSTEXT severty=1", "did you mean severity?"),

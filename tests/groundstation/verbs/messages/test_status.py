@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 from dialects import messages as m
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.messages.status import _failsafes, _link_cells
+from groundstation.verbs.messages.status import _failsafes, _link_cells, _speed
 from groundstation.verbs.messages.status_changes import ChangePrinter
 from groundstation.verbs.session.contact import VehicleContact
 from link.core import LinkReport, SourceCount
@@ -97,6 +97,16 @@ def test_status_names_a_breach_and_a_failsafe_without_a_name(capsys: Capture) ->
     contact = VehicleContact((254, 190), 1, (1, 1), 0.0)
     contact.receive(received(heartbeat(status=5)), 1.0)
     assert _failsafes(contact.state.build_view(1.0)) == "not named; HEARTBEAT says CRITICAL"
+
+
+def test_a_speed_of_nothing_has_no_sign() -> None:
+    contact = VehicleContact((254, 190), 1, (1, 1), 0.0)
+    contact.receive(received(m.Attitude(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), 1.0)
+    contact.receive(received(m.LocalPositionNed(0, 0.0, 0.0, 0.0, -0.01, 0.0, 0.0)), 1.0)
+    view = contact.state.build_view(1.0)
+    assert view.speed is not None
+    assert view.speed < 0
+    assert _speed(view) == "0.0 m/s"
 
 
 def test_plain_prints_changes_in_place_of_a_screen(capsys: Capture) -> None:
