@@ -15,7 +15,7 @@ import msgspec
 from groundstation.host.screens import ScreenSet
 from groundstation.host.snapshot_pace import SLOT, SnapshotPace
 from groundstation.snapshot import Snapshot
-from groundstation.station.process.crash_snapshot import crash_snapshot
+from groundstation.station.process.crash_neutral import crash_snapshot
 from groundstation.station.process.lasting_alerts import LastingAlerts
 from groundstation.station.station import Station
 from link.runtime.multiples import next_multiple

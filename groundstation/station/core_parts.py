@@ -16,8 +16,7 @@ from groundstation.station.links.link_monitor import LinkMonitor
 from groundstation.station.notes.operator_log import OperatorLog
 from groundstation.station.relay.refusals import Refusals
 from groundstation.station.relay.verb_relay import VerbRelay
-from groundstation.station.services.service_desk import ServiceDesk
-from groundstation.station.services.transfer_hold import TransferHold
+from groundstation.station.services.service_desk import ServiceDesk, TransferHold
 from groundstation.station.services.vehicle_queries import VehicleQueries
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import MessageLog

@@ -9,7 +9,6 @@ from dialects.enums import Severity
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import REST_PERIOD
 from groundstation.intents.union import AnyIntent
-from groundstation.station.attention import Attention
 from groundstation.station.core_listener import CoreListener
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import DrivenVehicle
@@ -47,7 +46,6 @@ class OperatorCore:
         self.surroundings, self.params = parts.links.surroundings, parts.links.params
         self.intents = IntentHandler(parts)
         self._listener = listener or CoreListener()
-        self._attention = Attention(parts.fleet, parts.relay, self._listener)
         self._commander, self._handover, self._queries = parts.commander, parts.handover, parts.queries
         self._links, self._timesync, self._heartbeat = parts.links, parts.links.timesync, parts.links.heartbeat
         self._refusals, self._operator_log = parts.refusals, parts.operator_log
@@ -132,8 +130,22 @@ class OperatorCore:
 
     @property
     def looked_at(self) -> frozenset[int] | None:
-        """System ids of the vehicles whose whole telemetry is needed; None: all."""
-        return self._attention.systems
+        """System ids of the vehicles whose whole telemetry is needed: shown, driven, or asked for something.
+
+        A link of a fleet asks the others for less (link/fleet/brevity.py): a table of a hundred vehicles needs neither
+        their attitude nor ten positions a second. None: all, while a verb is connected, which gets what all send.
+        """
+        if self.relay.busy:
+            return None
+        return self._listener.systems.union(each.state.system for each in self.fleet if self._is_needed(each))
+
+    def _is_needed(self, contact: Contact) -> bool:
+        return (
+            contact is self.fleet.selected
+            or contact.ours
+            or not contact.demand_stream.finished
+            or (contact.services is not None and bool(contact.services.book.running))
+        )
 
     @property
     def rest_period(self) -> float | None:

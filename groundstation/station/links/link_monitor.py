@@ -4,17 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from dialects import messages as m
 from dialects.enums import Severity
-from groundstation.station.links.ground_stations import GroundStations
-from groundstation.station.links.heard_params import HeardParams
+from groundstation.station.links.ground_stations import GroundStations, IdConflict
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
-from groundstation.station.links.id_conflict import IdConflict
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.links.surroundings import Surroundings
 from groundstation.vehicles.state.message_log import MessageLog
 from link.core import LinkReport, Received
 from link.protocol.link_events import LinkEvents
+from link.services.param.values import name_from_wire
 from link.services.timesync import TimesyncClient
+
+MAX_NAMES = 20_000
+"""Of all vehicles; ArduPilot has 1200, PX4 1000."""
+
+
+class HeardParams:
+    """Collects the names in PARAM_VALUE."""
+
+    def __init__(self) -> None:
+        self.names: set[str] = set()
+
+    def receive(self, received: Received) -> None:
+        """Take a message; only PARAM_VALUE counts."""
+        if isinstance(received.message, m.ParamValue) and len(self.names) < MAX_NAMES:
+            self.names.add(name_from_wire(received.message._param_id_raw))
 
 
 class LinkMonitor:

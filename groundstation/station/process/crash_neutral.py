@@ -8,12 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import msgspec
+
 from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.enums import Severity
 from dialects.kinds import find_kind
 from dialects.messages import Heartbeat, ManualControl, Message
+from groundstation.snapshot import LogLine, OperatorView, Snapshot
 from groundstation.station.driving.driven import DEMAND_MEMORY
 from groundstation.station.station import Station
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
+from groundstation.vehicles.state.message_log import MAX_LENGTH
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from link.core import LinkReport, Outgoing, Received
 
@@ -119,3 +124,14 @@ class CrashNeutral:
 
     def _neutral(self, system: int) -> ManualControl:
         return build_manual_control(NEUTRAL, system, axis_map(self._autopilots[system]))
+
+
+def crash_snapshot(last: Snapshot, what: str, wall: float) -> Snapshot:
+    """Return the last snapshot with the reason why no other follows."""
+    line = LogLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
+    stopped = OperatorView(
+        style=last.operator.style,
+        reports_releases=last.operator.reports_releases,
+        gate_reason="station crashed",
+    )
+    return msgspec.structs.replace(last, number=last.number + 1, operator=stopped, texts=(*last.texts, line))

@@ -12,18 +12,42 @@ from dialects.enums import Command, Severity
 from groundstation.intents.services import ServiceIntent
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
-from groundstation.station.services.file_view import build_files
+from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult
+from groundstation.vehicles.requests.folder_cache import ListedFolder
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
+from groundstation.vehicles.requests.transfer_requests import log_ending
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.views.base import ViewRequest
-from groundstation.views.files import FilesRequest, FilesView
+from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow, VehicleLog
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from link.core import Outgoing, Received
+
+SLOW_LINE = 20_000.0
+"""Bytes/s below which transfers wait while the operator drives: a telemetry radio has 5.8 k, 115200 baud 11.5 k."""
+
+
+class TransferHold:
+    """Decides whether parameters, plans, files and logs wait: on a slow line they would delay a driver's demands."""
+
+    def __init__(self, fleet: Fleet, operator: OperatorSession, links: LinkStats) -> None:
+        self._fleet = fleet
+        self._operator = operator
+        self._links = links
+
+    def is_held(self, contact: Contact, now: float) -> bool:
+        """Return whether the transfers of a vehicle wait: the operator drives over the same, slow line."""
+        selected = self._fleet.selected
+        if selected is None or selected.link != contact.link or self._operator.demand(now).neutral:
+            return False
+        capacity = self._links.capacity(contact.link)
+        return capacity is not None and capacity < SLOW_LINE
+
 
 KEPT_REPORTS = 16
 """Requests of one service whose end a screen can still read."""
@@ -233,3 +257,32 @@ def _waits(services: VehicleServices, number: int) -> str:
     if services.transfers.waits(number):
         return "waits for the vehicle to be back"
     return "waits: you drive, and the line is slow" if services.held else ""
+
+
+MAX_ROWS = 2000
+"""Entries of all folders of one view, which is a packet of at most 256 kB."""
+
+
+def build_files(contact: Contact, request: FilesRequest) -> FilesView:
+    """Return what was listed so far, of one vehicle."""
+    services = contact.services
+    logs = services.logs.logs if services else None
+    listed = services.folders.folders if services else {}
+    return FilesView(
+        system=contact.state.system,
+        name=contact.state.name,
+        log_ending=log_ending(contact.state.autopilot),
+        logs=None if logs is None else tuple(VehicleLog(each.number, each.begun, each.size) for each in logs),
+        folders=tuple(_folders(request.folders, listed)),
+    )
+
+
+def _folders(paths: tuple[str, ...], listed: dict[str, ListedFolder]) -> list[FolderRow]:
+    rows, room = [], MAX_ROWS
+    for path in paths:
+        folder = listed.get(path)
+        if folder is not None:
+            entries = tuple(FileRow(entry.name, entry.size) for entry in folder.entries[:room])
+            rows.append(FolderRow(path, entries, folder.problem))
+            room -= len(entries)
+    return rows

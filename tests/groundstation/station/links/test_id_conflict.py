@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects.enums import Autopilot, VehicleType
 from dialects.messages import Heartbeat
-from groundstation.station.links.id_conflict import CONFLICT_TIMEOUT
+from groundstation.station.links.ground_stations import CONFLICT_TIMEOUT
 from groundstation.station.station import Station
 from link.core import Peer, Received
 

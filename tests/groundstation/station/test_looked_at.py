@@ -45,6 +45,9 @@ def test_what_a_screen_shows_or_draws_of_another_vehicle() -> None:
     flotilla.station.handle_intent(Watch(()), flotilla.now)
     other.watch((MessageRequest(2, 1, False, "SYS_STATUS"),))
     flotilla.run(5.0)
+    assert flotilla.station.looked_at == frozenset((1, 2, 3)), "what was drawn last is recorded on"
+    flotilla.station.handle_intent(Watch((SeriesRequest(fields=()),)), flotilla.now)
+    flotilla.run(0.5)
     assert flotilla.station.looked_at == frozenset((1, 2))
 
 
