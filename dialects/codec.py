@@ -84,6 +84,13 @@ def frame(message_id: int, payload: bytes, sequence: int, system: int, component
     return _MAGIC + body + _pack_crc(mcrf4xx(body + extra))
 
 
+def frame_v1(message_id: int, payload: bytes, sequence: int, system: int, component: int) -> bytes:
+    """Return a MAVLink 1 frame, which has no extensions and no id above 255."""
+    size = BASE_SIZE[message_id]
+    body = bytes([size, sequence, system, component, message_id]) + payload[:size].ljust(size, b"\0")
+    return bytes([MAGIC_V1]) + body + _pack_crc(mcrf4xx(body + CRC_EXTRA[message_id]))
+
+
 def frame_to_sign(message_id: int, payload: bytes, sequence: int, system: int, component: int) -> bytes:
     """Return a MAVLink 2 frame with the flag for signed frames; link id, timestamp and signature must follow it."""
     return frame(message_id, payload, sequence, system, component, INCOMPAT_SIGNED)

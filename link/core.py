@@ -136,6 +136,8 @@ class LinkReport(msgspec.Struct, frozen=True):
     """The same."""
     own_id: bool = False
     """Another program sends with our system and component id."""
+    version_1: frozenset[int] = frozenset()
+    """System ids that have sent MAVLink 1 only, and are answered in it."""
     down: str | None = None
     """Why the link is down, or None."""
     capacity: float | None = None

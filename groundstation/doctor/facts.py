@@ -49,6 +49,8 @@ class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     terminal: TerminalFacts | None = None
     """None: there is no screen."""
     firmware: str = ""
+    version_1: bool = False
+    """The vehicle has sent MAVLink 1 only."""
     rover_dialect: bool = False
     """The vehicle sends the private messages of our dialect."""
     unknown_share: float | None = None

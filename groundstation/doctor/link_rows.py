@@ -122,6 +122,9 @@ def dialect(facts: DoctorFacts) -> ChainFinding:
         return warn(
             f"other definition of {names}: they are dropped", "use the same dialect at both ends", "app.messages"
         )
+    if facts.version_1:
+        advice = "set it to MAVLink 2 if it knows that (ArduPilot: SERIALn_PROTOCOL 2)"
+        return warn("MAVLink 1: it is answered in that version, and cannot sign", advice)
     share = facts.unknown_share or 0.0
     extra = f"; {share:.0%} of the frames are messages unknown here" if share >= 0.005 else ""
     return ok(("rover.xml, with proofs of each demand" if facts.rover_dialect else "common messages") + extra)

@@ -87,7 +87,8 @@ class WatchdogFeed:
                 if outlet is not None and outlet.descriptor >= 0 and len(routes) < MAX_OUTLETS:
                     sequence = self._sequences.get((index, address), 0)
                     way = link.channel.signing_way(address, now)
-                    routes.append(DemandRoute(number, outlet.destination, sequence, way))
+                    old = link.channel.speaks_version_1(address, system)
+                    routes.append(DemandRoute(number, outlet.destination, sequence, way, old))
                     opened.append((outlet.descriptor, outlet.opened))
         keeps = opened == self._handed_over
         data = encode_report(

@@ -44,6 +44,7 @@ class NeutralFrames:
         self._ids = ids
         self._sequence = route.sequence + SEQUENCE_LEAD
         self._clock = 0
+        self._frame = codec.frame_v1 if route.version_1 and vehicle.session is None else codec.frame
         self._signer = None if signing is None or route.signing is None else _Signer(signing, route.signing)
 
     def next_frame(self, now: float) -> bytes:
@@ -52,7 +53,7 @@ class NeutralFrames:
         self._sequence += 1
         number, payload, sequence = type(message).id, codec.encode_payload(message), self._sequence & 0xFF
         frame = None if self._signer is None else self._signer.sign(number, payload, sequence, self._ids, now)
-        return frame or codec.frame(number, payload, sequence, *self._ids)
+        return frame or self._frame(number, payload, sequence, *self._ids)
 
     def _build(self, now: float) -> Message:
         vehicle = self._vehicle

@@ -28,6 +28,8 @@ class DemandRoute(msgspec.Struct, frozen=True):
     """Packet sequence of the newest frame that was sent there."""
     signing: SigningWay | None = None
     """How frames are signed there; None: they are not."""
+    version_1: bool = False
+    """The vehicle takes MAVLink 1 only."""
 
 
 class StationReport(msgspec.Struct, frozen=True, kw_only=True):

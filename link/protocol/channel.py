@@ -12,14 +12,23 @@ import math
 from collections.abc import Hashable, Iterator, Sequence
 
 from dialects import codec
-from dialects.messages import FileTransferProtocol, Heartbeat, Message, Ping, RadioStatus, Timesync
+from dialects.messages import (
+    FileTransferProtocol,
+    Heartbeat,
+    ManualControl,
+    Message,
+    Ping,
+    RadioStatus,
+    Timesync,
+    target_system,
+)
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
 from link.core import LinkReport, Outgoing, Peer, Received
 from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, find_mismatches, noise_hint, sum_counts
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
-from link.protocol.peer import PeerState, count_sources, find_signing
+from link.protocol.peer import ONE, TWO, PeerState, count_sources, find_signing, find_version_1
 from link.protocol.peer_table import MAX_PEERS, PeerTable
 from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
@@ -218,7 +227,7 @@ class Channel:
                 self._own_id |= sender == self.ids and raw not in self._sent
                 continue
             state.last_seen, state.silent = now, False
-            state.newest[system] = raw
+            state.note_frame(system, raw)
             self._prove(state, frame, verified=judged is not None and judged[index].verified is not None)
             digest = hash(raw)
             source = state.sources.get(sender)
@@ -312,8 +321,9 @@ class Channel:
         for state in self._peers.recipients(outgoing):
             if not self.may_send(number, len(payload) + FRAME, state.peer.address):
                 continue
-            sequence = state.sequence
-            yield self._build(number, payload, state, now), state.peer.address, sequence
+            for version in TWO if state.is_modern else state.versions(number, target_system(message)):
+                sequence = state.sequence
+                yield self._build(number, payload, state, now, version), state.peer.address, sequence
 
     def may_send(self, number: int, size: int, address: Hashable) -> bool:
         """Return whether a message may go to an address now, and count it: see `bounded`."""
@@ -336,14 +346,22 @@ class Channel:
             data = self._build(type(message).id, codec.encode_payload(message), state, now)
             yield data, state.peer.address
 
-    def _build(self, number: int, payload: bytes, state: PeerState, now: float) -> bytes:
-        if self.guard is None:
+    def _build(self, number: int, payload: bytes, state: PeerState, now: float, version: int = 2) -> bytes:
+        if version == 1 and not (self.guard is not None and self.guard.signs_to(state)):
+            data = codec.frame_v1(number, payload, state.sequence, *self.ids)
+        elif self.guard is None:
             data = codec.frame(number, payload, state.sequence, *self.ids)
         else:
             data = self.guard.build_frame(number, payload, self.ids, state, now)
         state.sequence = (state.sequence + 1) & 0xFF
         self._sent.add(data)
         return data
+
+    def speaks_version_1(self, address: Hashable, system: int) -> bool:
+        """Return whether frames to a system at an address go as MAVLink 1."""
+        state = self._peers.get(address)
+        signs = self.guard is not None and state is not None and self.guard.signs_to(state)
+        return state is not None and not signs and state.versions(ManualControl.id, system) == ONE
 
     def signing_way(self, address: Hashable, now: float) -> SigningWay | None:
         """Return how frames to an address are signed; None if they are not."""
@@ -384,6 +402,7 @@ class Channel:
             refused=self.guard.counts() if self.guard else None,
             guard=self.guard.report(self._peers, now) if self.guard else None,
             own_id=self._own_id,
+            version_1=find_version_1(self._peers),
             down=down or hint,
             capacity=self._capacity,
             headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,

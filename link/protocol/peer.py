@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from dialects.codec import MAGIC_V2
+from dialects.messages import Heartbeat
 from link.core import Peer, SourceCount
 from link.protocol.address_budget import AddressBudget
 from link.protocol.frame import Frame
@@ -17,6 +19,11 @@ from link.signing.signature import is_signed
 
 if TYPE_CHECKING:  # a verb through a station needs no keys
     from link.signing.keys import SigningKey
+
+MAX_ID_V1 = 255
+"""Largest message id of a MAVLink 1 frame."""
+ONE, TWO, BOTH = (1,), (2,), (2, 1)
+"""Versions of the frames of one message."""
 
 MAX_SOURCES = 64
 """Systems and components tracked behind one peer."""
@@ -53,6 +60,8 @@ class PeerState(msgspec.Struct):
     systems: set[int] = msgspec.field(default_factory=set)
     """Systems whose HEARTBEAT came from this address."""
     sources: dict[tuple[int, int], SequenceTracker] = msgspec.field(default_factory=dict)
+    modern: set[int] = msgspec.field(default_factory=set)
+    """Systems of which a MAVLink 2 frame came from this address."""
     newest: dict[int, bytes] = msgspec.field(default_factory=dict)
     """Newest frame of each system, as received."""
     buckets: dict[str, TokenBucket] = msgspec.field(default_factory=_buckets)
@@ -75,6 +84,29 @@ class PeerState(msgspec.Struct):
     def is_expected(self) -> bool:
         """Whether the peer is sent to before its first frame."""
         return self.fixed or self.connected
+
+    def note_frame(self, system: int, raw: bytes) -> None:
+        """Keep the newest frame of a system, and whether it knows MAVLink 2."""
+        self.newest[system] = raw
+        if raw[0] == MAGIC_V2:
+            self.modern.add(system)
+
+    @property
+    def is_modern(self) -> bool:
+        """Whether all systems behind this address have sent MAVLink 2."""
+        return len(self.modern) == len(self.newest)
+
+    def versions(self, number: int, target: int) -> tuple[int, ...]:
+        """Return the MAVLink versions in which a message for system `target` (0: all) goes to this peer.
+
+        A system that has sent version 1 only is answered in it (https://mavlink.io/en/guide/mavlink_version.html). Its
+        HEARTBEAT goes in both: ArduPilot changes to version 2 with the first frame of that version.
+        """
+        if self.is_modern or number > MAX_ID_V1 or target in self.modern:
+            return TWO
+        if target:
+            return ONE if target in self.newest else TWO
+        return BOTH if self.modern or number == Heartbeat.id else ONE
 
     def accepts_target(self, target: int) -> bool:
         """Return whether a message for system `target` (0: all) goes to this peer."""
@@ -99,6 +131,13 @@ def count_sources(states: Iterable[PeerState]) -> dict[tuple[int, int], SourceCo
             before = totals.get(key, SourceCount(0, 0))
             totals[key] = SourceCount(before.received + source.received, before.lost + source.lost)
     return totals
+
+
+def find_version_1(states: Iterable[PeerState]) -> frozenset[int]:
+    """Return the systems that have sent MAVLink 1 only, wherever they were heard."""
+    states = list(states)
+    heard = {system for state in states for system in state.newest}
+    return frozenset(heard.difference(*(state.modern for state in states)))
 
 
 def find_signing(states: Iterable[PeerState]) -> frozenset[int]:

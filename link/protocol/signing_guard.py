@@ -211,6 +211,10 @@ class SigningGuard:
         frame = codec.frame_to_sign(number, payload, state.sequence, *ids)
         return self._signer.sign(frame, by, self._first_id + lane_of(number), self._lead(state, key, now), now)
 
+    def signs_to(self, state: PeerState) -> bool:
+        """Return whether frames to a peer are signed: MAVLink 1 has no signatures."""
+        return self._signing.hash_of(self._key_for(state)) is not None
+
     def _key_for(self, state: PeerState) -> SigningKey | None:
         return state.key if self._signing.hash_of(state.key) else self._own_key
 

@@ -80,6 +80,7 @@ def collect(
         rover_dialect=bool(state and state.has_rover_dialect),
         unknown_share=sum(each.unknown for each in newest) / frames if frames else None,
         mismatched=tuple(sorted({name for each in newest for name in each.dialect_mismatch})),
+        version_1=state is not None and any(state.system in each.version_1 for each in newest),
         own_id=any(each.own_id for each in newest),
         clash=bool(state and state.control.clash),
         signs=bool(contact and contact.signs),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -272,8 +272,12 @@ def _link_state(report: LinkReport) -> str:
     if report.dialect_mismatch:
         return f"another dialect: {', '.join(report.dialect_mismatch)}"
     if report.frames:
-        return "MAVLink"
+        return f"MAVLink 1: {_systems(report.version_1)}" if report.version_1 else "MAVLink"
     return "bytes, but no MAVLink" if report.bytes_received else "nothing heard"
+
+
+def _systems(systems: Collection[int]) -> str:
+    return f"system{'s' if len(systems) > 1 else ''} {', '.join(map(str, sorted(systems)))}"
 
 
 def _link_fields(report: LinkReport) -> dict[str, Any]:
@@ -281,5 +285,5 @@ def _link_fields(report: LinkReport) -> dict[str, Any]:
         "link": report.name, "peers": report.peers, "frames": report.frames, "bytes_received": report.bytes_received,
         "bytes_sent": report.bytes_sent, "lost": lost_frames(report),
         "crc_errors": report.crc_errors, "unknown": report.unknown, "down": report.down,
-        "dialect_mismatch": list(report.dialect_mismatch),
+        "version_1": sorted(report.version_1), "dialect_mismatch": list(report.dialect_mismatch),
     }  # fmt: skip

@@ -187,6 +187,7 @@ CASES: list[tuple[str, DoctorFacts, Health, str]] = [
     ("failsafes", facts(), OK, "none acts"),
     ("failsafes", facts(vehicle(failsafes=("gcs loss", "estop"))), FAULT, "active: gcs loss"),
     ("failsafes", facts(vehicle(status=5)), FAULT, "reports a failsafe"),
+    ("dialect", facts(version_1=True), WARNING, "MAVLink 1: it is answered in that version"),
     ("fence", facts(), UNKNOWN, "none is loaded"),
     ("fence", facts(sensors=bits(FENCE)), OK, "inside"),
     ("fence", facts(sensors=bits(FENCE, enabled=False)), UNKNOWN, "loaded, but off"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import msgspec
+from pymavlink.dialects.v10 import ardupilotmega as mavlink
 
 from dialects import codec
 from dialects.enums import Autopilot, OperatorFlag
@@ -86,3 +87,11 @@ def test_a_key_that_has_gone_signs_no_more() -> None:
 
 def test_a_watchdog_without_keys_signs_nothing() -> None:
     assert not is_signed(NeutralFrames(ROVER, (252, 191), DemandRoute(0, None, 0, WAY)).next_frame(0.0))
+
+
+def test_a_vehicle_of_mavlink_1_gets_neutral_in_it() -> None:
+    rover = msgspec.structs.replace(ROVER, session=None)
+    frame = NeutralFrames(rover, (252, 191), DemandRoute(0, None, 0, version_1=True)).next_frame(0.0)
+    assert frame[0] == 0xFE
+    [found] = mavlink.MAVLink(None).parse_buffer(frame) or []
+    assert (found.get_type(), found.get_srcSystem()) == ("MANUAL_CONTROL", 252)

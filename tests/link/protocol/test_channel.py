@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastcrc.crc16 import mcrf4xx
 from hypothesis import given
 from hypothesis import strategies as st
+from pymavlink.dialects.v10 import ardupilotmega as mavlink
 
 from dialects.messages import (
     Attitude,
@@ -16,6 +17,7 @@ from dialects.messages import (
     Message,
     Ping,
     RoverStationEvent,
+    SetupSigning,
     StatusText,
 )
 from link.core import Outgoing, Peer, Received
@@ -25,7 +27,7 @@ from link.protocol.log_tap import LogTap
 from link.protocol.peer import MAX_SOURCES
 from link.protocol.peer_table import MAX_PEERS, PEER_SILENCE, RESERVED_PLACES
 from link.protocol.sent_frames import SentFrames
-from tests.link.frames import demand, frame, heartbeat
+from tests.link.frames import demand, frame, heartbeat, version_1
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
 ARM = CommandLong(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
@@ -517,3 +519,55 @@ def test_addresses_of_a_fleet_are_names() -> None:
         assert [each.peer.name for each in channel.receive(heartbeat(0, 1, 1), address, 0.0)] == [name]
     channel = Channel("tcpin:x", 0, system=255, component=190, stream=True)
     assert [each.peer.name for each in channel.receive(heartbeat(0, 1, 1), "rover1", 0.0)] == [""]
+
+
+# ---- MAVLink 1 ----
+
+MAGIC_V1, MAGIC_V2 = 0xFE, 0xFD
+
+
+def magics(channel: Channel, message: Message) -> list[int]:
+    return [data[0] for data, _, _ in channel.send(Outgoing(message))]
+
+
+def station_that_heard(*frames: bytes) -> Channel:
+    channel = Channel("udpin:127.0.0.1:14550", 0, system=255, component=190)
+    for each in frames:
+        channel.receive(each, HERE, 0.0)
+    return channel
+
+
+def test_what_speaks_version_1_is_answered_in_it() -> None:
+    channel = station_that_heard(version_1(Heartbeat(10, 3, 81, 0, 4, 3), 0, 1, 1))
+    [(data, address, sequence)] = channel.send(Outgoing(ARM))
+    assert (data[0], address, sequence) == (MAGIC_V1, HERE, 0)
+    [found] = mavlink.MAVLink(None).parse_buffer(data) or []
+    assert (found.get_type(), found.get_srcSystem(), found.to_dict()["command"]) == ("COMMAND_LONG", 255, 400)
+    assert magics(channel, ManualControl(1, 0, 0, 500, 0, 0)) == [MAGIC_V1]
+    assert channel.report().version_1 == {1}
+    assert channel.speaks_version_1(HERE, 1)
+
+
+def test_a_heartbeat_goes_in_both_versions_so_that_it_may_change() -> None:
+    channel = station_that_heard(version_1(Heartbeat(10, 3, 81, 0, 4, 3), 0, 1, 1))
+    assert magics(channel, Heartbeat(6, 8, 0, 0, 4, 3)) == [MAGIC_V2, MAGIC_V1]
+    channel.receive(frame(Heartbeat(10, 3, 81, 0, 4, 3), 1, 1, 1), HERE, 1.0)
+    assert magics(channel, Heartbeat(6, 8, 0, 0, 4, 3)) == [MAGIC_V2]
+    assert magics(channel, ARM) == [MAGIC_V2]
+    channel.receive(version_1(Heartbeat(10, 3, 81, 0, 4, 3), 2, 1, 191), HERE, 2.0)  # an old camera beside it
+    assert magics(channel, ARM) == [MAGIC_V2]
+    assert channel.report().version_1 == set()
+
+
+def test_two_systems_behind_one_address_get_their_versions() -> None:
+    channel = station_that_heard(
+        version_1(Heartbeat(10, 3, 81, 0, 4, 3), 0, 1, 1), frame(Heartbeat(10, 3, 81, 0, 4, 3), 0, 2, 1)
+    )
+    assert magics(channel, ARM) == [MAGIC_V1]
+    assert magics(channel, CommandLong(2, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)) == [MAGIC_V2]
+    assert magics(channel, StatusText(6, b"all")) == [MAGIC_V2, MAGIC_V1]
+
+
+def test_what_version_1_cannot_carry_stays_version_2() -> None:
+    channel = station_that_heard(version_1(Heartbeat(10, 3, 81, 0, 4, 3), 0, 1, 1))
+    assert magics(channel, SetupSigning(1, 1, bytes(32), 0)) == [MAGIC_V2]

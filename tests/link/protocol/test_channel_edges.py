@@ -16,7 +16,7 @@ from link.protocol.sent_frames import SentFrames
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.role import Role
 from link.signing.signature import SecretHash, link_and_stamp
-from tests.link.frames import demand, frame, heartbeat
+from tests.link.frames import demand, frame, heartbeat, version_1
 from tests.link.signing.signed import (
     ARM,
     DAY,
@@ -71,6 +71,7 @@ def test_each_field_of_a_report_is_filled() -> None:
     channel.receive(b"".join(frame(ARM, number % 256, 8) for number in range(200)), HERE, 0.0)
     channel.receive(frame(HEARTBEAT, 0, 1, 1) + frame(RadioStatus(1, 1, 1, 1, 1, 0, 0), 0, 51, 68), HERE, 0.0)
     channel.receive(heartbeat(0, system=7), THERE, 0.0)
+    channel.receive(version_1(HEARTBEAT, 0, 12, 1), HERE, 0.0)
     channel.receive(signed(stamp=NOW + 1), HERE, 0.0)
     report, empty = channel.report("unplugged", dropped=2), LinkReport(NAME)
     same = {each.name for each in fields(LinkReport) if getattr(report, each.name) == getattr(empty, each.name)}
