@@ -16,12 +16,7 @@ from tests.docs_blocks.markdown import KINDS, Block, find_blocks
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 BLOCKS = [(page, block) for page in PAGES for block in find_blocks(page.read_text())]
-BY_HAND = ("commands",)
-"""Pages that CI does not type yet: on a busy machine the newest log grows while it is downloaded, and is refused then.
-tests/groundstation/verbs/manual/test_examples.py runs each line of the first block of this one."""
-TYPED = sorted(
-    {page for page, block in BLOCKS if block.is_shell and "not run" not in block.notes and page.stem not in BY_HAND}
-)
+TYPED = sorted({page for page, block in BLOCKS if block.is_shell and "not run" not in block.notes})
 EXPLAINED = {
     "hardware": 2,  # commands: a compass, a receiver; pi: raspi-config
     "network": 8,  # packages of a package index; browser: ssh -L; fleet: the second of two machines

@@ -32,6 +32,8 @@ WINDOW = 8
 CHECKSUM_TIMEOUT = 5.0
 """s for the vehicle to compute a checksum: ArduPilot reads 1 MB/s from a card."""
 CHECKSUM_TRIES = 3
+MAX_GROWTHS = 8
+"""How often a file that has grown meanwhile, such as the log that is being written, is followed to its new end."""
 CHANGED = "the checksum differs: the file was changed while it was downloaded"
 
 
@@ -56,6 +58,7 @@ class Download:
     _phase: _Phase = _Phase.OPEN
     _due: float = 0.0
     _tries: int = 0
+    _growths: int = 0
     _exchange: Exchange = field(init=False)
     _file: FileReassembly = field(default_factory=lambda: FileReassembly(MAX_SIZE))
 
@@ -90,7 +93,7 @@ class Download:
                 if reply.req_opcode == FtpOpcode.OPEN:
                     self._opened(reply, now)
                 else:
-                    self._verified(reply)
+                    self._verified(reply, now)
             case FtpOpcode.BURST if self._is_transferring and reply.session == self.line.session:
                 self._burst(reply, now)
             case FtpOpcode.READ if self._phase is _Phase.FILL:
@@ -124,6 +127,9 @@ class Download:
         self._phase = _Phase.BURST
         if announced > MAX_SIZE:
             self._fail(f"{announced} bytes are more than {MAX_SIZE}")
+            return
+        if self._growths and announced <= len(self.have):
+            self._changed(self.have)
             return
         self._file = FileReassembly(announced)
         if len(self.have) <= announced:
@@ -211,16 +217,26 @@ class Download:
         else:
             self._finish(None)
 
-    def _verified(self, reply: FtpPacket) -> None:
+    def _verified(self, reply: FtpPacket, now: float) -> None:
+        """Compare with the checksum of the vehicle; if it differs, get what the file has grown by since then."""
         computed = reply.op == FtpOpcode.ACK and len(reply.data) >= 4
-        self._finish(int.from_bytes(reply.data[:4], "little") if computed else None)
+        checksum = int.from_bytes(reply.data[:4], "little") if computed else None
+        if checksum in (None, crc32(self._file.data)):
+            self._finish(checksum)
+        elif self._growths < MAX_GROWTHS:
+            self.have, self._growths, self._phase, self._tries = self._file.data, self._growths + 1, _Phase.OPEN, 0
+            self._exchange = Exchange(self.line, self.patience)
+            self.begin(now)
+        else:
+            self._changed(self._file.data)
 
     def _finish(self, checksum: int | None) -> None:
         """End with the checksum of the vehicle; without one the file counts as it is."""
-        data = self._file.data
-        same = checksum in (None, crc32(data))
-        problem = "" if same else CHANGED
-        self.outcome = FtpOutcome(FtpOperation.DOWNLOAD, self.path, same, data, problem=problem, checksum=checksum)
+        self.outcome = FtpOutcome(FtpOperation.DOWNLOAD, self.path, True, self._file.data, checksum=checksum)
+
+    def _changed(self, data: bytes) -> None:
+        self.abandon()
+        self.outcome = FtpOutcome(FtpOperation.DOWNLOAD, self.path, False, data, problem=CHANGED)
 
     def _fail_by(self, reply: FtpPacket) -> None:
         self._fail("")

@@ -56,6 +56,35 @@ def test_what_was_kept_of_another_file_is_noticed() -> None:
     assert (outcome.done, outcome.problem) == (False, CHANGED)
 
 
+class Growing(Watched):
+    """The log that is being written: longer each time that its checksum is asked for."""
+
+    def __init__(self, times: int, *, first: bytes = b"") -> None:
+        self.logs = {"1.bin": DATA}
+        self._times, self._first = times, first
+        super().__init__(FtpRig(logs=self.logs))
+
+    def receive(self, received: Any, now: float) -> list[Any]:
+        if parse_packet(received.message).op == FtpOpcode.CRC and self._times > 0:
+            self._times -= 1
+            data = self.vehicle.logs["1.bin"]
+            self.vehicle.logs["1.bin"] = (self._first or data[:1]) + data[1:] + bytes(500)
+        return super().receive(received, now)
+
+
+@pytest.mark.parametrize(("times", "loss"), [(1, 0.1), (8, 0.0)])
+def test_a_file_that_grows_meanwhile_is_followed_to_its_end(times: int, loss: float) -> None:
+    outcome = fetch(Growing(times), loss=loss, verify=True)
+    assert outcome.done, outcome.problem
+    assert outcome.data == DATA + bytes(500 * times)
+
+
+@pytest.mark.parametrize(("times", "first"), [(9, b""), (1, b"?")])
+def test_a_file_that_never_rests_or_also_changes_is_refused(times: int, first: bytes) -> None:
+    outcome = fetch(Growing(times, first=first), verify=True)
+    assert (outcome.done, outcome.problem) == (False, CHANGED)
+
+
 @pytest.mark.parametrize("have", [DATA, DATA + b"more"])
 def test_whole_file_is_only_compared_and_longer_one_fetched_anew(have: bytes) -> None:
     server = Watched(FtpRig(logs={"1.bin": DATA}))
