@@ -8,6 +8,7 @@ from groundstation.doctor.facts import DoctorFacts
 from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
 from groundstation.doctor.prearm_advice import find_advice
 from groundstation.snapshot import VehicleView
+from groundstation.views.doctor import ParamFix
 
 AFTER_VEHICLE = unknown("after the vehicle is heard")
 
@@ -134,7 +135,9 @@ def _fence(view: VehicleView, facts: DoctorFacts) -> ChainFinding:
     if bits is None or not bits.present & Sensor.GEOFENCE:
         return unknown("none is loaded")
     if not bits.enabled & Sensor.GEOFENCE:
-        return unknown("loaded, but off" if facts.rover_dialect else "off; `fence show` says whether one is loaded")
+        if facts.rover_dialect:
+            return warn("loaded, but off", "switch it on", fix=ParamFix("FENCE_ENABLE", 0.0, 1.0))
+        return unknown("off; `fence show` says whether one is loaded")
     return ok("on, and inside") if bits.health & Sensor.GEOFENCE else fault("breached", "drive back", "app.log")
 
 

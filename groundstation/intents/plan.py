@@ -48,6 +48,12 @@ class JumpToItem(ServiceIntent, frozen=True, tag=True):
     """From 0, without home."""
 
 
+class EnableFence(ServiceIntent, frozen=True, tag=True):
+    """Switch the fence on or off."""
+
+    on: bool = True
+
+
 class GoTo(ServiceIntent, frozen=True, tag=True):
     """Drive to a place now."""
 

@@ -23,6 +23,7 @@ from groundstation.intents.plan import (
     ChooseMode,
     ClearPlan,
     DownloadPlan,
+    EnableFence,
     GoTo,
     JumpToItem,
     PauseMission,
@@ -133,6 +134,13 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "plan",
         "jump to an item",
         lambda services, intent, now: services.missions.jump(intent.request, intent.index, now),
+    ),
+    EnableFence: ServiceCall(
+        "plan",
+        "switch the fence",
+        lambda services, intent, now: services.commands.send(
+            intent.request, Command.DO_FENCE_ENABLE, (float(intent.on),), f"fence {'on' if intent.on else 'off'}", now
+        ),
     ),
     GoTo: ServiceCall(
         "plan",

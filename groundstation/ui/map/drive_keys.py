@@ -113,6 +113,7 @@ class DriveKeys:
         edited = bool(self._model.editor.diff(PlanKind.MISSION).count)
         edits = ", as the vehicle has it: the edits are not uploaded" if edited else ""
         text = "go on with the mission" if self._paused else "start the mission"
+        edits += "; the fence is OFF" if self._model.fence_idle else ""
         self._ask(f"{text}: {view.name} drives by itself{edits}", view, lambda: (self._model.intents.start(view),))
 
     def _is_disarmed(self) -> bool:
@@ -122,6 +123,19 @@ class DriveKeys:
             return False
         self._screen.say(f"{vehicle.name} is disarmed: arm it first, on Drive")
         return True
+
+    def ask_for_fence(self) -> None:
+        """Offer to switch on a fence that has been uploaded."""
+        if (view := self._model.view) is not None:
+            text = "the fence is on the vehicle, but switched off: switch it on"
+            self._ask(text, view, lambda: (self._model.intents.enable_fence(view, on=True),))
+
+    def _switch_fence(self, view: PlanView) -> None:
+        if self._model.fence_off:
+            self._screen.send((self._model.intents.enable_fence(view, on=True),))
+        else:
+            text = f"switch the fence off: nothing keeps {view.name} inside it"
+            self._ask(text, view, lambda: (self._model.intents.enable_fence(view, on=False),))
 
     def _jump(self, view: PlanView) -> None:
         model, at = self._model, self._model.editor.selected
@@ -192,6 +206,7 @@ _ACTIONS: dict[str, Callable[[DriveKeys, PlanView], None]] = {
     "P": DriveKeys._start_or_pause,
     "J": DriveKeys._jump,
     "G": DriveKeys._go_to,
+    "F": DriveKeys._switch_fence,
     "H": DriveKeys._set_home,
 }
 """Key -> what it does with the newest view."""

@@ -49,6 +49,7 @@ MAP_KEYS = (
     ScreenKey("J", "Jump", "Make the selected item the next one that AUTO drives to; asks", commands=True),
     ScreenKey("H", "Home", "Move home to the cursor; asks", commands=True),
     ScreenKey("X", "Clear", "Clear the edited plan on the vehicle; asks", commands=True),
+    ScreenKey("F", "Fence", "Switch the fence on; off asks", commands=True),
     ScreenKey("C", "Cancel", "Cancel the transfers that run"),
     ScreenKey("O", "Open", "Open a plan (.plan, .waypoints), or a layer to look at (.geojson)"),
     ScreenKey("S", "Save", "Save the plans: .plan, .waypoints, .geojson"),

@@ -49,10 +49,14 @@ class MapModel:
         self.filter = TableFilter()
         self.replay = False
         """The views are of a log: nothing can be requested."""
+        self.fence_off = False
+        """The vehicle's fence is switched off, as its parameters say."""
         self.file = ""
         """Name of the file that was opened or saved last."""
         self._asked: set[int] = set()
         """Systems whose plans were requested by opening the screen."""
+        self._asked_fence = 0
+        """Number of the newest upload of a fence that was answered for."""
         self._told = 0
         """Number of the newest request whose end was shown."""
         self._route: tuple[object, Route] | None = None
@@ -251,6 +255,21 @@ class MapModel:
             return None
         self._told = line.number
         return _ended_text(line)
+
+    @property
+    def fence_idle(self) -> bool:
+        """A fence is on the vehicle, and it is switched off."""
+        return self.fence_off and self.view is not None and self.view.plans[PlanKind.FENCE].count > 0
+
+    def pop_fence_upload(self) -> bool:
+        """Return whether the newest request that has ended is an upload of a fence, once for each."""
+        line = self.view.ended[-1] if self.view is not None and self.view.ended else None
+        if line is None or line.number == self._asked_fence or line.state != "accepted":
+            return False
+        if not line.what.startswith(f"upload {PLAN_NAMES[PlanKind.FENCE]}"):
+            return False
+        self._asked_fence = line.number
+        return True
 
     @property
     def status(self) -> str:

@@ -136,7 +136,7 @@ def cursor_lines(model: MapModel, *, narrow: bool) -> tuple[str, ...]:
     if ground.measured is not None and ground.frame is not None:
         way = f"measured {way_text(ground.frame.to_point(ground.measured), point)}"
     following = "following" if ground.looking is Looking.FOLLOW else ""
-    fence = fence_text(model, point)
+    fence = "fence OFF" if narrow and model.fence_idle else fence_text(model, point)
     parts = (f"cursor {way}", at, home, fence, following) if narrow else (following, f"cursor {at}", way, home, fence)
     return (" · ".join(part for part in parts if part),)
 
@@ -149,7 +149,8 @@ def fence_text(model: MapModel, point: Point | None, inside: str = "fence") -> s
     check = check_fence(point, fence_shapes(model.editor.items(PlanKind.FENCE), frame))
     if check is None:
         return ""
-    return f"{inside if check.inside else 'OUTSIDE'} {check.distance:.0f} m"
+    off = ", fence OFF" if model.fence_idle else ""
+    return f"{inside if check.inside else 'OUTSIDE'} {check.distance:.0f} m{off}"
 
 
 def title_of(model: MapModel, index: int) -> str:

@@ -39,6 +39,10 @@ NARROW = 120
 """Columns below which the item and the table share one place."""
 
 
+FENCE = "fence"
+"""Name of what stops a vehicle at its fence, in the snapshot."""
+
+
 class MapScreen(ConsoleScreen):
     """Map, table, item and plans. TAB chooses which of the first three has the arrows."""
 
@@ -82,9 +86,13 @@ class MapScreen(ConsoleScreen):
         """Take a view; plans that are not known are downloaded."""
         self.send(self._model.show_view(view))
         self.say(self._model.pop_news())
+        if self._model.pop_fence_upload() and self._model.fence_off:
+            self._drive.ask_for_fence()
 
     def show_body(self, now: DisplayState) -> None:
         """Draw what is due."""
+        stops = now.snapshot.vehicle.stops if now.snapshot.vehicle is not None else ()
+        self._model.fence_off = any(stop.name == FENCE and stop.never for stop in stops)
         self._show(forced=False)
 
     @property

@@ -196,6 +196,8 @@ def _plan_line(model: MapModel, kind: PlanKind) -> PanelLine:
     there = view.plans[kind].count
     if diff.count:
         return PanelLine(name, f"{here} here · {there} there", diff.text, "edited")
+    if kind is PlanKind.FENCE and here and model.fence_off:
+        return PanelLine(name, f"{_count(here)}, OFF", "F switches it on", "warned")
     return PanelLine(name, _count(here), "same ✓", "good")
 
 
@@ -261,7 +263,7 @@ def _texts(
     if vehicle is not None and vehicle.speed is not None and math.isfinite(vehicle.speed):
         texts.append(("speed", f"{vehicle.speed:z.2f} m/s"))
     if fence := fence_text(model, model.ground.vehicle, "inside"):
-        texts.append(("fence", fence))
+        texts.append(("fence", "OFF" if model.fence_idle else fence))
     return tuple(texts)
 
 

@@ -190,7 +190,7 @@ CASES: list[tuple[str, DoctorFacts, Health, str]] = [
     ("dialect", facts(version_1=True), WARNING, "MAVLink 1: it is answered in that version"),
     ("fence", facts(), UNKNOWN, "none is loaded"),
     ("fence", facts(sensors=bits(FENCE)), OK, "inside"),
-    ("fence", facts(sensors=bits(FENCE, enabled=False)), UNKNOWN, "loaded, but off"),
+    ("fence", facts(sensors=bits(FENCE, enabled=False)), WARNING, "loaded, but off"),
     ("fence", facts(sensors=bits(FENCE, enabled=False), rover_dialect=False), UNKNOWN, "off; `fence show` says"),
     ("fence", facts(sensors=bits(FENCE, healthy=False)), FAULT, "breached"),
     ("fence", facts(vehicle(limits=("fence",))), FAULT, "breached"),

@@ -7,6 +7,7 @@ from groundstation.intents.plan import (
     ChooseMode,
     ClearPlan,
     DownloadPlan,
+    EnableFence,
     GoTo,
     JumpToItem,
     PauseMission,
@@ -51,6 +52,10 @@ class PlanIntents:
     def jump(self, view: PlanView, index: int) -> AnyIntent:
         """Make a mission item the current one."""
         return JumpToItem(self._numbers.take(), view.system, index)
+
+    def enable_fence(self, view: PlanView, *, on: bool) -> AnyIntent:
+        """Switch the fence on or off."""
+        return EnableFence(self._numbers.take(), view.system, on)
 
     def go_to(self, view: PlanView, place: Place) -> AnyIntent:
         """Drive to a place."""

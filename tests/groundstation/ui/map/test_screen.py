@@ -12,6 +12,7 @@ from groundstation.intents.plan import (
     ChooseMode,
     ClearPlan,
     DownloadPlan,
+    EnableFence,
     GoTo,
     JumpToItem,
     PauseMission,
@@ -22,10 +23,12 @@ from groundstation.intents.plan import (
 from groundstation.intents.services import CancelRequest
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
+from groundstation.snapshot.drive import StopBound
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.map.screen import MapScreen
 from groundstation.views.base import View
 from groundstation.views.plan import PlanKind, PlanRequest, PlanSummary, PlanTrackRequest
+from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.example_map import (
     LOADING,
     MISSION,
@@ -343,3 +346,41 @@ async def test_the_table_is_filtered_and_its_arrows_stay_in_it() -> None:
         assert len(model.shown_rows) == len(model.editor.rows())
         await screen.press("a", "slash", *"new", "enter")
         assert [model.editor.rows()[index].origin for index in model.shown_rows] == [None]
+
+
+OFF = StopBound("fence", "nothing", "FENCE_ENABLE", never=True, unit="m")
+UPLOADED = RequestLine(7, "accepted", "upload fence of 6 items", "", 6, 6, "plan", system=1)
+
+
+async def test_a_fence_that_is_off_says_so_where_one_looks() -> None:
+    async with console((140, 45)) as screen:
+        await open_map(screen, picture(armed=True, mode="MANUAL", stops=(OFF,)))
+        assert "6 items, OFF" in screen.text
+        assert "fence OFF" in screen.text
+        await screen.press("P")
+        assert "drives by itself; the fence is OFF" in screen.text
+        await screen.press("x", "F")
+        assert [each.on for each in screen.station.of(EnableFence)] == [True]
+
+
+async def test_a_fence_that_is_on_is_switched_off_after_a_question() -> None:
+    async with console((140, 45)) as screen:
+        await open_map(screen, picture(armed=True, mode="MANUAL", stops=()))
+        assert "OFF" not in screen.text
+        await screen.press("F")
+        assert "nothing keeps Rover 1 inside it" in screen.text
+        await screen.press("x")
+        assert screen.station.of(EnableFence) == []
+        await screen.press("F", "y")
+        assert [each.on for each in screen.station.of(EnableFence)] == [False]
+
+
+async def test_after_an_upload_a_fence_that_is_off_can_be_switched_on() -> None:
+    async with console((140, 45)) as screen:
+        shown = picture(armed=False, mode="HOLD", stops=(OFF,))
+        await open_map(screen, shown)
+        screen.station.offer_view(plan_view(ended=(UPLOADED,)))
+        await screen.show(shown)
+        assert "the fence is on the vehicle, but switched off: switch it on" in screen.text
+        await screen.press("y")
+        assert [each.on for each in screen.station.of(EnableFence)] == [True]
