@@ -36,14 +36,18 @@ def free_port() -> int:
 
 
 class Simulator:
-    """One `vehicle --sim`. Its output is kept; the last line is the reason when it exits."""
+    """One `vehicle --sim`. Its output is kept; the last line is the reason when it exits.
+
+    It records its drives, as a real rover does, so that they can be listed and downloaded until it ends.
+    """
 
     def __init__(self, host: str, port: int, options: Sequence[str] = ()) -> None:
         """Start the simulator, sending to an address of this machine. Raises OSError."""
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name, so nothing is left behind even after a kill
+        self._logs = tempfile.TemporaryDirectory(prefix="mavhelm-simulator-", ignore_cleanup_errors=True)
         self._process: subprocess.Popen[bytes] = start_module(
             "vehicle",
-            ["--sim", f"udpout:{host}:{port}", *options],
+            ["--sim", f"udpout:{host}:{port}", "--tlog", self._logs.name, *options],
             output=self._output,
             new_session=True,  # Ctrl-C in the terminal is for the screen only
             prepare=_die_with_parent(),
@@ -76,6 +80,7 @@ class Simulator:
             self._process.terminate()
             end_process(self._process, END_TIMEOUT)
         self._output.close()
+        self._logs.cleanup()
 
 
 class SimulatorControl:

@@ -66,6 +66,10 @@ def _run(options: argparse.Namespace, parser: CommandLineParser) -> int:
     try:
         if problem:
             logging.getLogger(__name__).warning("log.file %s: %s; continuing without it", config.log.file, problem)
+        if unused := _unused_keys(options):
+            logging.getLogger(__name__).warning(
+                "keys in %s are not used: a simulation without --state has none", unused
+            )
         return daemon.run(settings)
     finally:
         log.close()
@@ -134,6 +138,17 @@ def _state_folder(options: argparse.Namespace, config: Config) -> Path | None:
     from vehicle.storage.motor_copy import default_state_folder
 
     return default_state_folder()
+
+
+def _unused_keys(options: argparse.Namespace) -> Path | None:
+    """Return the key file that a simulation without --state leaves alone; None without one."""
+    if not options.sim or options.state:
+        return None
+    from link.signing.key_file import FILE
+    from vehicle.storage.motor_copy import default_state_folder
+
+    path = default_state_folder() / FILE
+    return path if path.exists() else None
 
 
 def _log_folder(options: argparse.Namespace, config: Config) -> Path | None:

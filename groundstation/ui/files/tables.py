@@ -70,7 +70,7 @@ def logs_value(model: FilesModel) -> RowTableValue:
         text = "no vehicle yet" if view is None else "reading the list of the logs"
         return RowTableValue(LOG_COLUMNS, notes=(dim(text),))
     rows = tuple(_log(each, model) for each in model.logs)
-    notes = _LOG_NOTES if rows else (dim("no logs"),)
+    notes = _LOG_NOTES if rows else (dim("no logs: the vehicle has none, or keeps none (a simulation without --tlog)"),)
     return RowTableValue(LOG_COLUMNS, rows, model.shown_cursor(Panel.LOGS), notes)
 
 

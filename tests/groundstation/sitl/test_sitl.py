@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from pathlib import Path
 
 import pytest
 
@@ -40,6 +41,18 @@ def test_the_simulator_can_be_started_later() -> None:
         seen = screen.snapshot.number
         screen.see(lambda snapshot: snapshot.number > seen + 3)
         assert len(simulators(screen.client.pid)) == 1
+
+
+def test_the_simulator_records_its_drives_until_it_ends() -> None:
+    with Screen(sitl=True) as screen:
+        sees_rover(screen)
+        (simulator,) = simulators(screen.client.pid)
+        words = Path(f"/proc/{simulator}/cmdline").read_bytes().split(b"\0")
+        folder = Path(os.fsdecode(words[words.index(b"--tlog") + 1]))
+        screen.hold_forward()
+        wait_until(lambda: list(folder.glob("*.tlog")))
+        assert screen.client.close() == 0
+        assert not folder.exists()
 
 
 def test_the_simulator_dies_with_a_station_that_is_killed() -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from link.signing.key_file import FILE
 from vehicle.cli.main import main
 from vehicle.cli.options import GROUND_STATION
 from vehicle.config.run_settings import RunSettings, Simulation
@@ -188,3 +189,15 @@ def test_help_does_not_import_the_daemon() -> None:
     """So that it, and a mistake, answer at once."""
     script = "import sys, vehicle.__main__; sys.exit('asyncio' in sys.modules or 'dialects.rover' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
+
+
+def test_a_simulation_says_which_keys_it_leaves_alone(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setenv("STATE_DIRECTORY", str(tmp_path))
+    (tmp_path / FILE).write_text("")
+    settings_of(monkeypatch, "--sim")
+    assert f"keys in {tmp_path / FILE} are not used: a simulation without --state has none" in caplog.text
+    caplog.clear()
+    settings_of(monkeypatch, "--sim", "--state", str(tmp_path))
+    assert "are not used" not in caplog.text
