@@ -182,6 +182,7 @@ class Px4Calibration:
             )
             self._ends_at, vehicle.calibrating = now + self.seconds, True
             vehicle.answers[Command.PREFLIGHT_CALIBRATION] = Result.TEMPORARILY_REJECTED, "motion, retrying.."
+            vehicle.silent_on.discard(message.command)  # at most the first COMMAND_ACK is lost
             vehicle.say(f"[cal] calibration started: 2 {self._name}", 6)
             vehicle.beat()
 

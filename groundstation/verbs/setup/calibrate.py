@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import asyncio
 
-from dialects.enums import Autopilot
+from msgspec.structs import replace
+
+from dialects.enums import Autopilot, SystemState
 from groundstation.vehicles.calibration.calibration import KINDS, REQUEST, SHORT, kind_for
 from groundstation.vehicles.calibration.reported_calibration import ReportedCalibration
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.reports import finish
-from groundstation.verbs.session.session import VerbSession
+from groundstation.verbs.session.session import RequestStart, VerbSession
 from groundstation.verbs.setup import calibrate_by_hand
 
 BY_HAND = {"compass": calibrate_by_hand.compass, "sticks": calibrate_by_hand.sticks}
@@ -45,12 +47,28 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     reported = ReportedCalibration(session.now) if vehicle.autopilot == Autopilot.PX4 else None
     if reported is not None:
         session.contact.texts.listener = lambda at, label, text, severity: reported.handle_text(text)
-    report = await session.request(
-        lambda number, now: commands.send(number, kind.command, kind.params, f"{REQUEST}{name}", now)
+    report = await _request(
+        session,
+        lambda number, now: commands.send(number, kind.command, kind.params, f"{REQUEST}{name}", now),
+        reported,
     )
     if reported is not None and report.state is RequestState.ACCEPTED:
         await _wait_for_end(session, reported, output)
     return finish(session, report, output, f"has calibrated: {kind.title}", kind=options.kind)
+
+
+async def _request(session: VerbSession, start: RequestStart, reported: ReportedCalibration | None) -> RequestReport:
+    """Request a calibration.
+
+    If the COMMAND_ACK of PX4 is lost, the repeated command meets the calibration that the first has begun: that
+    refusal is an acceptance, unless another calibration was under way before.
+    """
+    was_under_way = session.vehicle.status == SystemState.CALIBRATING
+    report = await session.request(start)
+    if reported is None or was_under_way or report.state is not RequestState.REFUSED:
+        return report
+    has_begun = session.vehicle.status == SystemState.CALIBRATING or bool(reported.text)
+    return replace(report, state=RequestState.ACCEPTED, detail="", reason="") if has_begun else report
 
 
 async def _wait_for_end(session: VerbSession, reported: ReportedCalibration, output: Output) -> None:

@@ -145,6 +145,16 @@ def test_px4_has_calibrated_when_it_says_so(capsys: Capture) -> None:
         assert "has calibrated" not in failed.err
 
 
+def test_a_repeated_command_meets_the_calibration_it_has_begun(capsys: Capture) -> None:
+    with foreign_vehicle(PX4) as vehicle:
+        vehicle.silent_on.add(CALIBRATION)
+        vehicle.calibration.seconds = 3.0
+        done = run_verb(capsys, "calibrate", "gyro", "-e", vehicle.endpoint, "-v", "1")
+        assert (done.code, vehicle.calibrating) == (ExitCode.DONE, False), done.err
+        assert "has calibrated: gyros" in done.err
+        assert len([each for each in vehicle.of("COMMAND_LONG") if each.command == CALIBRATION]) > 1
+
+
 def test_a_calibration_whose_end_is_not_reported(capsys: Capture) -> None:
     with foreign_vehicle(PX4) as vehicle:
         vehicle.calibration.failure = "something else"
