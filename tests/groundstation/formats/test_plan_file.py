@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from dialects.enums import Autopilot, Command, FenceItem, MissionType
 from groundstation.formats.errors import FileFormatError
-from groundstation.formats.plan import Plan, PlannedHome, for_vehicle, from_vehicle
+from groundstation.formats.plan import Plan, PlannedHome, for_vehicle, from_vehicle, kind_of
 from groundstation.formats.plan_file import format_plan, parse_plan
 from link.services.mission.items import MissionItem, from_message, to_message
 from tests.link.mission_rig import plain
@@ -223,7 +223,9 @@ def item(
 
 ITEMS = st.builds(
     item,
-    st.integers(0, 65535).filter(lambda command: command != Command.DO_JUMP),
+    st.integers(0, 65535).filter(
+        lambda command: command != Command.DO_JUMP and kind_of(command) == MissionType.MISSION
+    ),
     st.sampled_from([0, 3, 6, 10]),
     st.tuples(FLOATS, FLOATS, FLOATS, FLOATS),
     POSITION,
