@@ -165,6 +165,11 @@ class ConsoleScreen(Screen[None]):
         if text is not None:
             self._note, self._note_until = text, time.monotonic() + NOTE_TIME
 
+    def copy(self, text: str) -> None:
+        """Copy a text by the terminal (OSC 52), and say so."""
+        self.app.copy_to_clipboard(text)
+        self.say(f"copied {text}, where the terminal allows it (OSC 52)")
+
     def open_log(self, file: Path | None, at: str = "") -> None:
         """Show a telemetry log in this terminal until it is quit, or say why not."""
         self.say(self.context.open_log(file, at) or None)

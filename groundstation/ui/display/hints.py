@@ -29,11 +29,17 @@ def _replay_hint(now: DisplayState, replay: ReplayStatus) -> str:
 
 
 def _drive_hint(now: DisplayState) -> str:
-    vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
+    vehicle = now.snapshot.vehicle
     if vehicle is None:
         return f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} quits"
     if now.snapshot.lease.driver:
         return f"SPACE stops, {now.key('stop.emergency')} cuts the motors, {now.key('app.quit')} leaves the station"
+    return _vehicle_hint(vehicle, now)
+
+
+def _vehicle_hint(vehicle: VehicleView, now: DisplayState) -> str:
+    if not vehicle.alive:
+        return "link lost: no key is heard until it is back"
     if vehicle.undriven:
         asks = "asks, then " if vehicle.may_fall else ""
         return f"{vehicle.undriven} · {now.key('stop.emergency')} {asks}cuts the motors"
@@ -46,7 +52,7 @@ def _drive_hint(now: DisplayState) -> str:
         return f"{now.key('vehicle.control')} asks for control · {stops}"
     if vehicle.mode != "MANUAL":
         return f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
-    verb = "hold" if operator.style == "hold" else "press"
+    verb = "hold" if now.snapshot.operator.style == "hold" else "press"
     return f"{verb} {now.key('drive.forward')} to drive · {stops}"
 
 

@@ -20,7 +20,7 @@ from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenConte
 from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.task_list import TaskList
-from groundstation.ui.display.wrap import plain
+from groundstation.ui.display.wrap import clean, plain
 from groundstation.ui.files.tables import tasks_value
 from groundstation.ui.log.detail import LogDetail, describe
 from groundstation.ui.log.detail_panel import LogDetailPanel
@@ -73,6 +73,7 @@ class LogScreen(ConsoleScreen):
         ScreenKey("e", "Around", "Show the messages within 5 s of the marked one only, or what was shown before"),
         ScreenKey("o", "Replay", "Replay this session from the marked message, until Ctrl-Q"),
         ScreenKey("S", "Save", "Save the messages that are shown to a file"),
+        ScreenKey("y", "Copy", "Copy the text of the marked message"),
         ScreenKey("tab", "Alerts", "Scroll the alerts, or the messages again"),
         ScreenKey("x", "Stop task", "Stop the newest task that runs; what has arrived is kept"),
     )
@@ -169,6 +170,10 @@ class LogScreen(ConsoleScreen):
         else:
             return False
         return True
+
+    def _copy(self) -> None:
+        if (line := self._model.marked) is not None:
+            self.copy(clean(line.text))
 
     def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
         """Give the arrows to the alerts or the messages."""
@@ -280,6 +285,7 @@ class LogScreen(ConsoleScreen):
 
 _ACTIONS: dict[str, Callable[[LogScreen], None]] = {
     "slash": LogScreen._open_filter,
+    "y": LogScreen._copy,
     "a": LogScreen._show_all,
     "w": LogScreen._show_warnings,
     **{key: partial(LogScreen._show_labels, labels=labels) for key, (labels, _) in _SOURCES.items()},

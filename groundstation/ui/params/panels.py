@@ -18,6 +18,7 @@ PARAM_KEYS = (
     ScreenKey("a", "Take all", "Make all values of the file that differ changes"),
     ScreenKey("c", "Changed", "Show only what is not at its default, or all again"),
     ScreenKey("asterisk", "Favourite", "Make the selected parameter a favourite, or one no more"),
+    ScreenKey("y", "Copy", "Copy name and value of the selected parameter"),
     ScreenKey("ctrl+r", "Redo", "Do again what was undone"),
     ScreenKey("R", "Read", "Read all parameters again, or those that are missing"),
     ScreenKey("E", "Memory", "Have the vehicle store all parameters, or reset them to their defaults", commands=True),

@@ -22,6 +22,7 @@ from groundstation.ui.params.transfers import ParamTransfers
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.params import ParamDiff, ParamExport, ParamInfos, ParamPage
+from link.services.param.float32 import value_text
 
 WIDE, SIDE = 120, 180
 """Columns from which on the groups stand beside the table, and the pending changes, too."""
@@ -95,6 +96,11 @@ class ParamsScreen(ConsoleScreen):
         return "ENTER edits · TAB groups · / finds any of the words · ESC goes back to Drive"
 
     # ---- keys ----
+
+    def _copy(self) -> None:
+        row = self._model.selected
+        if row is not None:
+            self.copy(f"{row.name} {value_text(row.value)}")
 
     def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
         """Give the arrows to the panel of a widget."""
@@ -210,6 +216,7 @@ class ParamsScreen(ConsoleScreen):
 
 _ACTIONS: dict[str, Callable[[ParamsScreen], None]] = {
     "slash": ParamsScreen._open_filter,
+    "y": ParamsScreen._copy,
     "enter": ParamsScreen._enter,
     "tab": lambda screen: screen._panels.next(),
     "W": ParamsScreen._ask_to_write,

@@ -18,9 +18,9 @@ from link.services.param.float32 import value_text
 
 COLUMNS = (
     Column("", 1),
-    Column("name", 16),
-    Column("value", 11, right=True, most=13),
-    Column("unit", 4, weight=2, most=6),
+    Column("name", 14, most=16),
+    Column("value", 6, right=True, most=13),
+    Column("unit", 5, weight=2, most=6),
     Column("default", 7, weight=1, right=True, most=8),
     Column("means", 10, weight=3, most=60),
 )

@@ -32,8 +32,9 @@ def fit(columns: Sequence[Column], width: int) -> tuple[int, ...]:
     """Return the width of each column, 0 for those that do not fit; the room that is left goes to those that grow."""
     chosen: list[Column] = []
     for column in sorted(columns, key=lambda each: each.weight):
-        if sum(each.width + GAP for each in (*chosen, column)) - GAP <= width:
-            chosen.append(column)
+        if sum(each.width + GAP for each in (*chosen, column)) - GAP > width:
+            break  # what weighs more is worth less: no unit stands where its value did not fit
+        chosen.append(column)
     left = width - sum(each.width + GAP for each in chosen) + GAP
     widths = []
     for column in columns:

@@ -199,6 +199,8 @@ def _signing(signing: SigningView | None) -> list[StatusField]:
     """Return the state in a word. What is wrong with it stays longest."""
     if signing is None:
         return []
+    if signing.state is SigningState.OFF:  # "sign off" reads as the end of a session
+        return [StatusField(3, ((" unsigned ", style(DIM)),))]
     more = f", refused {signing.refused}" if signing.state is SigningState.ON and signing.refused else ""
     colour = AMBER if more else _SIGNING.get(signing.state, RED)
     return [_field(3 if signing.well else 0, "sign", signing.state.value + more, colour)]

@@ -284,3 +284,8 @@ def test_watched_vehicle_is_named_and_one_with_another_link_not() -> None:
 def test_a_letter_typed_elsewhere_is_no_alert_on_drive(closure: GateClosure) -> None:
     now = DisplayState(snapshot(operator=helm(ignored=closure.reason)), STANDARD)
     assert not [alert for alert in active_alerts(now) if "key ignored" in alert.text]
+
+
+def test_without_a_link_no_key_is_offered() -> None:
+    picture = snapshot(vehicle=vehicle(alive=False, silence=4.0))
+    assert hint(DisplayState(picture, STANDARD)) == "link lost: no key is heard until it is back"

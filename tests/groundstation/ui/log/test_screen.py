@@ -192,3 +192,11 @@ def test_the_home_folder_is_shortened(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", "/home/you")
     assert short_path(Path("/home/you/logs/a.txt")) == "~/logs/a.txt"
     assert short_path(Path("/var/a.txt")) == "/var/a.txt"
+
+
+async def test_y_copies_the_marked_message() -> None:
+    async with console() as screen:
+        await open_log(screen)
+        await screen.press("up", "y")
+        assert screen.app.clipboard == "line 99."
+        assert "copied line 99." in screen.text

@@ -384,3 +384,11 @@ async def test_a_vehicle_may_send_values_that_are_no_numbers(value: float) -> No
         for _ in odd:
             await screen.press("enter", "tab", "down", "escape", "down")
         assert "RC_OVERRIDE_TIME" in screen.text
+
+
+async def test_y_copies_the_selected_parameter() -> None:
+    async with console() as screen:
+        top = await open_params(screen, PAGE)
+        await screen.press("down", "y")
+        assert top._model.selected is not None
+        assert screen.app.clipboard.startswith(f"{top._model.selected.name} ")
