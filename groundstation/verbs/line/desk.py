@@ -19,6 +19,7 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.parser import ParsedLine, parse_line
 from groundstation.verbs.line.session import LineOutput, LineSession, here
 from groundstation.verbs.line.words import complete
+from groundstation.verbs.table import VERBS
 from groundstation.views.line import ASKS, DONE, FAILED, RUNNING, LineRequest, LineView
 
 LABEL = "line"
@@ -42,7 +43,7 @@ class LineDesk:
         """Run a line, or ask first."""
         self._station.log.add(now, LABEL, f":{intent.text}", Severity.INFO)
         try:
-            parsed = parse_line(intent.text)
+            parsed = parse_line(intent.text, self._modes(intent.system))
             if parsed.name in STOP_VERBS and self._stop_blindly(intent, parsed, now):
                 return
             contact = self._find(parsed, intent.system)
@@ -80,6 +81,12 @@ class LineDesk:
         known = next((view for view in reversed(self._views) if view.number == request.number), None)
         view = known or LineView(request.number, RUNNING, "", "")
         return LineView(view.number, view.state, view.note, request.text, words)
+
+    def _modes(self, system: int) -> frozenset[str]:
+        """Return the names of the modes of a vehicle that are no verbs, in capitals."""
+        contact = self._station.fleet.get(system) if system else self._station.fleet.selected
+        modes = () if contact is None else self._station.services.services_of(contact).modes.modes
+        return frozenset(mode.name.upper() for mode in modes if mode.name.lower() not in VERBS)
 
     def _find(self, parsed: ParsedLine, system: int) -> Contact:
         """Return the vehicle: that of --vehicle, or the one that the operator saw. Raises VerbError."""

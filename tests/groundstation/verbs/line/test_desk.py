@@ -114,7 +114,13 @@ def test_lines_run_verbs_for_the_vehicle() -> None:
         await lines.see(lambda: lines.vehicle.armed)
         started = await lines.run("mission start", confirmed=True)
         assert (started.state, vehicle.mode) == (DONE, 10), started
+        assert started.note.endswith("drives by itself; `:stop` stops it"), started.note
         assert (await lines.run("stop")).state == DONE
+        assert vehicle.mode == 4
+        assert (await lines.run("auto")).state == ASKS
+        assert (await lines.run("auto", confirmed=True)).state == DONE
+        assert vehicle.mode == 10
+        assert (await lines.run("Hold")).state == DONE
         assert vehicle.mode == 4
         assert (await lines.run("disarm")).state == DONE
         assert not vehicle.armed
