@@ -34,8 +34,9 @@ async def request(session: VerbSession, options: argparse.Namespace, output: Out
     """Take control, or ask the driver for it."""
     await session.need_only_vehicle(options.vehicle)
     report = await ask_for_control(session, takeover=options.takeover)
-    if report.state is RequestState.REFUSED and session.vehicle.driver == 0:
-        report = await ask_for_control(session, takeover=options.takeover)  # the driver has released control meanwhile
+    free_now = session.vehicle.driver == 0 or session.contact.in_control
+    if report.state is RequestState.REFUSED and free_now:  # the driver has released it meanwhile, or given it to us
+        report = await ask_for_control(session, takeover=options.takeover)
     asked = session.contact.other_driver
     if report.state is RequestState.REFUSED and asked is not None:
         output.note(f"GCS {asked} is asked for control of {session.vehicle.name}")
