@@ -62,6 +62,11 @@ class HelpScreen(OwnDismissal[None], ConsoleScreen):
         """Scroll the page wherever the wheel turns."""
         return LIST_ARROWS
 
+    @property
+    def kept_filter(self) -> str:
+        """The text of the filter."""
+        return self._filter
+
     def filter_by(self, text: str) -> bool:
         """Show the keys that contain each word of a text."""
         self._filter_text(text)

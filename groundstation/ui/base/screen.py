@@ -145,6 +145,11 @@ class ConsoleScreen(Screen[None]):
         """Show only what a text describes, "" all; return False if this screen has no filter."""
         return False
 
+    @property
+    def kept_filter(self) -> str:
+        """The text of a filter that ENTER has kept: ESC clears it first, then leaves."""
+        return ""
+
     def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
         """Choose the panel of a widget; return the keys that the wheel presses there, up and down, or None."""
         return None
@@ -210,7 +215,7 @@ class ConsoleScreen(Screen[None]):
         if self.field.is_attached and self.field.is_open:
             self.field.take_key(event)
             return
-        if not self._answer(event) and not self.perform_key(event):
+        if not self._answer(event) and not self._clear_filter(event) and not self.perform_key(event):
             return
         event.stop()
         if self.is_current:
@@ -253,6 +258,9 @@ class ConsoleScreen(Screen[None]):
         """Give pasted text to the field; nothing else takes any."""
         if self.field.is_attached and self.field.is_open:
             self.field.take_paste(event)
+
+    def _clear_filter(self, event: events.Key) -> bool:
+        return event.key == "escape" and bool(self.kept_filter) and self.filter_by("")
 
     def _answer(self, event: events.Key) -> bool:
         question = self.question

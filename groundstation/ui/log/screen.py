@@ -183,6 +183,11 @@ class LogScreen(ConsoleScreen):
         self._mark_chosen()
         return LIST_ARROWS
 
+    @property
+    def kept_filter(self) -> str:
+        """The text of the filter."""
+        return self._model.filter.text
+
     def filter_by(self, text: str) -> bool:
         """Show the rows that the text describes."""
         self._filter_text(text)

@@ -142,6 +142,11 @@ class MessagesScreen(ConsoleScreen):
         self._show_table()
         return LIST_ARROWS
 
+    @property
+    def kept_filter(self) -> str:
+        """The text of the filter."""
+        return self._model.text
+
     def filter_by(self, text: str) -> bool:
         """Show the rows that the text describes."""
         self._model.set_filter(text)

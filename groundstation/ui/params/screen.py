@@ -122,6 +122,11 @@ class ParamsScreen(ConsoleScreen):
         self._show()
         return True
 
+    @property
+    def kept_filter(self) -> str:
+        """The text of the filter."""
+        return self._model.filter
+
     def filter_by(self, text: str) -> bool:
         """Show the rows that the text describes."""
         self._model.set_filter(text)

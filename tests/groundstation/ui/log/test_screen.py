@@ -11,6 +11,7 @@ from groundstation.intents.session import SetKeyGate
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import LogLine
 from groundstation.ui.base.local_files import short_path
+from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.log.screen import LogScreen
 from groundstation.views.log import LogPage, LogRequest
@@ -200,3 +201,17 @@ async def test_y_copies_the_marked_message() -> None:
         await screen.press("up", "y")
         assert screen.app.clipboard == "line 99."
         assert "copied line 99." in screen.text
+
+
+@pytest.mark.parametrize("key", ["f6", "f3", "f4", "question_mark"])
+async def test_escape_clears_a_kept_filter_before_it_leaves(key: str) -> None:
+    async with console((100, 30)) as screen:
+        await screen.press(key, "slash", *"volt", "enter")
+        top = screen.app.screen
+        assert isinstance(top, ConsoleScreen)
+        assert top.kept_filter == "volt"
+        await screen.press("escape")
+        assert top.is_current
+        assert not top.kept_filter
+        await screen.press("escape")
+        await until(lambda: screen.app.screen is screen.app.drive)
