@@ -16,6 +16,7 @@ SOCKET_BUFFER = 1 << 20
 """Bytes requested each way, so that a snapshot (< 60 kB) or a second of keys fits; the kernel may grant less."""
 
 _CREDENTIALS = struct.Struct("3i")
+_TIMEVAL = struct.Struct("2l")
 
 
 class NoStationError(Exception):
@@ -28,15 +29,15 @@ def peer_credentials(sock: socket.socket) -> tuple[int, int]:
     return pid, user
 
 
-def running_stations(within: float = HELLO_WITHIN) -> list[int]:
+def running_stations() -> list[int]:
     """Return the process ids of the stations that run; sockets that a killed one has left are removed.
 
-    One that hangs and takes no more connections counts after `within` s. Raises FolderError.
+    One that hangs and takes no more connections counts, too. Nothing is waited for. Raises FolderError.
     """
     found = []
     for pid, path in list_sockets():
         try:
-            sock = _open(path, within)
+            sock = _open(path, 0.0)
         except TimeoutError:
             found.append(pid)
             continue
@@ -65,24 +66,28 @@ def connect(pid: int, hello: Hello, within: float = HELLO_WITHIN) -> socket.sock
     return sock
 
 
-def _open(path: Path, within: float = HELLO_WITHIN) -> socket.socket | None:
+def _open(path: Path, within: float) -> socket.socket | None:
     """Return a connection; None where nobody listens any more, and then the socket is removed.
 
     Raises TimeoutError if the queue of those who connect stays full.
     """
     sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
-    sock.settimeout(within)
+    # Only the kernel waits for room in the queue: with a timeout of Python, connect() returns EAGAIN at once
+    wait = _TIMEVAL.pack(int(within), int(within % 1.0 * 1e6))
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, wait)
+    sock.setblocking(within > 0.0)
     try:
         with socket_address(path) as address:
             sock.connect(address)
-    except TimeoutError:
+    except BlockingIOError:
         sock.close()
-        raise
+        raise TimeoutError from None
     except OSError as error:
         sock.close()
         if error.errno == errno.ECONNREFUSED:
             with contextlib.suppress(OSError):
                 path.unlink()
         return None
+    sock.settimeout(within)
     return sock

@@ -108,7 +108,7 @@ def find_station(
     if choice.isdecimal():
         return StationLink.open(int(choice), hello, within)
     try:
-        pids = running_stations(within)
+        pids = running_stations()
     except FolderError as error:
         if choice == AUTO:
             note(f"no running station is used: {error}")

@@ -80,6 +80,6 @@ async def _try_each(attempt: Attempt, tell: Callable[[str], None], pids: Sequenc
 
 def _stations() -> list[int]:
     try:
-        return running_stations(STOP_WITHIN)
+        return running_stations()
     except FolderError:
         return []

@@ -166,3 +166,7 @@ def test_of_two_emergency_stops_one_is_sent() -> None:
     key = STANDARD.get_keys("stop.emergency")[0]
     intents = STANDARD.build_intents([KeyEvent(key), KeyEvent(key)], armed=True, driving=True)
     assert intents == [EmergencyStop(), Stop()]
+
+
+def test_a_key_map_is_empty_by_default() -> None:
+    assert Keymap("mine").get_action("i") is None

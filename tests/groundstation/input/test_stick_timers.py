@@ -8,7 +8,7 @@ from dialects.axes import NEUTRAL, Axes
 from groundstation.input.key_repeat import KeyTrace, RepeatWindows
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents.driving import DriveKeyDown, DrivePad
+from groundstation.intents.driving import DriveKeyDown, DrivePad, StepLimits
 from tests.groundstation.input.test_sticks import COMMA, I, J, L, exact, repeat
 
 
@@ -215,6 +215,17 @@ def test_a_step_is_one_press_however_long_it_is_held() -> None:
     assert released.axes(0.6) == Axes(0.1, 0.0)
 
 
+def test_steps_have_two_digits_and_end_at_the_limit() -> None:
+    sticks = Sticks(Style.STEP, 0.655)
+    for number in range(20):
+        press(sticks, COMMA, float(number))
+    assert sticks.axes(20.0) == Axes(-0.655, 0.0)
+    press(sticks, I, 30.0)
+    assert sticks.axes(30.0).throttle in (-0.55, -0.56)
+    press(sticks, I, 31.0)
+    assert sticks.axes(31.0).throttle in (-0.45, -0.46)
+
+
 def test_the_gamepad_drives_until_its_reading_is_old() -> None:
     sticks = timed()
     press(sticks, I, 9.9)
@@ -289,3 +300,9 @@ def test_the_newest_five_delays_count() -> None:
     assert windows.press_window == pytest.approx(0.675)
     windows.record_repeat(KeyTrace(0.0, 0.0, delay=0.3), 0.04)
     assert windows.press_window == pytest.approx(0.445)
+
+
+def test_limits_have_two_digits() -> None:
+    sticks = Sticks(Style.HOLD, 0.5)
+    sticks.step_limits(StepLimits(throttle=0.05, steering=0.004))
+    assert (sticks.throttle_limit, sticks.steering_limit) == (0.55, 0.5)

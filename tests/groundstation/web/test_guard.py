@@ -82,3 +82,7 @@ def test_nothing_from_outside_may_be_loaded() -> None:
         "'none'", "'self'", "'unsafe-inline'", "data:",
     }  # fmt: skip
     assert policy["script-src"] == "'self'"
+
+
+def test_servers_of_two_ports_have_two_cookies() -> None:
+    assert (GUARD.cookie_name, Guard(8001, "right").cookie_name) == ("mavhelm-8000", "mavhelm-8001")

@@ -88,6 +88,11 @@ def test_after_a_crash_the_window_is_short_for_a_minute(stored: int, now: float,
     assert check(ended.verifier, NOW + int(now * TICKS) - 30 * TICKS, now) is None
 
 
+def test_the_window_after_a_crash_is_5_s() -> None:
+    for behind, refusal in ((5 * TICKS, None), (5 * TICKS + 1, Refusal.TOO_OLD)):
+        assert check(keep(DRIVER, memory=SigningMemory(1)).verifier, NOW - behind) is refusal
+
+
 def test_the_first_run_has_the_whole_window() -> None:
     assert check(keep(DRIVER).verifier, NOW - 30 * TICKS) is None
 
