@@ -74,8 +74,8 @@ def _open(path: Path, within: float) -> socket.socket | None:
     sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
     # Only the kernel waits for room in the queue: with a timeout of Python, connect() returns EAGAIN at once
-    wait = _TIMEVAL.pack(int(within), int(within % 1.0 * 1e6))
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, wait)
+    wait = divmod(round(within * 1_000_000), 1_000_000)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _TIMEVAL.pack(*wait))
     sock.setblocking(within > 0.0)
     try:
         with socket_address(path) as address:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 import os
 import socket
+import struct
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from groundstation.station_socket.connect import NoStationError, connect, peer_credentials, running_stations
@@ -67,6 +69,15 @@ def test_a_station_is_told_first_what_connects(stack: ExitStack) -> None:
     accepted = stack.enter_context(listening.accept()[0])
     assert decode_hello(accepted.recv(4096)) == HELLO
     assert sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF) > 300_000
+
+
+def test_the_kernel_waits_as_long_as_the_socket(stack: ExitStack) -> None:
+    station(stack, 41)
+    with connect(41, HELLO, 2.25) as sock:
+        wait = sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, 16)
+        seconds, microseconds = struct.unpack("2l", wait)
+        assert seconds + microseconds / 1e6 == pytest.approx(2.25, abs=0.02)  # in ticks of the kernel
+        assert sock.gettimeout() == 2.25
 
 
 def test_a_station_that_does_not_run_is_named(stack: ExitStack) -> None:
@@ -259,3 +270,4 @@ def test_what_a_packet_does_not_say_is_nothing() -> None:
     assert HeardMessage(0, 1, 1, 0, 0, b"") == HeardMessage(0, 1, 1, 0, 0, b"", "", "", 0, clash=False)
     assert ToSend() == ToSend(())
     assert StationFailed("why").line == "why"
+    assert msgspec.msgpack.decode(encode_names(Names(("A",)))) == {"type": "Names", "names": ["A"]}
