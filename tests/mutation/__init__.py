@@ -1,6 +1,6 @@
 """Mutation testing of the safety code: change one place of it at a time and report the changes that no test notices.
 
-    python -m tests.mutation                              all of vehicle/drive, vehicle/safety and link/protocol
+    python -m tests.mutation                              all rooms (`ROOMS`, __main__.py)
     python -m tests.mutation vehicle/drive/gate.py        one module
     python -m tests.mutation --list vehicle/drive         list the mutants, run no test
     python -m tests.mutation --jobs 2                     two processes
@@ -17,9 +17,13 @@ How a run works:
    under coverage and records the lines that each test executes and its duration (baseline.py).
 2. Each mutant gets a forked child (runner.py). For a change inside a function, the child replaces the `__code__` of the
    loaded function (loading.py) and runs the tests that execute the changed line, likely and fast ones first, until one
-   fails or the time for this mutant is over.
-3. For a change at module level (tables, defaults, constants), the child imports vehicle/, link/ and tests/ anew and
-   runs the test files one after the other, the module's own first.
+   fails or the time for this mutant is over. For a line that only a process executes which a test forks, it runs the
+   module's own test file.
+3. For a change at module level (tables, defaults, constants), the child imports vehicle/, link/, groundstation/ and
+   tests/ anew and runs the test files one after the other, the module's own first and in any case.
+
+Tests that start programs (`DESELECTED`) run unchanged code in them and notice no mutant. What only they test is not run
+here: groundstation/web but for its guard, and the entry and files of keys (`NOT_RUN`).
 
 With --results, a mutant that was killed is not run again while its module is the same, and a survivor not while the
 tests are the same, too (results.py).

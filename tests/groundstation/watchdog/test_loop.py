@@ -24,6 +24,7 @@ from groundstation.watchdog.process import WatchdogProcess, fork_watchdog
 from groundstation.watchdog.report import DemandRoute, StationReport, encode_report
 from groundstation.watchdog.terminal_reset import RESET, TerminalReset
 from link.protocol.framer import Framer
+from tests.groundstation.watchdog.test_terminal_guard import ignores_hangup
 from tests.waits import wait_until
 
 ARDUROVER = DrivenVehicle(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
@@ -265,6 +266,8 @@ def test_the_forked_process_ends_with_its_station(loop: Loop) -> None:
     process, station = fork_watchdog(loop.screen, None)
     with station:
         assert not os.get_blocking(station.fileno())
-        assert os.getsid(0) != process
+        wait_until(
+            lambda: os.getsid(process) == process and ignores_hangup(process), "the end of a terminal is not its own"
+        )
         station.send(encode_report(StationReport(ending=True)))
     assert os.waitpid(process, 0)[1] == 0

@@ -70,7 +70,7 @@ def test_the_guard_outlives_the_hangup_of_its_session(terminal: Terminal) -> Non
 
     def hang_up() -> None:
         (guard,) = map(int, Path(f"/proc/self/task/{os.getpid()}/children").read_text().split())
-        wait_until(lambda: os.getsid(guard) == guard and _ignores_hangup(guard))
+        wait_until(lambda: os.getsid(guard) == guard and ignores_hangup(guard))
         os.kill(guard, signal.SIGHUP)
         os.kill(os.getpid(), signal.SIGKILL)
 
@@ -78,7 +78,8 @@ def test_the_guard_outlives_the_hangup_of_its_session(terminal: Terminal) -> Non
     assert terminal.read_reset() == RESET
 
 
-def _ignores_hangup(process: int) -> bool:
+def ignores_hangup(process: int) -> bool:
+    """Return whether a process ignores SIGHUP."""
     (line,) = (line for line in Path(f"/proc/{process}/status").read_text().splitlines() if line.startswith("SigIgn"))
     return bool(int(line.split()[1], 16) & 1 << (signal.SIGHUP - 1))
 
