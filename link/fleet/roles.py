@@ -138,9 +138,8 @@ def _sets_rate_of_heartbeat(message: m.CommandLong | m.CommandInt) -> bool:
     """Return whether this may silence the HEARTBEAT of a channel, by which all behind it know the vehicle."""
     if message.command != rover.MAV_CMD_SET_MESSAGE_INTERVAL:
         return False
-    return (
-        not 1.0 <= message.param1 < _IDS
-    )  # ArduPilot cuts off the fraction, PX4 rounds; NaN and what is too large may be 0
+    # ArduPilot cuts off the fraction of the id, PX4 rounds; NaN and what is too large may be 0.
+    return not 1.0 <= message.param1 < _IDS
 
 
 def _decode(frame: Frame) -> Message:

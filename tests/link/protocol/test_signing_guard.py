@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from dialects.codec import MAGIC_V1
 from dialects.messages import Attitude, CommandLong, Heartbeat, ManualControl, RadioStatus
 from link.core import Outgoing, SigningCounts
 from link.protocol.log_tap import LogTap
 from link.protocol.peer_table import MAX_PEERS
 from link.protocol.signing_guard import LANES, SigningGuard, SigningPolicy, lane_of
+from link.signing.keys import SigningKey
 from link.signing.role import Role
 from link.signing.signature import is_signed, link_and_stamp
 from link.signing.verifier import Refusal, Verified
@@ -60,6 +62,15 @@ def test_10_mavlink_1_has_no_signatures_and_is_refused() -> None:
     channel = vehicle(keep(DRIVER))
     assert channel.receive(version_1(HEARTBEAT), HERE, 0.0) == []
     assert channel.report().refused == SigningCounts(unsigned=1)
+
+
+@pytest.mark.parametrize(("keys", "is_old"), [((DRIVER,), False), ((), True)])
+def test_who_sends_mavlink_1_is_answered_in_it_if_nothing_is_signed(keys: tuple[SigningKey, ...], is_old: bool) -> None:
+    channel = station(keep(*keys), SigningPolicy(unsigned=Role.SET_UP))
+    assert channel.receive(version_1(HEARTBEAT, 0, 1, 1), HERE, 0.0)
+    [answer] = send(channel, ARM)
+    assert (answer[0] == MAGIC_V1, is_signed(answer)) == (is_old, not is_old)
+    assert channel.speaks_version_1(HERE, 1) is is_old
 
 
 def test_unsigned_frames_have_the_role_that_the_link_grants() -> None:
