@@ -82,7 +82,7 @@ def test_kill_loses_less_than_0_2_s_and_pymavlink_reads_the_log(tmp_path: Path) 
     assert "UNKNOWN_46006" in dump
     assert "BAD_DATA" not in dump
     assert "Total distance" in run_tool("mavsummarize.py", log)
-    assert "0 points" not in run_tool("mavtogpx.py", log)
+    assert " 0 points" not in run_tool("mavtogpx.py", log)
 
 
 @contextmanager

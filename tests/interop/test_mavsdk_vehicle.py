@@ -119,7 +119,7 @@ def test_its_parameters_are_set_by_their_type(vehicle: Vehicle, verb: Callable[.
     assert vehicle.wait_for("float") == ["SPEED_MAX", 2.5]
     verb("param", "set", "TEST_007", "70")
     assert vehicle.wait_for("int") == ["TEST_007", 70]
-    assert "cannot hold 1.5" in verb("param", "set", "TEST_008", "1.5", code=4).err
+    assert "cannot hold 1.5" in verb("param", "set", "TEST_008", "1.5", code=2).err
     assert "no such parameter" in verb("param", "set", "NOPE", "1", code=4).err
     verb("param", "set", "SPEED_MAX", "1.5")
     verb("param", "set", "TEST_007", "7")

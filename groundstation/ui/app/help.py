@@ -32,7 +32,7 @@ class HelpScreen(OwnDismissal[None], ConsoleScreen):
         keys = {row.id: load_screen(row).KEYS for row in SCREENS}
         self._sections = build_sections(context.keymap, self._own, keys)
         self._filter = ""
-        self._text = Static()
+        self._text = Static(markup=False)
         self._page = VerticalScroll(self._text, id="page", can_focus=False)
 
     def compose(self) -> ComposeResult:

@@ -29,7 +29,7 @@ async def test_the_buttons_of_a_gamepad_stand_clear_of_the_text(monkeypatch: pyt
     monkeypatch.setitem(KEYMAPS, "pad", with_pad.bindings)
     async with console(size=(120, 60), keymap="pad") as screen:
         await screen.press("question_mark")
-        assert "pad D-pad up  Raise both limits" in screen.text
+        assert "pad D-pad up  Raise the speed and turn limits" in screen.text
         assert "hold r  pad START  Arm" in screen.text
 
 

@@ -57,7 +57,7 @@ OPENING: dict[str, tuple[str, ...]] = {
 
 @pytest.mark.parametrize("screen_name", OPENING)
 async def test_each_screen_says_why_it_opens_no_log(tmp_path: Path, screen_name: str) -> None:
-    (tmp_path / "drive.tlog").write_bytes(bytes(drive_log(5).data))
+    (tmp_path / "drive.tlog").write_bytes(bytes(drive_log(15).data))
     recording = RecordingView(path=str(tmp_path / "drive.tlog"))
     async with console((140, 45), folder=tmp_path) as screen:
         await screen.show(snapshot(vehicle=vehicle(armed=True, in_control=True), recording=recording))

@@ -31,6 +31,11 @@ COMMANDS = {
 """Verbs of one command, and its number."""
 
 
+def commands_to(vehicle: ForeignVehicle) -> dict[tuple[str, ...], int]:
+    """Return those that are sent to it: ArduPilot stores each parameter when it is set, and knows no command for it."""
+    return {words: n for words, n in COMMANDS.items() if words != ("param", "store") or vehicle.autopilot != ARDUPILOT}
+
+
 @pytest.fixture(params=[ARDUPILOT, PX4], ids=["ardupilot", "px4"])
 def vehicle(request: pytest.FixtureRequest) -> Iterator[ForeignVehicle]:
     with foreign_vehicle(request.param) as running:
@@ -62,7 +67,7 @@ def test_wrong_arguments(capsys: Capture) -> None:
 def test_refused(capsys: Capture, vehicle: ForeignVehicle) -> None:
     vehicle.armed = True
     codes = {}
-    for words, command in COMMANDS.items():
+    for words, command in commands_to(vehicle).items():
         vehicle.answers = {command: (4, "not now")}
         codes[words] = run_verb(capsys, *words, "-e", vehicle.endpoint, "-v", "1").code
     assert {words: code for words, code in codes.items() if code != ExitCode.REFUSED} == {}
@@ -72,6 +77,6 @@ def test_not_answered(capsys: Capture, vehicle: ForeignVehicle) -> None:
     vehicle.armed = True
     vehicle.silent |= {75, 76}  # COMMAND_INT, COMMAND_LONG
     codes = {}
-    for words in COMMANDS:
+    for words in commands_to(vehicle):
         codes[words] = run_verb(capsys, *words, "-e", vehicle.endpoint, "-v", "1", "--timeout", "0.15").code
     assert {words: code for words, code in codes.items() if code != ExitCode.NO_ANSWER} == {}
