@@ -22,7 +22,7 @@ __all__ = ["tmux"]
 pytestmark = IN_TMUX
 
 OTHERS = [row for row in SCREENS if row.in_tabs and row.id != "drive"]
-NARROW_TITLES = TITLES | {"charts": "nothing is drawn yet"}
+NARROW_TITLES = TITLES | {"charts": "─ 1 speed"}
 """Id of a screen -> what its first picture has at 80x24."""
 HELD = "i"
 

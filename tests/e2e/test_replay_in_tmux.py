@@ -23,7 +23,8 @@ PARENT = "logs here"
 
 def test_a_log_has_the_terminal_until_it_is_killed_or_quit(tmux: Callable[..., Tmux], tmp_path: Path) -> None:
     log = tmp_path / "drive.tlog"
-    log.write_bytes(bytes(drive_log(5).data))
+    # Armed from 10 s: a shorter log without that is not listed.
+    log.write_bytes(bytes(drive_log(15).data))
     terminal = tmux(140, 45, "--sitl", "--no-record", "--folder", str(tmp_path))
     terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
     for kill in (True, False):

@@ -156,7 +156,7 @@ async def test_the_palette_can_be_read_and_does_not_dim_what_is_behind(theme: Th
 async def test_a_theme_of_the_palette_changes_all_that_is_shown() -> None:
     async with console(SMALL, snapshot()) as screen:
         dark = screen.text
-        await screen.press("ctrl+p", *"themelight")
+        await screen.press("ctrl+p", *"theme", "space", *"light")
         await until(lambda: "Dark text on white" in screen.text)
         await screen.press("enter")
         await screen.show(snapshot())
