@@ -65,7 +65,7 @@ def test_10_mavlink_1_has_no_signatures_and_is_refused() -> None:
 
 
 @pytest.mark.parametrize(("keys", "is_old"), [((DRIVER,), False), ((), True)])
-def test_who_sends_mavlink_1_is_answered_in_it_if_nothing_is_signed(keys: tuple[SigningKey, ...], is_old: bool) -> None:
+def test_mavlink_1_is_answered_in_it_if_nothing_is_signed(keys: tuple[SigningKey, ...], is_old: bool) -> None:
     channel = station(keep(*keys), SigningPolicy(unsigned=Role.SET_UP))
     assert channel.receive(version_1(HEARTBEAT, 0, 1, 1), HERE, 0.0)
     [answer] = send(channel, ARM)
