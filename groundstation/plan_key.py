@@ -7,8 +7,9 @@ without a place and for a fence, and without the _INT of a frame.
 from __future__ import annotations
 
 import math
-import struct
 from typing import Protocol
+
+from link.services.param.float32 import as_float32
 
 SAME_FRAMES = {5: 0, 6: 3, 11: 10}
 """MAV_FRAME_..._INT -> the frame of the same meaning that vehicles answer with."""
@@ -66,9 +67,4 @@ def item_key(item: KeyedItem, *, located: bool) -> Key:
 
 
 def _float32(value: float) -> float | None:
-    if math.isnan(value):
-        return None
-    try:
-        return float(struct.unpack("<f", struct.pack("<f", value))[0])
-    except OverflowError:
-        return value
+    return None if math.isnan(value) else as_float32(value)

@@ -40,9 +40,9 @@ def parse_waypoints(text: str, source: str) -> Plan:
         items = decode_plan(text.removeprefix("\ufeff").encode("ascii", "replace"), _find_fault)
     except PlanFileError as error:
         raise FileFormatError(f"{source}:{_AT_LINE.sub(lambda found: f'{found[1]}: ', str(error), count=1)}") from error
-    home = as_home(items[0]) if items and looks_like_home(items[0]) else None
-    first = 1 if items and looks_like_home(items[0]) else 0
-    return _sorted_plan(items, first, home)
+    if items and looks_like_home(items[0]):
+        return _sorted_plan(items, 1, as_home(items[0]))
+    return _sorted_plan(items, 0, None)
 
 
 def _sorted_plan(items: Items, first: int, home: PlannedHome | None) -> Plan:

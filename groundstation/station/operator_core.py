@@ -52,8 +52,6 @@ class OperatorCore:
         self._outbox: list[Outgoing] = []
         self._active_at = parts.started
         """When something was under way last."""
-        self.rests = False
-        """No vehicle is armed or was driven just now, and nothing is under way."""
         self.on_rest_end: Callable[[], None] = lambda: None
         """Called at once when `rests` becomes False."""
 
@@ -148,6 +146,11 @@ class OperatorCore:
         )
 
     @property
+    def rests(self) -> bool:
+        """No vehicle is armed or was driven just now, and nothing is under way."""
+        return self.operator.rests
+
+    @property
     def rest_period(self) -> float | None:
         """Time between ticks that are enough, s: nothing but demands is under way, and for them there is `due_at`."""
         if self._busy:
@@ -172,7 +175,6 @@ class OperatorCore:
             self._active_at = now
         rests = now - self._active_at >= REST_AFTER
         if rests != self.rests:
-            self.rests = rests
             self.operator.set_resting(rests, now)
             if not rests:
                 self.on_rest_end()

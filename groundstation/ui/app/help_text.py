@@ -105,13 +105,10 @@ def build_sections(keymap: Keymap, own: ScreenRow, screen_keys: dict[str, tuple[
     drives = own is SCREENS[0]
     first = [name for name in TITLES if drives or name in COMMON]
     rest = [name for name in TITLES if name not in first]
-    own_keys = _screen_section(own, screen_keys)
     lists = HelpSection("Lists and panels", tuple(HelpRow(*each) for each in LIST_KEYS))
     sections = [
-        *([own_keys] if not drives else []),
-        *([lists] if not drives else []),
-        *(groups[name] for name in first),
-        *(groups[name] for name in rest),
+        *([] if drives else [_screen_section(own, screen_keys), lists]),
+        *(groups[name] for name in (*first, *rest)),
         *([lists] if drives else []),
         *(_screen_section(row, screen_keys) for row in SCREENS if row is not own),
         HelpSection("Status line", tuple(HelpRow(*each) for each in STATUS_LINE)),

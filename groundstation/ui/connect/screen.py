@@ -111,11 +111,11 @@ class ConnectScreen(ConsoleScreen):
 
     def choose_panel_of(self, widget: Widget) -> tuple[str, str] | None:
         """Give the arrows to the list of a widget."""
-        panel = next((panel for panel, each in zip(Panel, self._tables, strict=True) if each is widget), None)
-        if panel is not None:
-            self._model.chosen = panel
-            self._show()
-        return None if panel is None else LIST_ARROWS
+        if widget not in self._tables:
+            return None
+        self._model.chosen = Panel(self._tables.index(widget))
+        self._show()
+        return LIST_ARROWS
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""

@@ -23,15 +23,15 @@ LOG_COLUMNS = (
     Column("here", 18, most=60),
 )
 TREE_COLUMNS = (Column("", 24, most=36), Column("", 16, 2, most=40), Column("", 8, 1, right=True))
-HERE_COLUMNS = (
-    Column("file", 24, most=44),
+SUMMARY_COLUMNS = (
     Column("vehicle", 10, 3),
     Column("length", 8, 2, right=True),
     Column("driven", 7, 2, right=True),
     Column("size", 9, right=True),
     Column("changed", 16, 1),
-    Column("", 14, most=44),
 )
+"""Columns of each list of logs behind the name; `summary_cells` fills the first three."""
+HERE_COLUMNS = (Column("file", 24, most=44), *SUMMARY_COLUMNS, Column("", 14, most=44))
 TASK_COLUMNS = (
     Column("", 22, most=40),
     Column("", 10, 2, most=20),
@@ -145,7 +145,7 @@ def _local(each: LocalFile, model: FilesModel) -> tuple[Cell, ...]:
 
 
 def summary_cells(found: LogSummary | None) -> tuple[Cell, Cell, Cell]:
-    """Return of which vehicles a log is, how long, and for how long they drove: columns of each list of logs."""
+    """Return of which vehicles a log is, how long, and for how long they drove."""
     if found is None:
         return dim(""), dim(""), dim("")
     systems = " ".join(map(str, found.systems))

@@ -164,7 +164,7 @@ class LinksScreen(ConsoleScreen):
         """Give the arrows to the panel of a widget."""
         if widget not in self._panels:
             return None
-        self._chosen = next(at for at, each in enumerate(self._panels) if each is widget)
+        self._chosen = self._panels.index(widget)
         self._show_links(self._links.value.view)
         self._lay_out()
         return LIST_ARROWS

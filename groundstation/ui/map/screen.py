@@ -111,7 +111,7 @@ class MapScreen(ConsoleScreen):
         """Give the arrows to a panel; over the map the wheel zooms."""
         if widget not in self._panels:
             return None
-        self._chosen = next(at for at, each in enumerate(self._panels) if each is widget)
+        self._chosen = self._panels.index(widget)
         self._show(forced=True)
         return ("plus", "minus") if self._chosen == 0 else LIST_ARROWS
 

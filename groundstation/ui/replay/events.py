@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from groundstation.ui.base.local_files import LocalFile
 from groundstation.ui.files.log_summary import LogSummary
-from groundstation.ui.files.tables import size_text, summary_cells
+from groundstation.ui.files.tables import SUMMARY_COLUMNS, size_text, summary_cells
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE, YELLOW
 from groundstation.ui.replay.model import ReplayModel, event_time
 from groundstation.ui.widgets.columns import Column
@@ -15,14 +15,7 @@ from groundstation.ui.widgets.row_table import Cell, RowTableValue, dim
 from groundstation.views.replay import ReplayEvent
 
 COLUMNS = (Column("", 10), Column("", 5), Column("", 12, most=200))
-FILE_COLUMNS = (
-    Column("log", 24, most=60),
-    Column("vehicle", 10, 3),
-    Column("length", 8, 2, right=True),
-    Column("driven", 7, 2, right=True),
-    Column("size", 9, right=True),
-    Column("changed", 16, 1),
-)
+FILE_COLUMNS = (Column("log", 24, most=60), *SUMMARY_COLUMNS)
 
 WARNING, ERROR = 4, 3
 """MAV_SEVERITY."""

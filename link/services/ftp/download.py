@@ -129,7 +129,7 @@ class Download:
             self._fail(f"{announced} bytes are more than {MAX_SIZE}")
             return
         if self._growths and announced <= len(self.have):
-            self._changed(self.have)
+            self._fail(CHANGED)
             return
         self._file = FileReassembly(announced)
         if len(self.have) <= announced:
@@ -228,15 +228,11 @@ class Download:
             self._exchange = Exchange(self.line, self.patience)
             self.begin(now)
         else:
-            self._changed(self._file.data)
+            self._fail(CHANGED)
 
     def _finish(self, checksum: int | None) -> None:
         """End with the checksum of the vehicle; without one the file counts as it is."""
         self.outcome = FtpOutcome(FtpOperation.DOWNLOAD, self.path, True, self._file.data, checksum=checksum)
-
-    def _changed(self, data: bytes) -> None:
-        self.abandon()
-        self.outcome = FtpOutcome(FtpOperation.DOWNLOAD, self.path, False, data, problem=CHANGED)
 
     def _fail_by(self, reply: FtpPacket) -> None:
         self._fail("")

@@ -30,6 +30,14 @@ def shortest_float32(value: float) -> float:
     return value
 
 
+def as_float32(value: float) -> float:
+    """Return the float32 nearest to a number, or the number if it is beyond every float32."""
+    try:
+        return float(_FLOAT.unpack(_FLOAT.pack(float(value)))[0])
+    except OverflowError:
+        return value
+
+
 def is_float32(value: float) -> bool:
     """Return whether a finite float32 is near `value`."""
     try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import struct
 
 import msgspec
 
@@ -12,6 +11,7 @@ from groundstation.ui.map.plan.commands import CIRCLES, DO_JUMP, POLYGONS, comma
 from groundstation.ui.map.plan.geometry import DEGREES_SCALE, GLOBAL_FRAMES, UNSET
 from groundstation.ui.map.plan.mission_command import CommandParam
 from groundstation.views.plan import PlanItem
+from link.services.param.float32 import as_float32
 
 LOCAL_SCALE = 1e4
 MISSION_FRAME, RELATIVE = 2, 3
@@ -83,7 +83,7 @@ def number_text(value: float) -> str:
     if math.isnan(value):
         return "--"
     texts = (f"{float(f'{value:.{digits}g}'):.9g}" for digits in range(1, 9))
-    return next((text for text in texts if _float32(float(text)) == _float32(value)), f"{value:.9g}")
+    return next((text for text in texts if as_float32(float(text)) == as_float32(value)), f"{value:.9g}")
 
 
 def change_field(item: PlanItem, field: ItemField, text: str, first: int = 0) -> PlanItem | str:
@@ -98,13 +98,13 @@ def change_field(item: PlanItem, field: ItemField, text: str, first: int = 0) ->
     if field.key == "z":
         if math.isnan(value):
             return "the altitude must be a number"
-        return msgspec.structs.replace(item, z=_float32(value))
+        return msgspec.structs.replace(item, z=as_float32(value))
     if item.command == DO_JUMP and field.key == "1":
         value -= first
         if not value >= 0:
             return f"there is no item {text.strip()}"
     params = list(item.params)
-    params[int(field.key) - 1] = _float32(value)
+    params[int(field.key) - 1] = as_float32(value)
     return msgspec.structs.replace(item, params=tuple(params))
 
 
@@ -152,10 +152,3 @@ def _coordinate(value: int, frame: int) -> str:
     if frame in GLOBAL_FRAMES:
         return f"{value / DEGREES_SCALE:.7f}"
     return f"{value / LOCAL_SCALE:g}" if frame != MISSION_FRAME else str(value)
-
-
-def _float32(value: float) -> float:
-    if abs(value) > _LARGEST:
-        return value
-    found: float = struct.unpack("<f", struct.pack("<f", value))[0]
-    return found
