@@ -25,7 +25,7 @@ format:  ## Format the code and sort the imports.
 test-fast:  ## Test the cores and the safety code, in less than 20 s.
 	$(PYTEST) -q $(PARALLEL) -m 'not slow' $(FAST)
 
-test:  ## Run the short suite, as README.md does: 200 s of CPU.
+test:  ## Run the short suite, as README.md does: 250 s of CPU.
 	$(PYTEST) $(PARALLEL)
 
 test-all:  ## Run every test, as CI does.
