@@ -20,7 +20,7 @@ from vehicle.accessories.settings import Accessories
 from vehicle.config.conflicts import find_conflicts
 from vehicle.config.signing import SigningSettings
 from vehicle.config.signing import find_problems as find_signing_problems
-from vehicle.motors import MotorError, UnknownDriverError
+from vehicle.motors import UnknownDriverError
 from vehicle.motors.drivers import DRIVERS, profile_params, profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import PARAMETERS, ParamError, Params
@@ -136,8 +136,6 @@ def _motor_problems(table: Mapping[str, Any]) -> list[str]:
         kind = settings_type(name)
     except UnknownDriverError as error:
         return [f"motors.driver: {error}"]
-    except MotorError:  # its library is missing, which is not an error in the file; opening the driver reports it
-        return []
     settings = {**profile_settings(name), **{key: value for key, value in table.items() if key != "driver"}}
     common_keys = CommonMotorSettings.__struct_fields__
     common = {key: value for key, value in settings.items() if key in common_keys}

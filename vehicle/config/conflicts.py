@@ -18,7 +18,6 @@ from link.endpoint import parse_endpoint
 from vehicle.accessories.output import AccessorySpec
 from vehicle.accessories.settings import Accessories, build_spec, iter_tables
 from vehicle.drive.mixer import MIXERS
-from vehicle.motors import MotorError
 from vehicle.motors.drivers import profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, pin_name, port_name
 from vehicle.sensors.suite import SensorSettings
@@ -68,10 +67,7 @@ def _motors(table: Mapping[str, Any]) -> dict[str, Any]:
     driver = table["driver"]
     settings = {**profile_settings(driver), **{key: value for key, value in table.items() if key != "driver"}}
     common = msgspec.convert({"safety": settings.pop("safety", None)}, CommonMotorSettings)
-    try:
-        kind = settings_type(driver)
-    except MotorError:  # its library is missing; opening the driver reports it
-        kind = None
+    kind = settings_type(driver)
     own = None if kind is None else msgspec.convert(settings, kind)
     return {"motors": own, "motors.safety": common.safety}
 

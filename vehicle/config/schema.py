@@ -14,7 +14,6 @@ from vehicle.accessories.settings import COMMON
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
 from vehicle.config.template import parameter_help
-from vehicle.motors import MotorError
 from vehicle.motors.drivers import DRIVERS, profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
@@ -22,7 +21,7 @@ from vehicle.params import TABLE, Parameter
 
 def build_schema() -> str:
     """Return the JSON schema."""
-    kinds = {name: kind for name in DRIVERS if (kind := _settings(name)) is not None}
+    kinds = {name: settings_type(name) or NoSettings for name in DRIVERS}
     accessories = {
         (kind, name): settings_type_of(kind, name) or NoSettings for kind in COMMON for name in ACCESSORY_DRIVERS[kind]
     }
@@ -48,14 +47,6 @@ def build_schema() -> str:
     }  # fmt: skip
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "rover.toml"}
     return json.dumps({**config, **head, "$defs": parts}, indent=1) + "\n"
-
-
-def _settings(name: str) -> type | None:
-    """Return the settings of a driver, None if its library is missing."""
-    try:
-        return settings_type(name) or NoSettings
-    except MotorError:
-        return None
 
 
 def _accessory_schema(name: str, own: Mapping[str, Any], common: Mapping[str, Any]) -> dict[str, Any]:

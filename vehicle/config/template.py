@@ -16,7 +16,6 @@ from vehicle.accessories.settings import COMMON, Accessories
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
 from vehicle.config.signing import SigningSettings
-from vehicle.motors import MotorError
 from vehicle.motors.drivers import DRIVERS, DriverEntry, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
@@ -90,11 +89,7 @@ def _driver(name: str, entry: DriverEntry) -> str:
         params = ", ".join(f"{key} = {value:g}" for key, value in entry.params.items())
         note = f"# Its parameter defaults: {params}.\n" if params else ""
         return f'{heading}{note}#driver = "{name}"\n'
-    try:
-        kind = settings_type(name) or NoSettings
-    except MotorError as error:  # its library is not installed
-        return f'{heading}# {error}\n#driver = "{name}"\n'
-    settings: msgspec.Struct = msgspec.convert(entry.example, kind)
+    settings: msgspec.Struct = msgspec.convert(entry.example, settings_type(name) or NoSettings)
     return f'{heading}#driver = "{name}"\n{_body(settings, "motors")}'
 
 

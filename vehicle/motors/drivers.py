@@ -21,8 +21,8 @@ class DriverEntry(msgspec.Struct, frozen=True):
     """One driver: where its class is, and what help and `vehicle init` show."""
 
     path: str
-    """The class as "module:Class". The module is imported only when the driver is used: its library is installed only
-    where its hardware is."""
+    """The class as "module:Class". The module is imported with the settings of the driver, on any computer: it imports
+    its library only when it opens the hardware."""
     title: str = ""
     """The hardware, for --help and the heading in the file of `vehicle init`."""
     example: Mapping[str, Any] = msgspec.field(default_factory=dict)
@@ -203,8 +203,6 @@ def _import(name: str, module: str, kind: str) -> Any:
     """Import the module of a driver; a module from outside may raise anything. Raises UnknownDriverError."""
     try:
         return import_module(module)
-    except MotorError:  # a module of this package whose library is missing
-        raise
     except Exception as error:
         absent = isinstance(error, ModuleNotFoundError) and error.name == module.partition(".")[0]
         hint = "; install it beside vehicle, or add its folder to PYTHONPATH" if absent else ""

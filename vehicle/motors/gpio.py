@@ -16,14 +16,13 @@ import msgspec
 from msgspec.structs import astuple
 
 from vehicle.motors import check_throttles
-from vehicle.motors.pins import Motor, PhaseEnableMotor, translated
 from vehicle.motors.settings import Pin, pin_name, reject_duplicates
 
 
 class TwoInputs(
     msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="wiring", tag="two-inputs"
 ):  # fmt: skip
-    """IN1 and IN2, PWM on one and low on the other: DRV8833, DRV8871, L9110, MX1508, TB6612 and L298N with EN high."""
+    """IN1 and IN2, PWM on one and low on the other: DRV8833, DRV8871, L9110, MX1508, TB6612, L298N (ENA, ENB high)."""
 
     forward: Pin
     """PWM input for forward, IN1."""
@@ -70,9 +69,12 @@ class GpioMotors:
 
     def __init__(self, settings: GpioSettings, *, pin_factory: Any = None) -> None:
         """Open the pins. `pin_factory` is gpiozero's; None selects the one of this machine. Raises MotorError."""
+        from vehicle.motors.pins import translated  # its library is needed to open the pins, not to check settings
+
         self.count = len(settings.bridges)
         self.enabled = False
         self._bridges: list[Any] = []
+        self._translated = translated
         with contextlib.ExitStack() as opened, translated("motor pins"):
             for bridge in settings.bridges:
                 motor = _open_bridge(bridge, pin_factory)
@@ -96,26 +98,28 @@ class GpioMotors:
         """Set the PWM of each bridge; no effect while disabled."""
         values = check_throttles(throttles, self.count)
         if self.enabled:
-            with translated("motor pins"):
+            with self._translated("motor pins"):
                 for bridge, value in zip(self._bridges, values, strict=True):
                     bridge.value = value
 
     def close(self) -> None:
         """Set every input low, then release the pins."""
         self.enabled = False
-        with contextlib.ExitStack() as steps, translated("motor pins"):
+        with contextlib.ExitStack() as steps, self._translated("motor pins"):
             for bridge in self._bridges:
                 steps.callback(bridge.close)
                 steps.callback(bridge.stop)
             self._bridges = []
 
     def _stop(self) -> None:
-        with contextlib.ExitStack() as steps, translated("motor pins"):  # every bridge, even if one raises
+        with contextlib.ExitStack() as steps, self._translated("motor pins"):  # every bridge, even if one raises
             for bridge in self._bridges:
                 steps.callback(bridge.stop)
 
 
 def _open_bridge(bridge: TwoInputs | PhaseEnable, pin_factory: Any) -> Any:
+    from vehicle.motors.pins import Motor, PhaseEnableMotor
+
     match bridge:
         case TwoInputs():
             return Motor(bridge.forward, bridge.backward, pwm=True, pin_factory=pin_factory)
