@@ -8,39 +8,31 @@ from dialects.messages import Message
 from groundstation.intents.charts import PinSeries
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
-from groundstation.snapshot import Snapshot
 from groundstation.station.charts.desk import ChartDesk
-from groundstation.station.core_listener import CoreListener
 from groundstation.station.core_parts import CoreParts
-from groundstation.station.doctor.doctor_desk import DoctorDesk
+from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.driving.permission import Permission
 from groundstation.station.intent_handler import Rows
 from groundstation.station.messages.message_detail import MessageDetail
 from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.station.notes.station_notes import StationNotes
-from groundstation.station.snapshot_builder import SnapshotBuilder
-from groundstation.station.views.drive_display import DriveDisplay
 from groundstation.station.views.param_texts import ParamTexts
 from groundstation.station.views.sources import build_view_feed
 from groundstation.vehicles.fleet import Contact
-from link.core import LinkReport, Outgoing, Received
+from groundstation.views.doctor import DoctorRequest
+from link.core import LinkReport, Received
 
 
-class ScreenFeed(CoreListener):
+class ScreenFeed(DoctorFeed):
     """Views, charts, message traffic, doctor, display and notes of one core, for all of its screens."""
 
     def __init__(self, parts: CoreParts, texts: ParamTexts) -> None:
-        self._parts = parts
-        fleet, links, operator = parts.fleet, parts.links, parts.operator
+        super().__init__(parts)
+        fleet, links = parts.fleet, parts.links
         self._traffic = MessageTraffic(*parts.ids)
         self._detail = MessageDetail(self._traffic)
-        self._display = DriveDisplay(fleet, operator, links.timesync, parts.ids[0])
-        self._snapshots = SnapshotBuilder(parts, self._display)
         self._charts = ChartDesk(fleet, self._traffic, links.stats, links.timesync)
-        self.doctor = DoctorDesk(
-            fleet, parts.services, parts.queries, links.stats, operator, parts.ids, lambda now: self.snapshot(now, now)
-        )
-        self.notes = StationNotes(operator, fleet)
+        self.notes = StationNotes(parts.operator, fleet)
         parts.log.listener = self.notes.add_line
         shown = (self._charts, self._detail, self.doctor, self._display)
         self.views = build_view_feed(parts, texts.files, *(each.sources for each in shown))
@@ -51,22 +43,15 @@ class ScreenFeed(CoreListener):
         return {
             Watch: lambda intent, now: self.views.watch(intent.requests),
             PinSeries: lambda intent, now: self._charts.pin(intent.fields),
-            **self.doctor.handlers,
+            **super().handlers,
         }
 
-    def snapshot(self, now: float, wall: float) -> Snapshot:
-        """Build the snapshot; `now` and `wall` are the same moment on both clocks.
-
-        It has no effect. Whoever sends it counts it (`Snapshot.number`).
-        """
-        return self._snapshots.build(now, wall, faults=self.doctor.faults)
+    @property
+    def is_watched(self) -> bool:
+        """Whether a screen shows the chain."""
+        return self.views.is_watching(DoctorRequest)
 
     # ---- CoreListener ----
-
-    @property
-    def busy(self) -> bool:
-        """A motor is tested."""
-        return self.doctor.tester.busy
 
     @property
     def systems(self) -> frozenset[int]:
@@ -78,35 +63,18 @@ class ScreenFeed(CoreListener):
         autopilot = contact is not None and contact.state.component == received.component
         self._traffic.count(received.message, received.system, received.component, now, known=autopilot)
 
-    def receive(self, contact: Contact, received: Received, now: float) -> None:
-        """Take a message of a vehicle for its display."""
-        self._display.receive(contact, received, now)
-
-    def receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
-        """Take a message of a vehicle for the doctor."""
-        self.doctor.receive(contact, received, now)
-
-    def handle_text(self, contact: Contact, text: str, now: float) -> None:
-        """Take a whole STATUSTEXT of a vehicle for the doctor."""
-        self.doctor.handle_text(contact, text, now)
-
-    def tick(self, now: float) -> None:
-        """Choose what to read of vehicles, renew or end a motor test."""
-        self._display.tick(now)
-        self.doctor.tick(now, self.views)
-
     def end_tick(self, now: float) -> None:
         """Count and record what is shown, and examine the chain."""
         self._traffic.tick(now)
         self._charts.tick(now)
         self._detail.tick(now)
-        self.doctor.examine_if_due(now)
+        super().end_tick(now)
 
     def begin_intent(self, intent: AnyIntent, permission: Permission, now: float) -> None:
         """Mark a key in the charts, where keys count; other inputs than those of Setup end the test of a motor."""
         if permission.screen is None:
             self._charts.mark_key(intent, now)
-        self.doctor.end_test(intent, now)
+        super().begin_intent(intent, permission, now)
 
     def repeat_key(self, push: AnyIntent, now: float) -> None:
         """Mark a repeat of a key that drives."""
@@ -126,8 +94,4 @@ class ScreenFeed(CoreListener):
     def handle_sent(self, message: Message, now: float) -> None:
         """Count a message that was sent."""
         self._traffic.count_sent(message, now)
-        self._display.handle_sent(message, now)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the doctor's messages, and remove them."""
-        return self.doctor.messages_to_send()
+        super().handle_sent(message, now)

@@ -21,14 +21,14 @@ class VerbAction(msgspec.Struct, frozen=True):
 
     help: str
     run: Callable[[Any, argparse.Namespace, Output], Awaitable[int]]
-    """Gets a VerbSession, a StationSession, or None; returns the exit code."""
+    """Gets a VerbSession, a DoctorSession, or None; returns the exit code."""
     arguments: tuple[Argument, ...] = ()
     aliases: tuple[str, ...] = ()
     """Other words for it."""
     offline: bool = False
     """Needs neither vehicle nor link: `run` gets None. It has its own arguments, --dialect, --json and --quiet."""
-    station: bool = False
-    """`run` gets a StationSession: a whole ground station without a screen. It finds its vehicle itself."""
+    examines: bool = False
+    """`run` gets a DoctorSession: an OperatorCore with the doctor. It finds its vehicle itself."""
     finds: bool = True
     """Waits for the vehicle before it runs."""
     many: bool = False

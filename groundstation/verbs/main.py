@@ -42,7 +42,7 @@ from link.runtime.event_loop import run_loop
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
     from groundstation.verbs.session.demand_guard import DemandGuard
-    from groundstation.verbs.session.station_session import StationSession
+    from groundstation.verbs.session.doctor_session import DoctorSession
     from link.signing_keeper import SigningKeeper
 
 many = LaterModule("many")
@@ -142,7 +142,7 @@ async def _run_once(
     station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))
     ids, kept = choose_identity(action, options, station)
     tap = action.tap(options, ids)
-    own = station is None and not action.station and not getattr(options, "unsigned", False)
+    own = station is None and not action.examines and not getattr(options, "unsigned", False)
     signing = _open_signing() if own else None
     guarded = station is None and action.guarded(options)
     guard = _start_guard(ids, signing) if guarded else None  # before the links are open
@@ -157,15 +157,15 @@ async def _run_once(
             remember(endpoints, session.vehicle.name)
         return await action.run(session, options, output)
 
-    async def alone(session: StationSession) -> int:
+    async def alone(session: DoctorSession) -> int:
         return await action.run(session, options, output)
 
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
-            if action.station:
-                from groundstation.verbs.session.station_session import run_station  # loads the whole station
+            if action.examines:
+                from groundstation.verbs.session.doctor_session import run_doctor  # loads an OperatorCore
 
-                return await run_station(endpoints, options.system, getattr(options, "driver", 0), alone, station)
+                return await run_doctor(endpoints, options.system, getattr(options, "driver", 0), alone, station)
             return await run_session(
                 endpoints,
                 ids,

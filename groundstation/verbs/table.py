@@ -249,7 +249,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         (("--report", {"metavar": "FILE", "help": "write a report for a bug, without keys and public addresses"}),
          _YES, ("--driver", {"type": int, "default": 255, "metavar": "ID",
                              "help": "system id of the ground station that will drive (default: 255)"})),
-        station=True, watches=True,
+        examines=True, watches=True,
     )},
     "motor": {ONLY: VerbAction(
         "turn one motor of a disarmed vehicle, wheels off the ground", motor.run,
@@ -257,7 +257,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
          ("throttle", {"type": motor.percent, "metavar": "PERCENT", "help": "up to 30, negative for backward"}),
          ("--for", {"dest": "seconds", "type": motor.duration, "default": 1.0, "metavar": "S",
                     "help": "how long, up to 2 s (default: 1)"})),
-        station=True,
+        examines=True,
     )},
     "calibrate": {ONLY: VerbAction(
         "calibrate gyros, level or pressure at rest, compass or RC sticks by hand", calibrate.run,

@@ -32,7 +32,7 @@ from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.services.service_calls import SETUP
 from groundstation.station.services.service_desk import ServiceDesk
 from groundstation.station.services.vehicle_queries import VehicleQueries
-from groundstation.station.view_feed import ViewFeed, ViewSource
+from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.views.base import ViewRequest
 from groundstation.views.doctor import (
@@ -79,7 +79,7 @@ class DoctorDesk:
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
         """Request -> its source."""
-        return {DoctorRequest: ViewSource(self._build, QUICK)}
+        return {DoctorRequest: ViewSource(self.build, QUICK)}
 
     # ---- core ----
 
@@ -99,9 +99,8 @@ class DoctorDesk:
         if contact is self._fleet.selected:
             self.tester.handle_text(text, now)
 
-    def tick(self, now: float, views: ViewFeed) -> None:
-        """Renew or end a motor test, read the parameters while a screen shows the chain."""
-        watched = views.is_watching(DoctorRequest)
+    def tick(self, now: float, *, watched: bool) -> None:
+        """Renew or end a motor test, read the parameters while somebody sees the chain (`watched`)."""
         self.tester.tick(now, watched=watched)
         chosen = self._fleet.selected
         for contact in self._fleet:
@@ -200,7 +199,8 @@ class DoctorDesk:
         )
         return examine(facts)
 
-    def _build(self, request: DoctorRequest, now: float, wall: float) -> DoctorView:
+    def build(self, request: DoctorRequest, now: float, wall: float) -> DoctorView:
+        """Build the view of the selected vehicle; a new request has the chain examined at once."""
         if request != self._request:
             self._request, self._due = request, -math.inf
         self.examine_if_due(now)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping, MutableMapping
+from typing import TYPE_CHECKING
 
 from dialects.enums import Command, Severity
 from groundstation.intents.services import ServiceIntent
@@ -17,16 +18,17 @@ from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult
-from groundstation.vehicles.requests.folder_cache import ListedFolder
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
-from groundstation.vehicles.requests.transfer_requests import log_ending
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.views.base import ViewRequest
 from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow, VehicleLog
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from link.core import Outgoing, Received
+
+if TYPE_CHECKING:
+    from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult
+    from groundstation.vehicles.requests.folder_cache import ListedFolder
 
 SLOW_LINE = 20_000.0
 """Bytes/s below which transfers wait while the operator drives: a telemetry radio has 5.8 k, 115200 baud 11.5 k."""
@@ -265,6 +267,8 @@ MAX_ROWS = 2000
 
 def build_files(contact: Contact, request: FilesRequest) -> FilesView:
     """Return what was listed so far, of one vehicle."""
+    from groundstation.vehicles.requests.transfer_requests import log_ending  # with FTP, which a verb does without
+
     services = contact.services
     logs = services.logs.logs if services else None
     listed = services.folders.folders if services else {}

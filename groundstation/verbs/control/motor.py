@@ -10,7 +10,7 @@ from groundstation.intents.setup import StopMotorTest, TurnMotor
 from groundstation.station.driving.motor_test import LONGEST, THROTTLE_MAX
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.session.station_session import StationSession
+from groundstation.verbs.session.doctor_session import DoctorSession
 
 KNOWN_WITHIN = 5.0
 """s to learn which motors the vehicle has."""
@@ -39,7 +39,7 @@ def duration(text: str) -> float:
     return value
 
 
-async def run(session: StationSession, options: argparse.Namespace, output: Output) -> int:
+async def run(session: DoctorSession, options: argparse.Namespace, output: Output) -> int:
     """Turn a motor; done when the vehicle has accepted and the time is over."""
     if not await session.find_vehicle(options.wait, options.vehicle):
         raise VerbError(ExitCode.NO_VEHICLE, f"no vehicle within {options.wait:g} s")
@@ -60,17 +60,17 @@ async def run(session: StationSession, options: argparse.Namespace, output: Outp
     return _finish(session, number, output)
 
 
-def _turns(session: StationSession) -> bool:
+def _turns(session: DoctorSession) -> bool:
     test = session.doctor.test
     return test is not None and test.turning
 
 
-def _text(session: StationSession) -> str:
+def _text(session: DoctorSession) -> str:
     test = session.doctor.test
     return test.text if test is not None else ""
 
 
-def _finish(session: StationSession, number: int, output: Output) -> int:
+def _finish(session: DoctorSession, number: int, output: Output) -> int:
     view, text = session.doctor, _text(session)
     turned = any(row.number == number and row.tested for row in view.motors)
     refused = text.startswith(("refused", "not turned"))

@@ -9,7 +9,7 @@ from groundstation.intents.setup import RunChecks
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.local_file import check_new_file, write_text
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.session.station_session import StationSession
+from groundstation.verbs.session.doctor_session import DoctorSession
 from groundstation.views.doctor import DoctorView
 from link.runtime.diagnosis import MARKS, Health
 
@@ -19,7 +19,7 @@ AWAITED = ("link", "pre_arm", "stop_bound", "gcs_failsafe")
 """Rows that wait for answers of the vehicle."""
 
 
-async def run(session: StationSession, options: argparse.Namespace, output: Output) -> int:
+async def run(session: DoctorSession, options: argparse.Namespace, output: Output) -> int:
     """Print the chain; done when nothing stops the operator."""
     if options.report:
         check_new_file(options.report, overwrite=options.yes)
@@ -38,7 +38,7 @@ async def run(session: StationSession, options: argparse.Namespace, output: Outp
     return _finish(view, found, output)
 
 
-async def _ask(session: StationSession) -> None:
+async def _ask(session: DoctorSession) -> None:
     """Let the vehicle run its checks, and wait for what it tells."""
     await session.until(lambda: bool(session.doctor.system), SETTLE)
     view = session.doctor

@@ -1,4 +1,4 @@
-"""A whole ground station without a screen, for verbs that need what it knows: it never drives."""
+"""An OperatorCore with the doctor, for the verbs `doctor` and `motor`: it never drives."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from groundstation.connect.signing import SigningError, open_signing
 from groundstation.intents.base import Intent
 from groundstation.intents.session import RenewLease
 from groundstation.intents.vehicle import SelectVehicle
-from groundstation.intents.watch import Watch
 from groundstation.snapshot import Snapshot
 from groundstation.station.component import COMPONENT
-from groundstation.station.station import Station
+from groundstation.station.core_parts import CoreParts
+from groundstation.station.doctor_feed import DoctorFeed
+from groundstation.station.operator_core import OperatorCore
 from groundstation.station_socket.relay import LinksReport
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -32,11 +33,11 @@ LEASE_PERIOD = 0.1
 """s between renewals of the lease, as of the screen; each also looks whether something has changed."""
 
 
-class StationSession:
-    """What a verb does with its station. The key gate stays closed: no demand but neutral is ever sent."""
+class DoctorSession:
+    """What a verb does with its core. The key gate stays closed: no demand but neutral is ever sent."""
 
-    def __init__(self, station: Station, request: DoctorRequest, flush: Callable[[], None]) -> None:
-        self._station, self._request, self._flush = station, request, flush
+    def __init__(self, core: OperatorCore, feed: DoctorFeed, request: DoctorRequest, flush: Callable[[], None]) -> None:
+        self._core, self._feed, self._request, self._flush = core, feed, request, flush
         self._numbers = 0
         self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
@@ -48,20 +49,18 @@ class StationSession:
     def do(self, *intents: Intent) -> None:
         """Carry out intents now."""
         for intent in intents:
-            self._station.handle_intent(intent, self._now)
+            self._core.handle_intent(intent, self._now)
         self._flush()
 
     @property
     def snapshot(self) -> Snapshot:
         """The state now."""
-        return self._station.snapshot(self._now, time.time())
+        return self._feed.snapshot(self._now, time.time())
 
     @property
     def doctor(self) -> DoctorView:
         """The chain now."""
-        view = self._station.views.build(self._request, self._now, time.time())
-        assert isinstance(view, DoctorView)
-        return view
+        return self._feed.doctor.build(self._request, self._now, time.time())
 
     async def until(self, condition: Callable[[], bool], within: float) -> bool:
         """Wait until a condition holds, `within` s at most; return whether it does."""
@@ -90,7 +89,7 @@ class StationSession:
         return found
 
     def _find(self, wanted: int | str | None) -> int | None:
-        states = (contact.state for contact in self._station.fleet)
+        states = (contact.state for contact in self._core.fleet)
         return next((each.system for each in states if is_chosen(wanted, each.system, each.fleet_name)), None)
 
     @property
@@ -98,28 +97,29 @@ class StationSession:
         return asyncio.get_running_loop().time()
 
 
-async def run_station(
+async def run_doctor(
     endpoints: Sequence[str],
     system: int,
     driver: int,
-    script: Callable[[StationSession], Awaitable[int]],
+    script: Callable[[DoctorSession], Awaitable[int]],
     link: StationLink | None = None,
 ) -> int:
     """Open the links, run the script, and return its exit code.
 
     `driver` is the system id of the ground station that will drive, 0 for this one. With `link` there are no links:
-    this station hears and sends through the one that runs. Raises EndpointError, LinkError, VerbError.
+    it hears and sends through the station that runs. Raises EndpointError, LinkError, VerbError.
     """
     now = asyncio.get_running_loop().time
     session_number = secrets.randbits(32) if link is None else link.ready.session
-    station = Station(endpoints, system=system, session=session_number, now=now())
-    runner = _open(station, endpoints, system) if link is None else _go_through(station, link)
+    parts = CoreParts(endpoints, system=system, session=session_number, now=now())
+    feed = DoctorFeed(parts)
+    core = OperatorCore(parts, feed)
+    core.intents.add(feed.handlers)
+    runner = _open(core, endpoints, system) if link is None else _go_through(core, link)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins
-    request = DoctorRequest(station=driver)
-    station.handle_intent(Watch((request,)), now())
-    session = StationSession(station, request, runner.flush)
-    lease = asyncio.ensure_future(_renew(station, session))
+    session = DoctorSession(core, feed, DoctorRequest(station=driver), runner.flush)
+    lease = asyncio.ensure_future(_renew(core, session))
     verb = asyncio.ensure_future(script(session))
     try:
         await asyncio.wait({running, verb, lease}, return_when=asyncio.FIRST_COMPLETED)
@@ -135,24 +135,24 @@ async def run_station(
         await running
 
 
-def _open(station: Station, endpoints: Sequence[str], system: int) -> Runner:
+def _open(core: OperatorCore, endpoints: Sequence[str], system: int) -> Runner:
     try:
         signing = open_signing(asyncio.get_running_loop().time())
     except SigningError as error:
         raise VerbError(ExitCode.USAGE, str(error)) from None
     links = open_links(endpoints, system=system, component=COMPONENT, side=Side.GROUND_STATION)
-    return Runner(station, links, period=PERIOD, route=False, signing=signing)
+    return Runner(core, links, period=PERIOD, route=False, signing=signing)
 
 
-def _go_through(station: Station, link: StationLink) -> StationRunner:
+def _go_through(core: OperatorCore, link: StationLink) -> StationRunner:
     def take_reports(links: LinksReport) -> None:
-        station.observe(links.reports, asyncio.get_running_loop().time())
+        core.observe(links.reports, asyncio.get_running_loop().time())
 
-    return StationRunner(station, link, PERIOD, take_reports)
+    return StationRunner(core, link, PERIOD, take_reports)
 
 
-async def _renew(station: Station, session: StationSession) -> None:
+async def _renew(core: OperatorCore, session: DoctorSession) -> None:
     while True:
-        station.handle_intent(RenewLease(), asyncio.get_running_loop().time())
+        core.handle_intent(RenewLease(), asyncio.get_running_loop().time())
         session.look()
         await asyncio.sleep(LEASE_PERIOD)
