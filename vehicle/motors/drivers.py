@@ -40,7 +40,7 @@ DRIVERS: dict[str, DriverEntry] = {
         "H-bridges on GPIO pins, with software PWM",
         example={
             "bridges": [
-                {"wiring": "two-inputs", "forward": 5, "backward": 6},
+                {"wiring": "two-inputs", "forward": 5, "backward": 6, "enable": 12},
                 {"wiring": "phase-enable", "enable": 13, "phase": 16},
             ]
         },

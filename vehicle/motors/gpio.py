@@ -22,12 +22,16 @@ from vehicle.motors.settings import Pin, pin_name, reject_duplicates
 class TwoInputs(
     msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="wiring", tag="two-inputs"
 ):  # fmt: skip
-    """IN1 and IN2, PWM on one and low on the other: DRV8833, DRV8871, L9110, MX1508, TB6612, L298N (ENA, ENB high)."""
+    """IN1 and IN2, PWM on one, or on `enable`: DRV8833, DRV8871, L9110, MX1508, BTS7960, TB6612, L298N."""
 
     forward: Pin
-    """PWM input for forward, IN1."""
+    """Input for forward: IN1, AIN1, RPWM."""
     backward: Pin
-    """PWM input for backward, IN2."""
+    """Input for backward: IN2, AIN2, LPWM."""
+    enable: Pin | None = None
+    """PWM input beside IN1 and IN2: ENA or ENB of an L298N without its jumper, PWMA or PWMB of a TB6612.
+    Without it the PWM is on IN1 and IN2: the bridge has no such input, or a jumper or wire holds it high.
+    """
 
 
 class PhaseEnable(
@@ -51,10 +55,10 @@ class GpioSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def pins(self) -> list[int]:
         """The pins of all bridges."""
-        return [pin for bridge in self.bridges for pin in astuple(bridge)]
+        return [pin for bridge in self.bridges for pin in astuple(bridge) if pin is not None]
 
     def __post_init__(self) -> None:
-        reject_duplicates(self.pins)
+        reject_duplicates(self.taken)
 
     @property
     def taken(self) -> list[str]:
@@ -63,7 +67,7 @@ class GpioSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class GpioMotors:
-    """Fits `vehicle.motors.Motors`. Disabled means every input low: the bridge is off and the motor coasts."""
+    """Fits `vehicle.motors.Motors`. Disabled means every input low, `enable` first: the motor gets no voltage."""
 
     Settings = GpioSettings
 
@@ -117,19 +121,62 @@ class GpioMotors:
                 steps.callback(bridge.stop)
 
 
+class EnableMotor:
+    """A bridge with two direction inputs and the PWM at its enable input, with the interface of gpiozero's motors.
+
+    Enable is low while the motor is silent and while the direction changes.
+    """
+
+    def __init__(self, bridge: TwoInputs, pin_factory: Any) -> None:
+        from vehicle.motors.pins import Motor, PWMOutputDevice
+
+        with contextlib.ExitStack() as opened:
+            self.enable_device = PWMOutputDevice(bridge.enable, pin_factory=pin_factory)
+            opened.callback(self.enable_device.close)
+            self._inputs = Motor(bridge.forward, bridge.backward, pwm=False, pin_factory=pin_factory)
+            opened.pop_all()
+
+    @property
+    def value(self) -> float:
+        """-1 (backward) to 1 (forward), as gpiozero's motors."""
+        return float(self._inputs.value * self.enable_device.value)
+
+    @value.setter
+    def value(self, value: float) -> None:
+        direction = (value > 0.0) - (value < 0.0)
+        if self._inputs.value != direction:
+            self.enable_device.off()
+            self._inputs.value = direction
+        self.enable_device.value = abs(value)
+
+    def stop(self) -> None:
+        """Set enable low, then both inputs, even if one raises."""
+        with contextlib.ExitStack() as steps:
+            steps.callback(self._inputs.stop)
+            self.enable_device.off()
+
+    def close(self) -> None:
+        """Release the pins."""
+        with contextlib.ExitStack() as steps:
+            steps.callback(self._inputs.close)
+            self.enable_device.close()
+
+
 def _open_bridge(bridge: TwoInputs | PhaseEnable, pin_factory: Any) -> Any:
     from vehicle.motors.pins import Motor, PhaseEnableMotor
 
     match bridge:
-        case TwoInputs():
+        case TwoInputs(enable=None):
             return Motor(bridge.forward, bridge.backward, pwm=True, pin_factory=pin_factory)
+        case TwoInputs():
+            return EnableMotor(bridge, pin_factory)
         case PhaseEnable():
             return PhaseEnableMotor(bridge.phase, bridge.enable, pwm=True, pin_factory=pin_factory)
 
 
 def _set_frequency(motor: Any, bridge: TwoInputs | PhaseEnable, frequency: float) -> None:
     match bridge:
-        case TwoInputs():
+        case TwoInputs(enable=None):
             motor.forward_device.frequency = motor.backward_device.frequency = frequency
-        case PhaseEnable():
+        case TwoInputs() | PhaseEnable():
             motor.enable_device.frequency = frequency

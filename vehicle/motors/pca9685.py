@@ -36,7 +36,7 @@ class Pca9685Settings(BoardSettings, frozen=True, forbid_unknown_fields=True, kw
     """Output while disabled: "neutral" pulses, or none ("off")."""
 
     def __post_init__(self) -> None:
-        reject_duplicates([channel.channel for channel in self.channels])
+        reject_duplicates([f"channel {each.channel}" for each in self.channels])
         for channel in self.channels:
             channel.pulse.check_period(self.frequency)
 

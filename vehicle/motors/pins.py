@@ -38,14 +38,29 @@ _lgpio_errors = _import_lgpio()
 os.environ.setdefault("GPIOZERO_PIN_FACTORY", "lgpio")
 
 try:
-    from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor, RotaryEncoder
+    from gpiozero import (
+        DigitalInputDevice,
+        DigitalOutputDevice,
+        Motor,
+        PhaseEnableMotor,
+        PWMOutputDevice,
+        RotaryEncoder,
+    )
     from gpiozero.exc import GPIOZeroError
 except ImportError as error:
     raise MotorError(f"{error}; install it: {install_command('pi')}") from error
 
 FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, ImportError, *_lgpio_errors)
 
-__all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMotor", "RotaryEncoder", "translated"]
+__all__ = [
+    "DigitalInputDevice",
+    "DigitalOutputDevice",
+    "Motor",
+    "PWMOutputDevice",
+    "PhaseEnableMotor",
+    "RotaryEncoder",
+    "translated",
+]
 
 
 HINTS = {

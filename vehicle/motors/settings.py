@@ -71,7 +71,7 @@ class SafetyPinSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
         return [pin for pin in (self.estop_pin, self.enable_pin, self.heartbeat_pin) if pin is not None]
 
     def __post_init__(self) -> None:
-        reject_duplicates(self.pins)
+        reject_duplicates(self.taken)
 
     @property
     def taken(self) -> list[str]:
@@ -127,8 +127,8 @@ def format_validation_error(error: msgspec.ValidationError) -> str:
     return f": {where}: {what}" if where else f": {what}"
 
 
-def reject_duplicates(numbers: list[int]) -> None:
-    """Raise ValueError if a pin or channel is used twice."""
-    doubles = sorted({number for number in numbers if numbers.count(number) > 1})
+def reject_duplicates(names: list[str]) -> None:
+    """Raise ValueError if a pin or channel, each by its name, is used twice."""
+    doubles = [name for name in dict.fromkeys(names) if names.count(name) > 1]
     if doubles:
-        raise ValueError(f"{', '.join(map(str, doubles))} is used twice")
+        raise ValueError(f"{', '.join(doubles)} {'is' if len(doubles) == 1 else 'are'} used twice")

@@ -61,7 +61,7 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         names = [(output.device, output.channel) for output in self.outputs]
         if len(set(names)) < len(names):
             raise ValueError("a channel is used twice")
-        reject_duplicates(self.pins)
+        reject_duplicates([pin_name(pin) for pin in self.pins])
 
     @property
     def pins(self) -> list[int]:

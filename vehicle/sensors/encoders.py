@@ -35,7 +35,7 @@ class EncoderSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Diameter of the wheel, m."""
 
     def __post_init__(self) -> None:
-        reject_duplicates(self.pins)
+        reject_duplicates(self.taken)
 
     @property
     def pins(self) -> list[int]:

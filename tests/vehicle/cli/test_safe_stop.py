@@ -101,6 +101,11 @@ TWO_INPUTS = """driver = "gpio"
 bridges = [
     { wiring = "two-inputs", forward = 5, backward = 6 }, { wiring = "two-inputs", forward = 19, backward = 26 }
 ]"""
+INPUTS_AND_ENABLE = """driver = "gpio"
+bridges = [
+    { wiring = "two-inputs", forward = 5, backward = 6, enable = 12 },
+    { wiring = "two-inputs", forward = 19, backward = 26, enable = 13 },
+]"""
 PHASE_ENABLE = """driver = "gpio"
 bridges = [
     { wiring = "phase-enable", enable = 13, phase = 16 }, { wiring = "phase-enable", enable = 12, phase = 20 }
@@ -114,6 +119,7 @@ RIGS = {
     "pca9685": pca9685,
     "sysfs-pwm": sysfs,
     "gpio, two inputs": on_pins(TWO_INPUTS, {5, 6, 19, 26}),
+    "gpio, inputs and enable": on_pins(INPUTS_AND_ENABLE, {12, 13}),
     "gpio, phase and enable": on_pins(PHASE_ENABLE, {13, 12}),
     "article-car": on_pins(ARTICLE_CAR, {10, 9, 8, 7}),
     "article-car with safety pins": on_pins(f"{ARTICLE_CAR}\n{BESIDE}", {10, 9, 8, 7}, enable=22),

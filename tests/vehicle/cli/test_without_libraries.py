@@ -56,7 +56,7 @@ def test_template_and_schema_are_the_same(laptop: dict[str, str], tmp_path: Path
     [
         (BRIDGE.format("l298n", 6), "motors.bridges[0].wiring: 'l298n' is not known; there are two-inputs, phase-"),
         (BRIDGE.format("two-inputs", 6) + "backwards = true", "motors.backwards: unknown key; there are bridges, freq"),
-        (BRIDGE.format("two-inputs", 5), "motors: 5 is used twice"),
+        (BRIDGE.format("two-inputs", 5), "motors: GPIO 5 is used twice"),
         (BRIDGE.format("two-inputs", 6) + WHEELS, "sensors.encoders: GPIO 5 is already used by motors; change one"),
         (BRIDGE.format("two-inputs", 6) + RELAY, "accessories.relays[0]: GPIO 5 is already used by motors; change "),
         (PCA9685 + "frequency = true", "motors.frequency: must be a number, not true or false"),

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar
 
 import pytest
 from gpiozero import Device
@@ -20,6 +20,7 @@ from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
 from vehicle.motors.pins import translated
 
 TWO_INPUTS = GpioSettings(bridges=(TwoInputs(10, 9), TwoInputs(8, 7)))
+ENABLED_INPUTS = GpioSettings(bridges=(TwoInputs(23, 24, enable=12), TwoInputs(27, 22, enable=13)))
 PHASE_ENABLE = GpioSettings(bridges=(PhaseEnable(enable=12, phase=5), PhaseEnable(enable=13, phase=6)))
 
 
@@ -34,10 +35,10 @@ def factory() -> Iterator[MockFactory]:
 
 def output(factory: MockFactory, bridge: TwoInputs | PhaseEnable) -> float:
     """What a motor at this bridge gets."""
-    first, second = (float(factory.pin(pin).state) for pin in astuple(bridge))
+    first, second, *enable = (float(factory.pin(pin).state) for pin in astuple(bridge) if pin is not None)
     if isinstance(bridge, TwoInputs):
         assert first == 0.0 or second == 0.0, "both inputs of a bridge are high"
-        return first - second
+        return (first - second) * (enable[0] if enable else 1.0)
     return first * (-1.0 if second else 1.0)
 
 
@@ -47,12 +48,17 @@ def bench_of(factory: MockFactory, motors: Any, settings: GpioSettings, core: An
 
 
 class TestGpioMotors(MotorsContract):
-    @pytest.fixture(params=[TWO_INPUTS, PHASE_ENABLE], ids=["two inputs", "phase and enable"])
+    @pytest.fixture(
+        params=[TWO_INPUTS, ENABLED_INPUTS, PHASE_ENABLE], ids=["two inputs", "inputs and enable", "phase and enable"]
+    )
     def bench(self, request: pytest.FixtureRequest, factory: MockFactory) -> Bench:
         return bench_of(factory, GpioMotors(request.param), request.param)
 
 
-@pytest.mark.parametrize(("settings", "pwm"), [(TWO_INPUTS, (10, 9, 8, 7)), (PHASE_ENABLE, (12, 13))])
+@pytest.mark.parametrize(
+    ("settings", "pwm"),
+    [(TWO_INPUTS, (10, 9, 8, 7)), (ENABLED_INPUTS, (12, 13)), (PHASE_ENABLE, (12, 13))],
+)
 def test_the_pwm_pins_have_the_frequency(factory: MockFactory, settings: GpioSettings, pwm: tuple[int, ...]) -> None:
     motors = GpioMotors(settings)
     assert [factory.pin(pin).frequency for pin in pwm] == [500.0] * len(pwm)
@@ -67,9 +73,53 @@ def test_enabling_begins_with_low_inputs_in_any_case(factory: MockFactory) -> No
     motors.close()
 
 
+def levels(factory: MockFactory, *pins: int) -> list[float]:
+    """What these pins have now."""
+    return [float(factory.pin(pin).state) for pin in pins]
+
+
+@pytest.mark.parametrize(
+    "end", [GpioMotors.disable, GpioMotors.close, lambda motors: motors.set([0.0, 0.0])], ids=["disable", "close", "0"]
+)
+def test_enable_and_inputs_are_low_while_silent(factory: MockFactory, end: Callable[[GpioMotors], None]) -> None:
+    motors = GpioMotors(ENABLED_INPUTS)
+    assert levels(factory, 12, 23, 24, 13, 27, 22) == [0.0] * 6
+    motors.enable()
+    motors.set([0.5, -0.7])
+    assert levels(factory, 12, 23, 24, 13, 27, 22) == pytest.approx([0.5, 1.0, 0.0, 0.7, 0.0, 1.0], abs=1e-3)
+    end(motors)
+    assert levels(factory, 12, 23, 24, 13, 27, 22) == [0.0] * 6
+    motors.close()
+
+
+def test_enable_is_low_while_the_direction_changes(factory: MockFactory) -> None:
+    class Seen(MockPWMPin):  # type: ignore[misc]  # gpiozero has no types
+        """A pin that notes what enable has whenever an input changes."""
+
+        enable: ClassVar[list[float]] = []
+
+        def _change_state(self, value: float) -> bool:
+            if self.info.name in ("GPIO23", "GPIO24"):
+                self.enable.append(float(factory.pin(12).state))
+            return bool(super()._change_state(value))
+
+    factory.pin_class = Seen
+    motors = GpioMotors(ENABLED_INPUTS)
+    motors.enable()
+    motors.set([0.5, 0.0])
+    motors.set([0.6, 0.0])
+    assert levels(factory, 12) == pytest.approx([0.6], abs=1e-3)
+    Seen.enable.clear()
+    motors.set([-0.6, 0.0])
+    assert levels(factory, 12, 23, 24) == pytest.approx([0.6, 0.0, 1.0], abs=1e-3)
+    assert len(Seen.enable) >= 2
+    assert set(Seen.enable) == {0.0}
+    motors.close()
+
+
 def test_pins_are_let_go_by_close(factory: MockFactory) -> None:
-    GpioMotors(TWO_INPUTS).close()
-    GpioMotors(TWO_INPUTS).close()
+    for settings in (TWO_INPUTS, ENABLED_INPUTS) * 2:
+        GpioMotors(settings).close()
 
 
 def test_a_pin_in_use_is_named_in_one_line_and_others_are_freed(factory: MockFactory) -> None:
@@ -77,6 +127,8 @@ def test_a_pin_in_use_is_named_in_one_line_and_others_are_freed(factory: MockFac
     with pytest.raises(MotorError, match="GPIO8") as caught:
         GpioMotors(TWO_INPUTS)
     assert "\n" not in str(caught.value)
+    with pytest.raises(MotorError, match="GPIO8"):
+        GpioMotors(GpioSettings(bridges=(TwoInputs(10, 8, enable=9),)))
     other.close()
     GpioMotors(TWO_INPUTS).close()
 
@@ -161,6 +213,7 @@ class TestArticleCar:
         ({"bridges": [{"wiring": "two-inputs", "forward": 10}]}, "missing required field `backward`"),
         ({"bridges": [{"wiring": "two-inputs", "forward": 10, "backward": 28}]}, "backward: Expected `int` <= 27"),
         ({"bridges": [{"wiring": "two-inputs", "forward": 10, "backward": 10}]}, "10 is used twice"),
+        ({"bridges": [{"wiring": "two-inputs", "forward": 10, "backward": 9, "enable": 9}]}, "9 is used twice"),
         ({"bridges": [{"wiring": "three", "forward": 10, "backward": 9}]}, "Invalid value 'three'"),
         ({"bridges": [{"forward": 10, "backward": 9}]}, "missing required field `wiring`"),
         ({"frequenzy": 500, "bridges": [{"wiring": "two-inputs", "forward": 1, "backward": 9}]}, "frequenzy"),
@@ -172,6 +225,17 @@ def test_settings_are_read_strictly(factory: MockFactory, settings: dict[str, An
         open_motors("gpio", settings)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_safe_stop_pulls_down_enable_of_a_killed_process(factory: MockFactory) -> None:
+    for number in (12, 23):
+        pin = factory.pin(number)
+        pin.function = "output"
+        pin.state = 1.0
+    assert output(factory, ENABLED_INPUTS.bridges[0]) == 1.0
+    bridges = [{"wiring": "two-inputs", "forward": 23, "backward": 24, "enable": 12}]
+    assert safe_stop("gpio", {"bridges": bridges}) == []
+    assert [factory.pin(pin).states[-1].state for pin in (12, 23, 24)] == [0.0] * 3
 
 
 def test_safe_stop_pulls_down_pins_that_killed_process_left_high(factory: MockFactory) -> None:
