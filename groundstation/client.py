@@ -62,6 +62,9 @@ class StationClient:
         self._pending: deque[AnyIntent] = deque(maxlen=MAX_PENDING)
         self._open = True
         self._newest = Snapshot()
+        self._logs: dict[str, None] = {}
+        """Logs of this session, in their order."""
+        self._goes_on = process is None
         self._views: dict[type[View], View] = {}
         self.outage = StationOutage()
         """What the watchdog reports of a station process that has ended or does not respond."""
@@ -212,6 +215,8 @@ class StationClient:
                     self.outage = message
                 elif isinstance(message, Snapshot):
                     snapshot = message
+                    if message.recording is not None and message.recording.path:
+                        self._logs[message.recording.path] = None
         self._newest = snapshot or self._newest
         return snapshot
 
@@ -240,12 +245,19 @@ class StationClient:
     def left_armed(self) -> tuple[str, ...]:
         """One line for each vehicle that the station armed and left armed, by its newest snapshot.
 
-        After the station has ended too early, the last report of the watchdog comes first.
+        Simulators of a station that has ended are gone with it. After the station has ended too early, the last report
+        of the watchdog comes first.
         """
-        lines = self._newest.left_armed
+        ended = () if self._goes_on else self._newest.end_armed
+        lines = tuple(line for line in self._newest.left_armed if line not in ended)
         if not self.outage.ended:
             return lines
         return (self.outage.text, *(f"last known before: {line}" for line in lines))
+
+    @property
+    def logs(self) -> tuple[str, ...]:
+        """Paths of the logs of this session, the oldest first; none of a station that goes on."""
+        return () if self._goes_on else tuple(self._logs)
 
     @property
     def vehicle_name(self) -> str:
@@ -264,8 +276,8 @@ class StationClient:
         (negative: signal), None while it runs.
         """
         self.send(Quit() if quits else Detach())
-        goes_on = self._process is None or (self._keep and not quits)
-        code = None if goes_on or self._process is None else end_process(self._process, CLOSE_TIMEOUT)
+        self._goes_on = self._process is None or (self._keep and not quits)
+        code = None if self._goes_on or self._process is None else end_process(self._process, CLOSE_TIMEOUT)
         self.receive()
         with self._lock:
             self._open = False

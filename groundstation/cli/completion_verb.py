@@ -34,9 +34,7 @@ def run(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
         code = _print_names(options.names) if options.names else _print_script(options.shell, helps)
         sys.stdout.flush()
     except OSError as error:
-        stdio.discard_output()
-        sys.stderr.write(f"groundstation: output: {error.strerror or error}\n")
-        return int(ExitCode.BROKEN)
+        return stdio.end_output(error, lambda reason: sys.stderr.write(f"groundstation: output: {reason}\n"))
     return int(code)
 
 

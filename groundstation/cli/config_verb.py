@@ -46,6 +46,8 @@ def run(arguments: Sequence[str]) -> int:
         _print_errors(*error.problems)
     except (EndpointError, KeymapError) as error:
         _print_errors(str(error))
+    except BrokenPipeError:
+        raise  # the reader has gone, which is no mistake
     except OSError as error:
         _print_errors(f"{error.filename or 'output'}: {error.strerror}")
     return _Code.USAGE

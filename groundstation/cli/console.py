@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import errno
 import os
 import shutil
@@ -17,6 +16,7 @@ from platformdirs import user_log_path
 
 from groundstation.cli.local_verb import UsageError, load_settings, report_mistakes
 from groundstation.cli.options import REPLAY_SETTINGS, build_parser, option_words
+from groundstation.cli.session_report import report_session
 from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.unknown_options import describe_unknown
 from groundstation.client import StationClient
@@ -30,7 +30,6 @@ from groundstation.recent.recent_file import RecentFile
 from groundstation.recording.options import RecordOptions
 from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
 from groundstation.ui.terminal.tmux import TmuxSession
-from link.runtime import stdio
 from link.runtime.whole_file import PRIVATE
 
 if TYPE_CHECKING:
@@ -126,7 +125,7 @@ def open_screen(
             gamepad.stop()
         client.close(quits=quits)
         remember(opened, client.vehicle_name)
-        report_armed(client.left_armed)
+        report_session(client.left_armed, client.logs)
 
 
 def _gamepad(settings: Settings) -> GamepadChild | None:
@@ -159,13 +158,6 @@ def remember(endpoints: Sequence[str], vehicle: str = "") -> None:
 def import_screen() -> None:
     """Import the screen, which takes 0.2 s: after the arguments are checked, and while the station starts."""
     import groundstation.ui.app.run  # noqa: F401
-
-
-def report_armed(lines: Sequence[str]) -> None:
-    """Print which vehicles are left armed; the terminal may be closed."""
-    with contextlib.suppress(OSError):
-        for line in lines:
-            print(f"groundstation: {stdio.escape(line)}", file=sys.stderr, flush=True)
 
 
 def _endpoints(options: argparse.Namespace, effective: Effective, names: Sequence[str]) -> list[str]:

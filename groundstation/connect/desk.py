@@ -77,7 +77,8 @@ class ConnectDesk:
             text, output = exited
             self._warn(now, text)
             log.error("output of the simulator:\n%s", output)
-        self._station.surroundings.simulator = self._simulators.state
+        around = self._station.surroundings
+        around.simulator, around.simulated = self._simulators.state, self._simulators.systems
 
     def close(self) -> None:
         """Free what was opened, and end the simulators."""

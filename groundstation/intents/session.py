@@ -25,6 +25,10 @@ class ReportKeyReleases(Intent, frozen=True):
     valid_when_late = True
 
 
+QUITTING, SUSPENDED = "quitting", "the ground station was suspended"
+"""Beginnings of the reasons of an operator who leaves the screen: its lease runs out, and nothing is wrong."""
+
+
 class SetKeyGate(Intent, frozen=True):
     """Open or close the key gate. It is closed under another screen, without focus and without a terminal."""
 

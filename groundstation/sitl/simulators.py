@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import msgspec
+
+DEFAULT_SYSTEM = 1
+"""System id of `vehicle --sim` without --system."""
 
 
 class SimulatorRow(msgspec.Struct, frozen=True):
@@ -26,6 +31,11 @@ SIMULATORS: tuple[SimulatorRow, ...] = (
                  (("--system", "1"), ("--system", "2", "--sim-seed", "2"), ("--system", "3", "--sim-seed", "3"))),
 )  # fmt: skip
 """In the order of the screen; ENTER with nothing heard starts the first."""
+
+
+def find_system(options: Sequence[str]) -> int:
+    """Return the system id that a simulator with these options has."""
+    return int(options[options.index("--system") + 1]) if "--system" in options else DEFAULT_SYSTEM
 
 
 def find_simulator(kind: str) -> SimulatorRow:

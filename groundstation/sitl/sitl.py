@@ -11,7 +11,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
-from groundstation.sitl.simulators import find_simulator
+from groundstation.sitl.simulators import find_simulator, find_system
 from link.endpoint import Endpoint
 from link.runtime.child_process import end_process, start_module
 
@@ -43,6 +43,7 @@ class Simulator:
 
     def __init__(self, host: str, port: int, options: Sequence[str] = ()) -> None:
         """Start the simulator, sending to an address of this machine. Raises OSError."""
+        self.system = find_system(options)
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name, so nothing is left behind even after a kill
         self._logs = tempfile.TemporaryDirectory(prefix="mavhelm-simulator-", ignore_cleanup_errors=True)
         self._process: subprocess.Popen[bytes] = start_module(
@@ -113,6 +114,11 @@ class SimulatorControl:
     def running(self) -> bool:
         """Any simulator of ours runs."""
         return any(each.running for each in self._simulators)
+
+    @property
+    def systems(self) -> frozenset[int]:
+        """System ids of those that run."""
+        return frozenset(each.system for each in self._simulators if each.running)
 
     @property
     def state(self) -> str | None:

@@ -273,6 +273,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """System ids of the other vehicles that report armed."""
     left_armed: tuple[str, ...] = ()
     """One line for each vehicle that this station armed and would leave armed if it ended now."""
+    end_armed: tuple[str, ...] = ()
+    """Those of these lines that are about simulators of this station, which end with it."""
     id_conflict: str | None = None
     """Another ground station that uses our system id, as a text for the driver."""
     blind_stop: str = ""

@@ -305,14 +305,20 @@ class OperatorCore:
     def _expire_lease(self, now: float) -> None:
         """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.
 
-        Without an armed vehicle of ours it is not reported: a slow start would be.
+        It is reported if keys could have driven a vehicle of ours: a slow start, a screen that is left and a vehicle
+        that drives itself need no warning.
         """
         lapse = self.operator.expire_lease(now)
         if lapse is None:
             return
         self.driving.drop_demands()
-        if any(contact.ours and contact.state.armed for contact in self.fleet):
-            self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
+        states = [contact.state for contact in self.fleet if contact.ours]
+        if lapse.left or self.driving.ending or not any(each.armed and not each.drives_itself for each in states):
+            return
+        if lapse.drove:
+            self.log.add(now, "station", f"{lapse.text}: neutral, release the keys", Severity.CRITICAL)
+        else:
+            self.log.add(now, "station", f"{lapse.text}: no key was down", Severity.INFO)
 
     def _log_driving(self, now: float) -> None:
         selected = self.fleet.selected

@@ -26,6 +26,7 @@ class SnapshotBuilder:
             waiting=None if selected else around.waiting(has_traffic=links.stats.has_traffic),
             vehicle=self._vehicle(selected, now) if selected else None,
             left_armed=parts.departure.left_armed(now),
+            end_armed=parts.departure.end_armed(around.simulated, now),
             id_conflict=links.id_conflict.text(now),
             blind_stop=parts.commander.blind_stops.describe(),
             vehicles=fleet.system_ids,

@@ -98,9 +98,7 @@ def run(arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, asyncio.CancelledError):
         return 128 + (caught[0] if caught else signal.SIGINT)
     except OSError as error:  # of the output: full, or closed by its reader
-        stdio.discard_output()
-        output.error(f"output: {error.strerror or error}")
-        return int(ExitCode.BROKEN)
+        return stdio.end_output(error, lambda reason: output.error(f"output: {reason}"))
     return code
 
 

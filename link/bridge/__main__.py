@@ -67,7 +67,10 @@ class _Version(argparse.Action):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the bridge; return the exit code."""
     stdio.ensure_open()
-    arguments = list(sys.argv[1:] if argv is None else argv)
+    return stdio.run_program("bridge", lambda: _run(list(sys.argv[1:] if argv is None else argv)))
+
+
+def _run(arguments: list[str]) -> int:
     if arguments[:1] and arguments[0] in SUBCOMMANDS:
         run: Callable[[Sequence[str]], int] = import_module(SUBCOMMANDS[arguments[0]]).run
         return run(arguments[1:])

@@ -9,8 +9,16 @@ from __future__ import annotations
 import io
 import logging
 import os
+import select
+import signal
 import sys
+from collections.abc import Callable
 from typing import TextIO
+
+READER_GONE = 128 + signal.SIGPIPE
+"""Exit code of a program whose reader has gone, as `head` does: that of a program which the signal ends."""
+OUTPUT_FAILED = 1
+"""Exit code of a program whose output could not be written."""
 
 
 def ensure_open() -> None:
@@ -32,11 +40,47 @@ def _open_text(stream: TextIO | None, number: int) -> TextIO:
     return open(number, "w", closefd=False) if stream is None else stream
 
 
-def discard_output() -> None:
-    """Redirect stdout to /dev/null, after a broken pipe or a full disk: the exit prints no second error."""
+def end_output(error: OSError, tell: Callable[[str], object]) -> int:
+    """Return the exit code after a failed output; `tell` gets the reason, unless it is a reader that has gone.
+
+    stdout is /dev/null from now on: the exit prints no second error.
+    """
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)
+    if isinstance(error, BrokenPipeError):
+        return READER_GONE
+    tell(error.strerror or str(error))
+    return OUTPUT_FAILED
+
+
+def run_program(program: str, run: Callable[[], int]) -> int:
+    """Run a program and write what it has printed; return its exit code. Raises SystemExit as argparse does."""
+    try:
+        code = run()
+        return _flush(program) or code
+    except SystemExit as end:
+        end.code = _flush(program) or end.code
+        raise
+    except BrokenPipeError as error:
+        if not _reader_has_gone():
+            raise  # it is another pipe
+        return end_output(error, lambda _: None)
+
+
+def _flush(program: str) -> int:
+    """Write what is buffered; return 0, or the exit code if that fails."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        return end_output(error, lambda reason: sys.stderr.write(f"{program}: output: {reason}\n"))
+    return 0
+
+
+def _reader_has_gone() -> bool:
+    poll = select.poll()
+    poll.register(1, 0)
+    return any(events & (select.POLLERR | select.POLLHUP) for _, events in poll.poll(0))
 
 
 def escape(text: str) -> str:

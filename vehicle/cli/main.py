@@ -31,7 +31,10 @@ if TYPE_CHECKING:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the vehicle or a subcommand and return the exit code."""
     stdio.ensure_open()
-    arguments = list(sys.argv[1:] if argv is None else argv)
+    return stdio.run_program("vehicle", lambda: _run_arguments(list(sys.argv[1:] if argv is None else argv)))
+
+
+def _run_arguments(arguments: list[str]) -> int:
     if not arguments:
         sys.stderr.write(USAGE)
         return 2

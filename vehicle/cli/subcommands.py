@@ -35,8 +35,7 @@ def run(arguments: Sequence[str]) -> int:
         return INTERRUPTED
     except OSError as error:
         # Errors of files are reported with their names: this is the output, full or closed by its reader.
-        stdio.discard_output()
-        parser.exit(FAULT, f"{parser.prog}: {error.strerror or error}\n")
+        return stdio.end_output(error, lambda reason: parser.exit(FAULT, f"{parser.prog}: {reason}\n"))
     return code
 
 

@@ -48,7 +48,18 @@ class Departure:
 
     def left_armed(self, now: float) -> tuple[str, ...]:
         """Return one line for each vehicle that this station would leave armed if it ended now."""
-        return tuple(_describe(contact, now) for contact in self._fleet if contact.ours and contact.state.armed)
+        return tuple(_describe(contact, now) for contact in self._left())
+
+    def end_armed(self, simulated: frozenset[int], now: float) -> tuple[str, ...]:
+        """Return the lines of those among them that end with this station: its simulators, which have these ids."""
+        return tuple(
+            _describe(contact, now)
+            for contact in self._left()
+            if contact.state.system in simulated and contact.state.senders.is_one_of_here(now)
+        )
+
+    def _left(self) -> list[Contact]:
+        return [contact for contact in self._fleet if contact.ours and contact.state.armed]
 
     def _to_disarm(self) -> list[Contact]:
         return [contact for contact in self._fleet if contact.ours and self._may_disarm(contact)]

@@ -8,6 +8,7 @@ stops sending heartbeats.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import msgspec
 
@@ -17,7 +18,7 @@ from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, DrivePad
-from groundstation.intents.session import LEASE_TIMEOUT, REST_LEASE_TIMEOUT, SetKeyGate
+from groundstation.intents.session import LEASE_TIMEOUT, QUITTING, REST_LEASE_TIMEOUT, SUSPENDED, SetKeyGate
 from groundstation.snapshot import OperatorView
 from groundstation.station.driving.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor
@@ -58,6 +59,17 @@ class _Ignored(msgspec.Struct):
         return self.reason if now - self.at <= IGNORED_SHOWN else ""
 
 
+class Lapse(NamedTuple):
+    """The lease has run out, or the station stood still."""
+
+    text: str
+    """What did not respond, and for how long."""
+    drove: bool
+    """A key was down, and has been released."""
+    left: bool
+    """The operator quits, or has suspended the screen."""
+
+
 class OperatorSession:
     """One operator at one screen. `session` is a random number that distinguishes this session from others."""
 
@@ -75,7 +87,10 @@ class OperatorSession:
         self._rest_ended_at = -math.inf
         self._clock = 0
         self._live = False
-        self._unreported_lapse: str | None = None
+        self._unreported_lapse: Lapse | None = None
+        self._drove_at_renewal = False
+        """A key was down, or the demand not neutral, when the screen renewed its lease."""
+        self._renewed_at = -math.inf
         self._thawed_at = 0.0
         self._gate = SetKeyGate(open=False, reason="starting")
         self._driving_allowed = False
@@ -91,6 +106,7 @@ class OperatorSession:
             self._thawed_at = now + THAW if self._lease.ever_heard else now
         self._live = True
         self._lease.update(now)
+        self._renewed_at, self._drove_at_renewal = now, self._drives(now)
 
     def set_resting(self, rests: bool, now: float) -> None:
         """Let the screen renew less often while the station rests. When that ends it has LEASE_TIMEOUT to renew."""
@@ -103,7 +119,7 @@ class OperatorSession:
         """The station rests."""
         return self._lease.timeout == REST_LEASE_TIMEOUT
 
-    def expire_lease(self, now: float) -> str | None:
+    def expire_lease(self, now: float) -> Lapse | None:
         """Release all keys when the lease has run out. Returns what happened, once each time."""
         self._check_lease(now)
         lapse, self._unreported_lapse = self._unreported_lapse, None
@@ -235,11 +251,22 @@ class OperatorSession:
         if not self._live or (stalled is None and now <= self._lease_end(now)):
             return
         self._live = False
+        drove = self._gate.open and (self._drove_at_renewal or self._drives(now) or self._input_since_renewal)
         self.sticks.block(now)
         if stalled is None:
-            self._unreported_lapse = f"display not responding for {self._lease.silence(now):.1f} s"
+            text = f"display not responding for {self._lease.silence(now):.1f} s"
         else:
-            self._unreported_lapse = f"station stopped for {stalled:.1f} s"
+            text = f"station stopped for {stalled:.1f} s"
+        left = not self._gate.open and self._gate.reason.startswith((QUITTING, SUSPENDED))
+        self._unreported_lapse = Lapse(text, drove, left)
+
+    def _drives(self, now: float) -> bool:
+        return bool(self.sticks.held_keys(now)) or self.moves
+
+    @property
+    def _input_since_renewal(self) -> bool:
+        """A key may go down while the screen no longer draws: the thread that reads it does not wait for that."""
+        return self._last_input_at is not None and self._last_input_at > self._renewed_at
 
     def _lease_end(self, now: float) -> float:
         return max(now - self._lease.silence(now), self._rest_ended_at) + self._lease.timeout

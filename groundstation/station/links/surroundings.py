@@ -20,6 +20,8 @@ class Surroundings:
         """Reports of the links that are not open."""
         self.simulator: str | None = None
         """State of the simulator; None without one."""
+        self.simulated: frozenset[int] = frozenset()
+        """System ids of the simulators that end with this station."""
         self.recording: RecordingView | None = None
         """The recording; None without one."""
         self.addresses: tuple[str, ...] = ()

@@ -20,7 +20,7 @@ from textual.screen import Screen
 from groundstation.actions import OperatorAction
 from groundstation.gamepad.child import GamepadChild
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents.session import REST_PERIOD, RenewLease
+from groundstation.intents.session import QUITTING, REST_PERIOD, RenewLease
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import ReleaseControl
 from groundstation.snapshot import Snapshot
@@ -149,7 +149,7 @@ class ConsoleApp(App[int]):
 
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
-        self.gate.close("quitting")
+        self.gate.close(QUITTING)
         self._ticks.stop()
         self._pings.stop()
         self._tmux.stop()

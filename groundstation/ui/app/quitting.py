@@ -7,14 +7,14 @@ from typing import Any
 
 from textual.app import App
 
-from groundstation.intents.session import Quit
+from groundstation.intents.session import QUITTING, Quit
 from groundstation.ui.keys.key_gate import GateClosure, GateLevel, KeyGate, StationConnection
 from groundstation.ui.replay.log_child import LogChild
 
 QUIT_TIMEOUT = 6.0
 """s for a station that disarms before its exit (it needs 2 to 4); then the screen leaves in any case."""
 
-DISARMING = GateClosure("quitting, disarming in 2 s; Ctrl-Q again leaves it ARMED", GateLevel.STOPS)
+DISARMING = GateClosure(f"{QUITTING}, disarming in 2 s; Ctrl-Q again leaves it ARMED", GateLevel.STOPS)
 
 
 class Quitting:
@@ -44,7 +44,7 @@ class Quitting:
 
     def end(self, code: int = 0) -> None:
         """Close the gate, which means neutral, and leave."""
-        self._close(GateClosure("quitting"))
+        self._close(GateClosure(QUITTING))
         self._log_child.end(lambda: self._app.exit(code))
 
     def handle_station_ended(self) -> None:

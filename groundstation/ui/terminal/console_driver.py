@@ -20,6 +20,7 @@ from textual.app import App
 from textual.drivers.linux_driver import LinuxDriver
 from textual.message import Message
 
+from groundstation.intents.session import SUSPENDED
 from groundstation.ui.terminal.key_parser import KeyEventParser, KeySink
 from groundstation.ui.terminal.mouse import CAPTURE_MOUSE, RELEASE_MOUSE, SAVE_WHEEL_MODE
 from groundstation.ui.terminal.tty_output import TerminalFile
@@ -127,7 +128,7 @@ class ConsoleDriver(LinuxDriver):
     def _sigtstp_application(self, *arguments: Any) -> None:
         # A signal handler: the interrupted main thread may hold a lock that `close` needs. The other thread then waits
         # in vain, and the lease expires instead.
-        closing = Thread(target=self.sink.close, args=("the ground station was suspended",), daemon=True)
+        closing = Thread(target=self.sink.close, args=(SUSPENDED,), daemon=True)
         closing.start()
         closing.join(SUSPEND_PATIENCE)
         super()._sigtstp_application(*arguments)

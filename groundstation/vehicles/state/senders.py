@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Iterator
+from ipaddress import ip_address
 
 import msgspec
 
@@ -104,6 +105,11 @@ class Senders:
     def components(self) -> tuple[int, ...]:
         """Component ids that claim to be the autopilot, in rising order."""
         return tuple(sorted({each.component for each in self._senders.values()}))
+
+    def is_one_of_here(self, now: float) -> bool:
+        """Return whether only one sender is heard, and it is on this machine."""
+        live = [each for each in self._senders.values() if each.is_live(now)]
+        return len(live) == 1 and _is_loopback(live[0].where)
 
     def is_armed(self, component: int, now: float) -> bool:
         """Return whether one of the senders of a component that are heard reports armed; else the newest report."""
@@ -217,3 +223,11 @@ def _are_two(sender: Sender, other: Sender, now: float) -> bool:
 
 def _pairs(senders: list[Sender]) -> Iterator[tuple[Sender, Sender]]:
     return ((one, other) for at, one in enumerate(senders) for other in senders[at + 1 :])
+
+
+def _is_loopback(where: str) -> bool:
+    """Return whether the address of a socket, as text, is on the loopback of this machine."""
+    try:
+        return ip_address(where.rpartition(":")[0]).is_loopback
+    except ValueError:
+        return False

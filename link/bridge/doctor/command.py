@@ -60,8 +60,7 @@ def run(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except OSError as error:  # the output, full or closed by its reader
-        stdio.discard_output()
-        parser.exit(1, f"{parser.prog}: {error.strerror or error}\n")
+        return stdio.end_output(error, lambda reason: parser.exit(1, f"{parser.prog}: {reason}\n"))
     return code
 
 

@@ -15,7 +15,6 @@ from termios import TIOCSWINSZ
 
 import pytest
 
-from groundstation.cli.console import report_armed
 from groundstation.cli.main import main
 from link.runtime.install_hint import install_command
 
@@ -154,11 +153,6 @@ def test_a_pipe_for_a_log_file_is_not_waited_for(tmp_path: Path) -> None:
     code, shown = in_terminal(["--log-file", str(tmp_path / "station.log")])
     assert code == 2
     assert shown == f"groundstation: log file {tmp_path}/station.log: a pipe; name a file\n"
-
-
-def test_what_is_left_armed_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    report_armed(("Rover 1 is left ARMED in HOLD",))
-    assert capsys.readouterr().err == "groundstation: Rover 1 is left ARMED in HOLD\n"
 
 
 def test_a_gamepad_without_its_packages_is_one_line(

@@ -55,6 +55,17 @@ def test_the_simulator_records_its_drives_until_it_ends() -> None:
         assert not folder.exists()
 
 
+def test_an_armed_simulator_that_ended_is_not_left_armed() -> None:
+    with Screen(sitl=True) as screen:
+        sees_rover(screen)
+        screen.hold_forward()
+        armed = ("Rover 1 is left ARMED in MANUAL",)
+        screen.see(lambda snapshot: snapshot.left_armed == armed)
+        assert screen.snapshot.end_armed == armed
+        assert screen.client.close() == 0
+        assert screen.client.left_armed == ()
+
+
 def test_the_simulator_dies_with_a_station_that_is_killed() -> None:
     with Screen(sitl=True) as screen:
         sees_rover(screen)

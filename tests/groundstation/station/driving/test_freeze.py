@@ -8,13 +8,22 @@ from collections.abc import Callable
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Autopilot, SystemState, VehicleType
+from dialects.enums import Autopilot, Severity, SystemState, VehicleType
 from dialects.modes import Mode, base_mode
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
-from groundstation.intents.session import LEASE_TIMEOUT, REST_LEASE_TIMEOUT, RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.session import (
+    LEASE_TIMEOUT,
+    QUITTING,
+    REST_LEASE_TIMEOUT,
+    SUSPENDED,
+    Quit,
+    RenewLease,
+    ReportKeyReleases,
+    SetKeyGate,
+)
 from groundstation.intents.union import AnyIntent
-from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.driving.operator import Lapse, OperatorSession
 from groundstation.station.station import Station
 from link.core import Peer, Received
 
@@ -149,7 +158,7 @@ def test_renewing_expired_lease_releases_keys_and_is_told_once() -> None:
     assert session.sticks.held_keys(104.6) == ()
     assert session.blocked_reason(104.6) == "screen was frozen"
     lapses = [session.expire_lease(104.6) for _ in range(3)]
-    assert lapses == ["display not responding for 4.6 s", None, None]
+    assert lapses == [Lapse("display not responding for 4.6 s", drove=True, left=False), None, None]
 
 
 def test_a_key_held_over_a_lapse_is_named_while_it_is_held() -> None:
@@ -186,6 +195,54 @@ def test_lapse_with_an_armed_rover_is_told_and_a_slow_start_not() -> None:
     held.station.tick(held.now)
     lines = held.station.snapshot(held.now, held.now).texts
     assert lines[-1].text == "display not responding for 0.5 s: neutral, release the keys"
+
+
+def lapse_lines(held: HeldKey) -> list[tuple[str, int]]:
+    """Texts of lapses with their severities, after a screen that freezes for 0.5 s."""
+    held.now += 0.5
+    held.station.tick(held.now)
+    lines = held.station.snapshot(held.now, held.now).texts
+    return [(line.text, line.severity) for line in lines if line.text.startswith((LAPSE, "station stopped"))]
+
+
+def test_a_lapse_with_a_key_down_is_critical_and_without_info() -> None:
+    assert [severity for _, severity in lapse_lines(HeldKey(releases=True))] == [Severity.CRITICAL]
+    idle = HeldKey(releases=True)
+    idle.do(DriveKeyUp(key="i"))
+    for _ in range(8):
+        idle.step()
+    assert lapse_lines(idle) == [("display not responding for 0.5 s: no key was down", Severity.INFO)]
+
+
+def test_a_key_pressed_while_the_screen_is_frozen_is_critical() -> None:
+    held = HeldKey(releases=True)
+    held.do(DriveKeyUp(key="i"))
+    for _ in range(8):
+        held.step()
+    held.now += 0.2
+    held.do(FORWARD, DriveKeyUp(key="i"))
+    assert [severity for _, severity in lapse_lines(held)] == [Severity.CRITICAL]
+
+
+@pytest.mark.parametrize("reason", [QUITTING, f"{QUITTING}, disarming in 2 s", SUSPENDED])
+def test_a_lapse_of_a_screen_that_is_left_is_not_told(reason: str) -> None:
+    held = HeldKey(releases=True)
+    held.do(SetKeyGate(open=False, reason=reason))
+    assert lapse_lines(held) == []
+
+
+def test_a_lapse_while_the_station_ends_is_not_told() -> None:
+    held = HeldKey(releases=True)
+    held.do(Quit(disarm=True))
+    assert lapse_lines(held) == []
+
+
+def test_a_lapse_over_a_vehicle_that_drives_itself_is_not_told() -> None:
+    held = HeldKey(releases=True)
+    flags = base_mode(Mode.AUTO, armed=True)
+    beat = m.Heartbeat(VehicleType.GROUND_ROVER, Autopilot.GENERIC, flags, Mode.AUTO, SystemState.ACTIVE, 3)
+    held.station.receive(Received(beat, 1, 1, 0, Peer(0, "vehicle"), introduced=True), held.now)
+    assert lapse_lines(held) == []
 
 
 def test_screen_frozen_during_rest_does_not_drive_a_later_arming() -> None:
