@@ -91,6 +91,21 @@ def test_bridge_two_links_forwards_what_the_vehicle_sends(start: Start, vehicle:
     assert bridge.returncode == 0
 
 
+@pytest.mark.e2e
+def test_values_of_own_sensor_reach_a_ground_station(start: Start, vehicle: Callable[..., Vehicle]) -> None:
+    ground, beside = free_port(), free_port()
+    vehicle(f"udpout:127.0.0.1:{ground}", f"udpin:127.0.0.1:{beside}")
+    start("own_sensor.py", f"udpout:127.0.0.1:{beside}")
+    where = ["-e", f"udpin:127.0.0.1:{ground}", "--station", "never", "--timeout", str(PATIENCE)]
+    watched = subprocess.run(
+        [sys.executable, "-m", "groundstation", "watch", "NAMED_VALUE_FLOAT.value", "--until", ">=0", *where],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert watched.returncode == 0, watched.stdout + watched.stderr
+
+
 class TestMyMotors(MotorsContract):
     @pytest.fixture
     def bench(self) -> Bench:

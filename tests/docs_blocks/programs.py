@@ -38,6 +38,7 @@ STAYS = (
     Stays(r"(?:until )?\S*vehicle (?=--|udp)|GPIOZERO", "vehicle: ready"),
     Stays(r"bridge router\b", "bridge router: ready"),
     Stays(r"bridge (?=serial:|udp|tcp|zenoh:)", r'ready.*"system": 1,|\n *1 +1 +serial:'),
+    Stays(r"python own_sensor.py", "water to udpout"),
     Stays(r"roscore\b", "started core service"),
     Stays(r"rostopic echo\b", "---", codes=(0, 130)),
     Stays(r"rostopic pub -r\b", "", codes=(130,)),
