@@ -27,7 +27,9 @@ def read_sensor() -> float:
 
 def main() -> None:
     """Send a value twice a second, until Ctrl-C."""
-    link = mavutil.mavlink_connection(sys.argv[1], source_system=1, source_component=COMPONENT)
+    link = mavutil.mavlink_connection(  # type: ignore[no-untyped-call]  # pymavlink has no types
+        sys.argv[1], source_system=1, source_component=COMPONENT
+    )
     print(f"{NAME.decode()} to {sys.argv[1]} each {PERIOD} s; Ctrl-C ends it", flush=True)
     while True:
         uptime = int(time.monotonic() * 1000) % 2**32
