@@ -13,7 +13,7 @@ import select
 import signal
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import msgspec
 
@@ -41,7 +41,7 @@ class WatchdogProcess:
         """`read_keys` reads other keys into `signing`, when a report says that they have changed."""
         self._station = station
         self._screen = screen
-        self._terminal: TerminalReset | None = terminal
+        self._terminal = terminal
         self._watchdog = Watchdog(signing)
         self._read_keys, self._keys_version = read_keys, 0
         self._outlets = Outlets()
@@ -51,21 +51,13 @@ class WatchdogProcess:
 
     def run(self) -> None:
         """Run until the station has ended and the vehicles have got their neutral."""
-        while not self._watchdog.finished(time.monotonic()):
-            self._wait()
-            now = time.monotonic()
-            for route, target, frame in self._watchdog.tick(now):
-                self._watchdog.record_sent(target, self._outlets.write(route, frame))
-            outage = self._watchdog.outage(now)
-            self._show(outage)
-            if self._station_gone or outage.text:
-                self._reset_terminal()
-        self._check_screen()
-        self._reset_terminal(LAST_TRY)
+        while not self._watchdog.finished(now := time.monotonic()):
+            ready = self.wait(self._watchdog.timeout(now))
+            self.step(ready, time.monotonic())
+        self.finish()
 
-    def _wait(self) -> None:
-        """Wait for the next event and handle it. All waiting reports come first: this process may have stood still."""
-        timeout = self._watchdog.timeout(time.monotonic())
+    def wait(self, timeout: float | None) -> list[int]:
+        """Return the descriptors that have an event, after at most `timeout` s; None waits without an end."""
         waiting = select.poll()
         if not self._station_gone:
             waiting.register(self._station, select.POLLIN)
@@ -73,15 +65,39 @@ class WatchdogProcess:
             waiting.register(self._screen, 0)
         for descriptor in self._reading:
             waiting.register(descriptor, select.POLLIN)
-        for descriptor, _ in waiting.poll(None if timeout is None else 1000 * timeout):
-            if descriptor == self._station.fileno():
-                self._read_reports()
-            elif descriptor == self._screen.fileno():
-                self._screen_gone = True
-            else:
-                self._read_vehicle(descriptor)
+        return [descriptor for descriptor, _ in waiting.poll(None if timeout is None else 1000 * timeout)]
 
-    def _read_reports(self) -> None:
+    def step(self, ready: Iterable[int], now: float) -> None:
+        """Handle what waits in `ready`, then send what is due at `now`.
+
+        All waiting reports come first: this process may have stood still.
+        """
+        for descriptor in ready:
+            self._handle_event(descriptor, now)
+        for route, target, frame in self._watchdog.tick(now):
+            self._watchdog.record_sent(target, self._outlets.write(route, frame))
+        outage = self._watchdog.outage(now)
+        self._show(outage)
+        if outage.text:
+            self._reset_terminal()
+
+    def finish(self) -> None:
+        """Reset the terminal if the screen is gone by now: both processes may have been killed together."""
+        look = select.poll()
+        look.register(self._screen, 0)
+        self._screen_gone = bool(look.poll(0))
+        if self._needs_reset():
+            self._terminal.insist(LAST_TRY)
+
+    def _handle_event(self, descriptor: int, now: float) -> None:
+        if descriptor == self._station.fileno():
+            self._read_reports(now)
+        elif descriptor == self._screen.fileno():
+            self._screen_gone = True
+        else:
+            self._read_vehicle(descriptor, now)
+
+    def _read_reports(self, now: float) -> None:
         while True:
             try:
                 data, descriptors, _, _ = socket.recv_fds(self._station, MAX_REPORT, MAX_OUTLETS)
@@ -90,11 +106,11 @@ class WatchdogProcess:
             except OSError:
                 data, descriptors = b"", []
             if not data:
-                self._handle_station_end()
+                self._handle_station_end(now)
                 return
-            self._handle_report(decode_report(data), descriptors)
+            self._handle_report(decode_report(data), descriptors, now)
 
-    def _handle_report(self, report: StationReport, descriptors: list[int]) -> None:
+    def _handle_report(self, report: StationReport, descriptors: list[int], now: float) -> None:
         if report.keeps_descriptors:
             self._outlets.update(report.routes)
         else:
@@ -102,23 +118,22 @@ class WatchdogProcess:
         if self._read_keys is not None and report.keys_version != self._keys_version:
             self._keys_version = report.keys_version
             self._read_keys()
-        self._watchdog.handle_report(report, time.monotonic())
+        self._watchdog.handle_report(report, now)
         self._screen_has_quit |= report.screen_has_quit
         if report.screen_is_gone:
             self._reset_terminal()
 
-    def _handle_station_end(self) -> None:
+    def _handle_station_end(self, now: float) -> None:
         self._station_gone = True
-        self._watchdog.handle_end(time.monotonic())
+        self._watchdog.handle_end(now)
         self._reading = set(self._outlets.descriptors)  # nobody else reads them any more
 
-    def _read_vehicle(self, descriptor: int) -> None:
-        now = time.monotonic()
+    def _read_vehicle(self, descriptor: int, now: float) -> None:
         try:
             for frame in self._outlets.read(descriptor, now):
                 self._watchdog.handle_frame(frame, now)
         except (BlockingIOError, ConnectionRefusedError):
-            return
+            pass  # it may send later
         except (OSError, EOFError):
             self._reading.discard(descriptor)
 
@@ -128,18 +143,14 @@ class WatchdogProcess:
                 self._screen.send(encode(outage))
                 self._shown = outage
 
-    def _check_screen(self) -> None:
-        """Look once more whether the screen is gone: both processes may have been killed together."""
-        look = select.poll()
-        look.register(self._screen, 0)
-        self._screen_gone = bool(look.poll(0))
+    def _reset_terminal(self) -> None:
+        """Reset the terminal once it has room; this process has no time to wait for that."""
+        if self._needs_reset():
+            self._terminal.run()
 
-    def _reset_terminal(self, within: float = 0.0) -> None:
-        """Reset the terminal once, if the screen is gone and has not left it in order. `within`: s to wait for room."""
-        if self._terminal is None or not self._screen_gone or self._screen_has_quit or self._finds_quit():
-            return
-        if self._terminal.run(within):
-            self._terminal = None
+    def _needs_reset(self) -> bool:
+        """Return whether the screen is gone and has not left the terminal in order."""
+        return self._screen_gone and not self._screen_has_quit and not self._finds_quit()
 
     def _finds_quit(self) -> bool:
         """Return whether the screen has quit, by what the station did not read any more."""
@@ -151,8 +162,8 @@ class WatchdogProcess:
             if not packet:
                 return False
             with contextlib.suppress(msgspec.DecodeError):
-                self._screen_has_quit |= any(isinstance(each, Quit) for each in decode_from_screen(packet).intents)
-                if self._screen_has_quit:
+                if any(isinstance(each, Quit) for each in decode_from_screen(packet).intents):
+                    self._screen_has_quit = True
                     return True
 
 
@@ -172,13 +183,11 @@ def fork_watchdog(
     if process:
         theirs.close()
         return process, ours
-    code = 1
     try:
         ours.close()
         _run(WatchdogProcess(theirs, screen, reset, signing, read_keys))
-        code = 0
     finally:
-        os._exit(code)
+        os._exit(0)
 
 
 def _run(process: WatchdogProcess) -> None:

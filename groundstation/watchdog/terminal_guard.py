@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 from groundstation.watchdog.terminal_reset import LAST_TRY, TerminalReset
 
 
-@contextmanager
+@contextlib.contextmanager
 def guard_terminal(path: str | None) -> Iterator[None]:
     """Reset the terminal if this process is killed meanwhile. Call before there is any thread. Raises OSError."""
     reset = TerminalReset(path)
@@ -23,19 +23,18 @@ def guard_terminal(path: str | None) -> Iterator[None]:
     try:
         yield
     finally:
-        os.write(ours, b"\0")
+        with contextlib.suppress(BrokenPipeError):  # the guard was killed
+            os.write(ours, b"\0")
         os.close(ours)
         os.waitpid(process, 0)
 
 
 def _watch(pipe: int, reset: TerminalReset) -> None:
     """Wait for the end of the screen's process, which says so unless it is killed. Does not return."""
-    code = 1
     try:
         os.setsid()
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         if not os.read(pipe, 1):
-            reset.run(LAST_TRY)
-        code = 0
+            reset.insist(LAST_TRY)
     finally:
-        os._exit(code)
+        os._exit(0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import select
 import termios
 import time
 from typing import Any
@@ -20,6 +19,8 @@ RESET = (
 
 LAST_TRY = 2.0
 """s to wait for room in the terminal when nothing else is left to do."""
+RETRY_PERIOD = 0.02
+"""s between two looks for room."""
 LOCAL_FLAGS = 3
 """Index in the list of termios.tcgetattr()."""
 
@@ -32,8 +33,8 @@ class TerminalReset:
         self._before = None if path is None else _attributes(path)
         self._left = RESET
 
-    def run(self, within: float = 0.0) -> bool:
-        """Reset the terminal, waiting at most `within` s for room: what the screen drew last may fill it.
+    def run(self) -> bool:
+        """Reset the terminal once, without waiting for room: what the screen drew last may fill it.
 
         Returns True once that is done, or the terminal is gone; else try again.
         """
@@ -42,22 +43,26 @@ class TerminalReset:
         with contextlib.suppress(OSError, termios.error):
             descriptor = os.open(self._path, os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY)
             try:
-                if not self._write(descriptor, within):
+                if not self._write(descriptor):
                     return False
                 self._restore_line(descriptor)
             finally:
                 os.close(descriptor)
+        self._path = None
         return True
 
-    def _write(self, descriptor: int, within: float) -> bool:
-        """Write what is left; return whether nothing is."""
+    def insist(self, within: float) -> None:
+        """Reset the terminal, waiting at most `within` s for room."""
         until = time.monotonic() + within
-        while self._left:
-            left = max(0.0, until - time.monotonic())
-            if not select.select([], [descriptor], [], left)[1]:
-                return False
-            self._left = self._left[os.write(descriptor, self._left) :]
-        return True
+        while not self.run() and time.monotonic() < until:
+            time.sleep(RETRY_PERIOD)
+
+    def _write(self, descriptor: int) -> bool:
+        """Write what has room; return whether nothing is left."""
+        with contextlib.suppress(BlockingIOError):
+            while self._left:
+                self._left = self._left[os.write(descriptor, self._left) :]
+        return not self._left
 
     def _restore_line(self, descriptor: int) -> None:
         """Restore echo and lines, unless a shell has taken the terminal: one that edits lines keeps ISIG."""

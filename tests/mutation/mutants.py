@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType
@@ -117,11 +117,13 @@ def _is_part_of_line(node: ast.AST) -> bool:
     )
 
 
-def build_mutants(path: str) -> list[Mutant]:
-    """Return all mutants of the module at `path`."""
+def build_mutants(path: str, functions: Collection[str] | None = None) -> list[Mutant]:
+    """Return the mutants of the module at `path`; of these functions only, "" for the module level."""
     namespace = vars(importlib.import_module(module_name(path)))
     found, seen = [], Counter[tuple[str, str]]()
     for spot in _spots(ast.parse(Path(path).read_text()), (), ""):
+        if functions is not None and spot.function not in functions:
+            continue
         for changed in build_changes(spot.node, spot.field, namespace):
             text = spot.describe(changed)
             seen[spot.function, text] += 1

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.mutation.baseline import Baseline, BaselineError, measure
-from tests.mutation.child import KILLED, SURVIVED, Watch, fork, run_files, run_items
+from tests.mutation.child import BROKEN, KILLED, SURVIVED, Watch, fork, run_files, run_items
 from tests.mutation.loading import Functions, find_functions, replace_function, replace_module
 from tests.mutation.mutants import Mutant, unchanged
 from tests.mutation.results import Outcome, Result
@@ -135,13 +135,14 @@ class Runner:
 
 
 def _killer(folder: Path, status: int) -> str | None:
-    """Return the test that failed in a child, "" for its time limit, None if it passed all; removes `folder`.
+    """Return the test that failed in a child, None if it passed all; removes `folder`.
 
-    Raises RuntimeError if the child could not run the tests.
+    "" stands for the time limit, and for a child that the mutant has ended, as by os._exit(). Raises RuntimeError if
+    the child could not run the tests.
     """
     code = os.waitstatus_to_exitcode(status)
     test = (folder / "killer").read_text() if code == KILLED else ""
     shutil.rmtree(folder, ignore_errors=True)
-    if code >= 0 and code not in (KILLED, SURVIVED):
+    if code == BROKEN:
         raise RuntimeError("a child could not run the tests")
     return None if code == SURVIVED else test

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import tomllib
+from collections import defaultdict
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.mutation.mutants import Mutant
+from tests.mutation.mutants import Mutant, build_mutants
 
 FILE = Path(__file__).with_name("survivors.toml")
 
@@ -44,3 +45,14 @@ def unexplained_and_stale(
     modules = {mutant.path for mutant in mutants}
     unexplained = [mutant for mutant in survivors if key(mutant) not in explanations]
     return unexplained, [each for each in explanations if each.path in modules and each not in survived]
+
+
+def find_gone(explanations: Collection[Key]) -> list[Key]:
+    """Return the explanations whose mutant is not in the source: that has changed since."""
+    functions = defaultdict(set)
+    for each in explanations:
+        functions[each.path].add(each.function)
+    known = {
+        key(mutant) for path, names in functions.items() if Path(path).exists() for mutant in build_mutants(path, names)
+    }
+    return [each for each in explanations if each not in known]

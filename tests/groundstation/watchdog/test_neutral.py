@@ -89,6 +89,13 @@ def test_a_watchdog_without_keys_signs_nothing() -> None:
     assert not is_signed(NeutralFrames(ROVER, (252, 191), DemandRoute(0, None, 0, WAY)).next_frame(0.0))
 
 
+def test_a_proof_of_a_session_is_always_mavlink_2() -> None:
+    """MAVLink 1 has no message of this number."""
+    frame = NeutralFrames(ROVER, (252, 191), DemandRoute(0, None, 0, version_1=True)).next_frame(0.0)
+    assert isinstance(read(frame), RoverOperatorPresence)
+    assert frame[0] == 0xFD
+
+
 def test_a_vehicle_of_mavlink_1_gets_neutral_in_it() -> None:
     rover = msgspec.structs.replace(ROVER, session=None)
     frame = NeutralFrames(rover, (252, 191), DemandRoute(0, None, 0, version_1=True)).next_frame(0.0)

@@ -112,7 +112,7 @@ def test_only_what_shows_whether_a_vehicle_stands_is_read(ends: tuple[socket.soc
     assert outlets.read(descriptor, 0.0) == []
     ends[1].send(beat[5:])
     assert [frame[4] for frame in outlets.read(descriptor, 0.05)] == [beat]
-    ends[1].send(b"\xfd\xff\0\0")
+    ends[1].send(codec.frame(110, bytes(253) + b"x", 3, 1, 1)[:50])
     assert outlets.read(descriptor, 0.2) == []
     outlets.replace([], ())
     fresh = copy(ends[0])

@@ -10,6 +10,7 @@ import termios
 import tty
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from threading import get_native_id
 
 import pytest
 
@@ -31,6 +32,7 @@ class Terminal:
         if not child:
             code = 1
             try:
+                signal.signal(signal.SIGHUP, signal.SIG_DFL)  # else it is ignored under nohup
                 with guard_terminal(os.ttyname(self.slave)):
                     tty.setraw(self.slave)
                     end()
@@ -48,6 +50,11 @@ class Terminal:
 
     def is_untouched(self) -> bool:
         return not select.select([self.master], [], [], 0.0)[0] and termios.tcgetattr(self.slave) != self.cooked
+
+
+def children() -> list[int]:
+    """Return the processes that this thread has forked and not waited for."""
+    return [int(each) for each in Path(f"/proc/self/task/{get_native_id()}/children").read_text().split()]
 
 
 @pytest.fixture
@@ -69,7 +76,7 @@ def test_the_guard_outlives_the_hangup_of_its_session(terminal: Terminal) -> Non
     """A session that ends hangs up all of its processes, and the group of the terminal."""
 
     def hang_up() -> None:
-        (guard,) = map(int, Path(f"/proc/self/task/{os.getpid()}/children").read_text().split())
+        (guard,) = children()
         wait_until(lambda: os.getsid(guard) == guard and ignores_hangup(guard))
         os.kill(guard, signal.SIGHUP)
         os.kill(os.getpid(), signal.SIGKILL)
@@ -97,3 +104,23 @@ def test_a_screen_that_fails_is_no_killed_one(terminal: Terminal) -> None:
 
     assert terminal.run(fail) == 1
     assert terminal.is_untouched()
+
+
+def test_a_guard_that_was_killed_ends_no_screen(terminal: Terminal) -> None:
+    def kill() -> None:
+        (guard,) = children()
+        os.kill(guard, signal.SIGKILL)
+        os.waitid(os.P_PID, guard, os.WEXITED | os.WNOWAIT)  # until its end of the pipe is closed
+
+    assert terminal.run(kill) == 0
+    assert terminal.is_untouched()
+
+
+def test_a_guard_leaves_no_process_and_no_descriptor(terminal: Terminal) -> None:
+    def guard_another() -> None:
+        before = children(), os.listdir("/proc/self/fd")
+        with guard_terminal(None):
+            assert len(children()) == len(before[0]) + 1
+        assert (children(), os.listdir("/proc/self/fd")) == before
+
+    assert terminal.run(guard_another) == 0

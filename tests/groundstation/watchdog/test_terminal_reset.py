@@ -8,6 +8,7 @@ import pty
 import select
 import termios
 import threading
+import time
 import tty
 from collections.abc import Iterator
 from pathlib import Path
@@ -123,18 +124,34 @@ def test_no_terminal_is_done() -> None:
     assert TerminalReset(None).run()
 
 
-def test_a_reset_waits_for_room(terminal: Raw) -> None:
-    for end in (terminal.slave, terminal.master):
-        os.set_blocking(end, False)
-    _fill(terminal.slave)
-    done: list[bool] = []
-    runs = threading.Thread(target=lambda: done.append(terminal.reset.run(60.0)))
+def test_a_reset_that_insists_waits_for_room(terminal: Raw) -> None:
+    termios.tcflow(terminal.slave, termios.TCOOFF)
+    assert not terminal.reset.run()
+    runs = threading.Thread(target=terminal.reset.insist, args=(60.0,))
     runs.start()
-    drawn = b""
-    while runs.is_alive():
-        if select.select([terminal.master], [], [], 0.02)[0]:
-            drawn += os.read(terminal.master, 65536)
-    drawn += _read(terminal.master)
+    assert not select.select([terminal.master], [], [], 0.05)[0]
+    termios.tcflow(terminal.slave, termios.TCOON)
     runs.join(20.0)
-    assert done == [True]
-    assert drawn.endswith(RESET)
+    assert not runs.is_alive()
+    assert os.read(terminal.master, 4096) == RESET
+    assert termios.tcgetattr(terminal.slave) == terminal.before
+
+
+def test_a_terminal_that_stays_full_is_given_up(terminal: Raw) -> None:
+    termios.tcflow(terminal.slave, termios.TCOOFF)
+    began = time.monotonic()
+    terminal.reset.insist(0.05)
+    assert time.monotonic() - began >= 0.05
+    termios.tcflow(terminal.slave, termios.TCOON)
+    assert terminal.reset.run()
+    assert os.read(terminal.master, 4096) == RESET
+
+
+def test_a_terminal_is_reset_once(terminal: Raw) -> None:
+    assert terminal.reset.run()
+    assert os.read(terminal.master, 4096) == RESET
+    tty.setraw(terminal.slave)  # another screen starts
+    assert terminal.reset.run()
+    terminal.reset.insist(60.0)
+    assert termios.tcgetattr(terminal.slave) == terminal.raw
+    assert not select.select([terminal.master], [], [], 0.0)[0]
