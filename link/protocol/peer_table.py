@@ -79,10 +79,10 @@ class PeerTable:
         index: int,
         *,
         stream: bool,
-        places: int = MAX_PEERS,
-        first_sequence: int = 0,
-        named: bool = False,
-        bounded: bool = False,
+        places: int,
+        first_sequence: int,
+        named: bool,
+        bounded: bool,
     ) -> None:
         self.past_counts = FramerCounts()
         """Of the peers that have gone."""

@@ -47,6 +47,13 @@ def answers(channel: Channel, now: float = 0.0) -> list[tuple[object, int]]:
     return found
 
 
+def lead(channel: Channel, now: float = 0.0) -> int:
+    """How far frames to HERE are signed ahead of our clock."""
+    way = channel.signing_way(HERE, now)
+    assert way is not None
+    return way.lead
+
+
 def right(*keys: SigningKey) -> Signing:
     """What a vehicle has that knows the right time."""
     return Signing(keep(*keys).ring, wall=NOON, now=0.0, synchronized=True)
@@ -111,7 +118,21 @@ def test_32_senders_are_answered_in_a_second() -> None:
     channel = vehicle(keep(DRIVER))
     for host in range(40):
         channel.receive(signed(stamp=NOW - DAY), (f"10.0.0.{host}", 1), 0.0)
-    assert len(answers(channel)) == 32
+    assert len(channel.pop_untimely()) == 32
+
+
+def test_the_newest_32_senders_can_be_answered() -> None:
+    channel = vehicle(keep(DRIVER))
+    for host in range(33):
+        channel.receive(signed(stamp=NOW - DAY), (f"10.0.0.{host}", 1), 0.0 if host < 20 else 1.0)
+    assert [address for address, _ in answers(channel, 1.0)] == [(f"10.0.0.{host}", 1) for host in range(1, 33)]
+
+
+def test_a_time_too_far_ahead_is_answered_at_its_own_place() -> None:
+    channel = vehicle(right(DRIVER))
+    channel.receive(signed(), HERE, 0.0)
+    channel.receive(signed(stamp=NOW + DAY + 1), HERE, 0.0)
+    assert [address for address, _ in answers(channel)] == [HERE]
 
 
 def test_an_answer_costs_no_place_and_its_numbers_go_on() -> None:
@@ -148,6 +169,35 @@ def test_station_follows_one_day_at_once_and_more_once_reported(ahead: int, at_o
     assert link_and_stamp(send(channel)[0])[1] - NOW >= ahead
 
 
+@pytest.mark.parametrize("reported", [0, SECOND, DAY])
+def test_what_a_report_did_not_call_ahead_is_not_followed(reported: int) -> None:
+    channel = station(keep(DRIVER), STATION)
+    channel.receive(signed(stamp=NOW + reported, ids=(1, 1)), HERE, 0.0)
+    channel.report(now=0.0)
+    channel.receive(signed(stamp=NOW + 9 * DAY, ids=(1, 1)), HERE, 0.0)
+    assert lead(channel) == 0
+    channel.report(now=0.0)
+    assert lead(channel) == 9 * DAY
+
+
+def test_a_station_with_right_time_follows_what_it_reports() -> None:
+    channel = station(right(DRIVER), STATION)
+    assert channel.receive(signed(stamp=NOW + 9 * DAY, ids=(1, 1)), HERE, 0.0)
+    channel.report(now=0.0)
+    channel.receive(signed(stamp=NOW + 8 * DAY, ids=(1, 1), link_id=1), HERE, 0.0)
+    assert lead(channel) == 9 * DAY
+
+
+@pytest.mark.parametrize("ahead", [20 * SECOND, 2 * DAY])
+def test_a_lead_is_the_same_whenever_it_was_heard(ahead: int) -> None:
+    """Without the right time the largest lead is kept, however large."""
+    channel = vehicle(keep(DRIVER))
+    channel.receive(signed(stamp=NOW + 100 * SECOND + ahead), HERE, 100.0)
+    channel.receive(signed(stamp=NOW + 200 * SECOND + ahead // 2, link_id=1), HERE, 200.0)
+    assert lead(channel, 200.0) == ahead
+    assert lead(channel, 300.0) == ahead
+
+
 def test_a_report_of_one_key_says_nothing_of_another() -> None:
     channel = station(keep(DRIVER, WATCHER), STATION)
     channel.receive(signed(key=WATCHER, stamp=NOW + 9 * DAY, ids=(1, 1)), HERE, 0.0)
@@ -163,7 +213,7 @@ def test_who_knows_the_right_time_follows_a_day(ahead: int, followed: bool) -> N
     channel.receive(signed(stamp=NOW + ahead), HERE, 0.0)
     assert link_and_stamp(send(channel)[0])[1] - NOW == ahead
     signing.update(NOON, 0.0, synchronized=True)
-    assert (link_and_stamp(send(channel)[0])[1] - NOW >= ahead) is followed
+    assert lead(channel) == (ahead if followed else 0)
     channel.receive(signed(stamp=NOW + 30 * SECOND, link_id=1), HERE, 0.0)
     told = link_and_stamp(send(channel)[0])[1] - NOW
     assert told >= ahead if followed else 30 * SECOND <= told < 31 * SECOND

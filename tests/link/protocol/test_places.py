@@ -6,7 +6,9 @@ import hashlib
 from collections import Counter
 from collections.abc import Hashable
 
-from dialects.messages import CommandAck
+import pytest
+
+from dialects.messages import Attitude, CommandAck
 from link.core import Outgoing
 from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningPolicy
@@ -20,10 +22,16 @@ OPEN = SigningPolicy(unsigned=Role.WATCH, open_stops=True)
 OTHER = SigningKey("other", Role.DRIVE, hashlib.sha256(b"another driver's").digest())
 SECOND_WATCHER = SigningKey("phone", Role.WATCH, hashlib.sha256(b"the phone's").digest())
 PLACES = 24
+ATTITUDE = Attitude(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def hosts(channel: Channel) -> list[Hashable]:
     return [peer.address for peer in channel.report().audience]
+
+
+def places(channel: Channel) -> list[Hashable]:
+    """Those of `hosts`, and who has sent no HEARTBEAT yet."""
+    return [each.peer.address for each in channel._peers]
 
 
 def crowd(*, one_host: bool = False, ids: int = 100) -> Channel:
@@ -117,7 +125,69 @@ def test_a_verified_sender_without_heartbeat_keeps_its_place() -> None:
     assert [address for _, address, _ in channel.send(Outgoing(CommandAck(400, 0), place.peer))] == [HERE]
 
 
+def watch_keys(count: int) -> list[SigningKey]:
+    return [SigningKey(f"w{n}", Role.WATCH, hashlib.sha256(bytes([n])).digest()) for n in range(count)]
+
+
+@pytest.mark.parametrize(("newcomer", "admitted"), [(DRIVER, True), (OTHER, True), (SECOND_WATCHER, False)])
+def test_a_drive_key_comes_before_watch_keys(newcomer: SigningKey, admitted: bool) -> None:
+    """Each has one place, so that no key has more than its share."""
+    keys = watch_keys(12)
+    channel = vehicle(keep(*keys, newcomer), OPEN, places=12)
+    for number, key in enumerate(keys):
+        channel.receive(signed(key=key, ids=(number + 1, 190)), (f"10.0.0.{number}", 14550), 0.0)
+    assert len(hosts(channel)) == 12
+    channel.receive(signed(key=newcomer, ids=(200, 190)), HERE, 1.0)
+    assert (HERE in hosts(channel)) is admitted
+
+
+@pytest.mark.parametrize("newcomer", [heartbeat(0), signed(key=WATCHER)])
+def test_a_sender_without_heartbeat_leaves_to_one_of_its_rank(newcomer: bytes) -> None:
+    channel = vehicle(keep(DRIVER, WATCHER), OPEN)
+    for number in range(PLACES):
+        data = frame(ATTITUDE if number == 7 else HEARTBEAT, system=100)
+        channel.receive(data, (f"10.0.0.{number}", 14550), 0.0)
+    assert channel.receive(newcomer, HERE, 1.0) != []
+    assert len(places(channel)) == PLACES
+    assert ("10.0.0.7", 14550) not in places(channel)
+
+
 # ---- shares ----
+
+
+@pytest.mark.parametrize(("held", "admitted"), [((3, 0), True), ((2, 1), False), ((3, 1), True), ((3, 2), False)])
+def test_a_key_gives_a_place_to_one_with_two_less(held: tuple[int, int], admitted: bool) -> None:
+    """With one less the two would take the place from each other for ever."""
+    keys = (WATCHER, SECOND_WATCHER)
+    channel = vehicle(keep(*keys), OPEN, places=sum(held))
+    for key, count in zip(keys, held, strict=True):
+        for number in range(count):
+            data = signed(key=key, stamp=NOW + number, ids=(100, 190), link_id=number)
+            channel.receive(data, (f"10.{keys.index(key)}.0.{number}", 1), 0.0)
+    assert len(hosts(channel)) == sum(held)
+    channel.receive(signed(key=SECOND_WATCHER, stamp=NOW + 50, ids=(101, 190)), HERE, 1.0)
+    assert (HERE in hosts(channel)) is admitted
+
+
+def test_the_key_with_most_places_is_the_one_that_gives() -> None:
+    keys = watch_keys(3)
+    channel = vehicle(keep(*keys), OPEN, places=7)
+    for key, count in zip(keys, (3, 4, 0), strict=True):
+        for number in range(count):
+            data = signed(key=key, stamp=NOW + number, ids=(100 + keys.index(key), 190), link_id=number)
+            channel.receive(data, (f"10.{keys.index(key)}.0.{number}", 1), 0.0)
+    assert channel.receive(signed(key=keys[2]), HERE, 1.0) != []
+    assert len([each for each in hosts(channel) if str(each).startswith("('10.0")]) == 3
+    assert len([each for each in hosts(channel) if str(each).startswith("('10.1")]) == 3
+
+
+def test_a_host_does_not_pay_for_a_key_with_many_places() -> None:
+    channel = vehicle(keep(WATCHER), OPEN, places=12)
+    for number in range(6):
+        channel.receive(signed(key=WATCHER, stamp=NOW + number, sequence=number), (f"10.0.0.{number}", 1), 0.0)
+        channel.receive(heartbeat(0, system=100), (f"10.1.0.{number}", 1), 0.0)
+    assert len(hosts(channel)) == 12
+    assert channel.receive(heartbeat(0, system=101), THERE, 1.0) == []
 
 
 def test_a_host_with_more_than_4_places_gives_one_up() -> None:
@@ -165,9 +235,33 @@ def test_an_operator_of_a_fleet_has_4_places() -> None:
 def test_run_that_missed_heartbeat_leaves_its_place_to_the_next() -> None:
     channel = fleet(4)
     channel.receive(heartbeat(1, system=200), "eve/0", 1.0)
-    assert channel.receive(heartbeat(0), "eve/9", 1.4) == []
-    assert channel.receive(heartbeat(0), "eve/9", 1.6) != []
+    assert channel.receive(heartbeat(0), "eve/9", 1.5) == []
+    assert channel.receive(heartbeat(0), "eve/9", 1.51) != []
     assert hosts(channel) == ["eve/0", "eve/2", "eve/3", "eve/9"]
+
+
+def test_a_run_takes_no_place_of_another_operator_or_of_a_name() -> None:
+    channel = Channel("zenoh:x", 0, system=1, component=1, stream=True, named=True, target="eve/named")
+    for address, now in (("bob/0", 0.0), ("eve/0", 3.0), ("eve/1", 3.0), ("eve/2", 3.0)):
+        channel.receive(b"", address, now)
+        channel.receive(heartbeat(0, system=200), address, now)
+    assert channel.receive(heartbeat(0), "eve/9", 3.1) == []
+    assert places(channel) == ["eve/named", "bob/0", "eve/0", "eve/1", "eve/2"]
+
+
+@pytest.mark.parametrize(
+    ("heard", "leaves"),
+    [((2.0, 1.0, 1.0, 0.5), 3), ((2.0, 0.1, 0.2, 2.0), 1), ((2.0, None, 2.0, 2.0), 1), ((0.1, None, 2.0, 2.0), 0)],
+)
+def test_the_run_that_is_silent_for_longest_leaves(heard: tuple[float | None, ...], leaves: int) -> None:
+    """None: it has connected just now and sent no HEARTBEAT."""
+    channel = Channel("zenoh:x", 0, system=1, component=1, stream=True, named=True)
+    for number, now in enumerate(heard):
+        channel.receive(b"", f"eve/{number}", now or 2.0)
+        if now is not None:
+            channel.receive(heartbeat(0, system=200), f"eve/{number}", now)
+    assert channel.receive(heartbeat(0), "eve/9", 2.1) != []
+    assert {0, 1, 2, 3} - {leaves} == {int(str(each).split("/")[1]) for each in places(channel)} - {9}
 
 
 def test_six_operators_do_not_keep_a_seventh_out() -> None:
