@@ -16,6 +16,7 @@ from groundstation.cli.verb_help import LOCAL_HELP
 from groundstation.verbs import main as verbs_main
 from groundstation.verbs.table import VERBS
 from link.bridge import __main__ as bridge_main
+from tests.prose import find_faults, split_sentences
 from tests.recipes.tree import documented_counts
 from vehicle.cli import options, subcommands
 from vehicle.params import PARAMETERS
@@ -138,3 +139,73 @@ def test_every_recipe_of_contributing_is_followed_by_a_test() -> None:
     tests = "".join(path.read_text() for path in (ROOT / "tests/recipes").glob("test_*.py"))
     assert len(documented_counts()) == 11
     assert [name for name in documented_counts() if f'check_recipe("{name}")' not in tests] == []
+
+
+LONG_PROSE = (
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "README.md",
+    "SECURITY.md",
+    "docs/architecture.md",
+    "docs/bridge.md",
+    "docs/browser.md",
+    "docs/commands.md",
+    "docs/decisions.md",
+    "docs/dialect.md",
+    "docs/findings.md",
+    "docs/fleet.md",
+    "docs/gamepad.md",
+    "docs/groundstation.md",
+    "docs/interop.md",
+    "docs/keys.md",
+    "docs/performance.md",
+    "docs/pi.md",
+    "docs/recording.md",
+    "docs/reliability.md",
+    "docs/ros.md",
+    "docs/safety.md",
+    "docs/screens.md",
+    "docs/security.md",
+)
+"""Documents that are still above the limits of tests/prose.py. No new one joins them."""
+
+
+def path_of(doc: Path) -> str:
+    """Return the path of a document in the project."""
+    return doc.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("doc", [doc for doc in DOCS if path_of(doc) not in LONG_PROSE], ids=path_of)
+def test_prose_of_a_document_is_within_its_limits(doc: Path) -> None:
+    assert find_faults(doc.read_text()) == []
+
+
+def test_documents_within_the_limits_of_prose_are_checked() -> None:
+    long = {path_of(doc) for doc in DOCS if find_faults(doc.read_text())}
+    assert [name for name in LONG_PROSE if name not in long] == [], "remove these from LONG_PROSE"
+
+
+def test_limits_of_prose_find_each_kind_of_fault() -> None:
+    words = "word " * 19
+    document = (
+        f"# Title\n\n{words}ends. Here `a b c` [is](x.md) one.\n\n{words}{words} {words}ends.\n\n"
+        f"- {words}one. And {words}two.\n- {words}one.\n  Goes on.\n\n```sh\n{words * 9}\n```\n\n"
+        f"| a | {'b' * 121} |\n|---|---|\n\n{' '.join(['Five words are in here.'] * 17)}\n"
+    )
+    assert find_faults(document) == [
+        "5: a sentence of 58 words",
+        "15: a cell of 121 characters",
+        "18: a paragraph of 85 words",
+    ]
+    assert "one sentence in ten has 26 words or more" in find_faults(f"{words}word word word word word word ends.")
+    assert split_sentences("It is 0.5 s, e.g. here. `x` ends (so). Then 3 more.") == [
+        "It is 0.5 s, e.g here.",
+        "\0 ends (so).",
+        "Then 3 more.",
+    ]
+
+
+def test_index_of_the_documents_names_each_page() -> None:
+    index = ROOT / "docs/README.md"
+    named = set(re.findall(r"^\| \[([\w-]+\.md)\]", index.read_text(), re.MULTILINE))
+    assert named == {page.name for page in index.parent.glob("*.md")} - {"README.md"}
