@@ -2,29 +2,41 @@
 
 from __future__ import annotations
 
+import functools
+import re
 from pathlib import Path
 
 import pytest
 
-MARKERS = ("e2e", "interop", "tmux")
-"""Of tests that start real programs."""
-FOLDERS = ("tests/e2e/", "tests/interop/", "tests/groundstation/verbs/")
-"""Of tests that start real programs, or use real sockets."""
+from tests.order import WAITING_FOLDERS, WAITING_MARKERS, gives_way
+
+REAL_TIME = re.compile(
+    r"\b(tests\.waits|tests\.groundstation\.screen|subprocess|threading|time\.monotonic)\b|^ *async def test_",
+    re.MULTILINE,
+)
+"""In the text of a file whose tests start programs or threads, look at a clock, or draw a screen."""
+FOLDERS = ("tests/e2e", "tests/interop", *(f"tests/{folder}" for folder in WAITING_FOLDERS))
+"""Of tests that start real programs or use real lines by helpers beside them."""
 
 
 def is_selected(item: pytest.Item) -> bool:
-    """Return whether a test depends on how soon the machine runs a program or a socket."""
-    return item.nodeid.startswith(FOLDERS) or any(map(item.get_closest_marker, MARKERS))
+    """Return whether a test depends on how soon the machine runs a program, a thread or a socket."""
+    return not gives_way(item) or _is_in_real_time(item.path)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Skip files that have no such test, because each worker would import them all."""
     if not collection_path.match("test_*.py"):
         return None
-    if str(collection_path.relative_to(config.rootpath)).startswith(FOLDERS):
-        return None
-    text = collection_path.read_text()
-    return None if any(f"mark.{marker}" in text for marker in MARKERS) else True
+    name = collection_path.relative_to(config.rootpath).as_posix()
+    markers = any(f"mark.{marker}" in collection_path.read_text() for marker in WAITING_MARKERS)
+    return None if markers or name.startswith(FOLDERS) or _is_in_real_time(collection_path) else True
+
+
+@functools.cache
+def _is_in_real_time(path: Path) -> bool:
+    """Return whether the text of a file says so."""
+    return REAL_TIME.search(path.read_text()) is not None
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
