@@ -33,8 +33,9 @@ from groundstation.views.base import View
 from link.runtime.child_process import end_process
 from link.transport.receive_buffer import ReceiveBuffer
 
-START_TIMEOUT = 15.0
-"""s for the station to open its links: Python's start on a slow Pi (3 s) and a host name to resolve (10 s)."""
+START_TIMEOUT = 60.0
+"""s for the station to open its links: Python's start on a slow Pi (3 s, far more beside other work) and a host name to
+resolve (10 s). A station that ends meanwhile is not waited for."""
 
 CLOSE_TIMEOUT = 1.0
 """s for the station to send its neutral frames and exit before it is killed. It needs 0.25 s."""

@@ -15,9 +15,6 @@ from hypothesis import HealthCheck, settings
 from dialects.fingerprint import fault
 from tests import order, suite
 
-LONG_TIMEOUT = 300
-"""s for a test that starts programs or simulates many minutes; a busy machine takes ten times as long."""
-LONG_MARKERS = ("slow", "e2e", "interop")
 MAY_RAISE_PRIORITY = os.geteuid() == 0 and os.getpriority(os.PRIO_PROCESS, 0) == 0
 """Only root may take a lower priority and go back to the one before."""
 LOW_PRIORITY = 10
@@ -100,14 +97,8 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Choose the suite, and spread the tests that wait.
-
-    Those with a marker of LONG_MARKERS and no timeout yet get LONG_TIMEOUT.
-    """
+    """Choose the suite, and spread the tests that wait."""
     ours, others = suite.split(items, config.option.suite)
     if others:
         config.hook.pytest_deselected(items=others)
     items[:] = order.mix(ours)
-    for item in items:
-        if item.get_closest_marker("timeout") is None and any(map(item.get_closest_marker, LONG_MARKERS)):
-            item.add_marker(pytest.mark.timeout(LONG_TIMEOUT))

@@ -134,6 +134,7 @@ class Page:
 
 def _end(terminal: Terminal, row: Stays) -> None:
     """End a program with its keys. Raises LineError."""
+    terminal.wait_for_program()
     terminal.type(row.ends)
     _, code = terminal.answer()
     if code not in row.codes:

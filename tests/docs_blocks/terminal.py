@@ -17,6 +17,8 @@ from pathlib import Path
 COLUMNS, LINES = 140, 45
 PATIENCE = 60.0
 """s for what takes a few on an idle machine: the machine is shared."""
+POLL = 0.02
+"""s between two looks at who gets the keys."""
 _ESCAPES = re.compile(
     r"\x1b(?:\[[0-9;?<>=!]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)|[@-Z\\^_()][0-9A-B]?|P[^\x1b]*\x1b\\)"
 )
@@ -74,6 +76,22 @@ class Terminal:
     def type(self, keys: str) -> None:
         """Send keys to the program that runs."""
         os.write(self._terminal, keys.encode())
+
+    def wait_for_program(self) -> None:
+        """Wait until keys go to the program of the last line: before, bash takes a Ctrl-C. Raises StuckError."""
+        shell = os.readlink(f"/proc/{self._process.pid}/exe")
+        deadline = time.monotonic() + self._patience
+        while self._foreground() == shell:
+            if time.monotonic() > deadline:
+                raise StuckError(f"no program within {self._patience:.0f} s")
+            self.wait(POLL)
+
+    def _foreground(self) -> str:
+        """Return the path of the program that gets the keys; "" if it has ended, and others of its pipe run."""
+        try:
+            return os.readlink(f"/proc/{os.tcgetpgrp(self._terminal)}/exe")
+        except OSError:
+            return ""
 
     def read(self) -> str:
         """Return all that was written so far, without escape sequences."""

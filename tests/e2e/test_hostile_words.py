@@ -22,6 +22,12 @@ pytestmark = IN_TMUX
 
 HOSTILE = ("[/x]", "[/]", "[red]a", "[@click=q]b", "\x1b[2Jc", "\x1b]0;d\x07e", "-o", "=1+1", "$(id)", "%n")
 TEXTS = ("PreArm: [/x]", "[/]", "\x1b[2J\x1b]0;owned\x07text", "[@click=app.quit]b[/]")
+LINES = {
+    "mode [/x]": "mode [/x]?  y does it",
+    "[/x]": "'[/x]' is no verb",
+    "param get [/]": "no parameter matches [/]",
+}
+"""Lines of the command line, and the answer to each."""
 KEYS = ("F2", "F3", "F4", "F5", "F6", "F7", "F8")
 
 
@@ -50,15 +56,15 @@ def test_every_screen_shows_hostile_words_as_they_are(tmux: Callable[..., Tmux],
     terminal.until(lambda screen: "[red]a" in screen.replace("│", ""), PATIENCE)
     terminal.press("F6")
     terminal.until(lambda screen: "[@click=app.quit]b[/]" in screen, PATIENCE)
-    for line in ("mode [/x]", "[/x]", "param get [/]"):
-        run_line(terminal, line)
+    for line, answer in LINES.items():
+        run_line(terminal, line, answer)
     terminal.press("F1")
     screen = terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)
     assert "EXIT CODE" not in screen
 
 
-def run_line(terminal: Tmux, line: str) -> None:
-    """Type a line on Drive, see what becomes of it, and leave by a function key."""
+def run_line(terminal: Tmux, line: str, answer: str) -> None:
+    """Type a line on Drive, see the answer, below the line or in the log, and leave by a function key."""
     terminal.press("F1")
     terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
     terminal.press(":")
@@ -66,7 +72,7 @@ def run_line(terminal: Tmux, line: str) -> None:
     terminal.press(*(each if each != " " else "Space" for each in line))
     terminal.until(lambda screen: f":{line}" in screen.replace(": ", ":"), PATIENCE)
     terminal.press("Enter")
-    terminal.until(lambda screen: line in screen and "ESC closes" not in screen, PATIENCE)
+    terminal.until(lambda screen: answer in screen and "ESC closes" not in screen, PATIENCE)
     terminal.press("F2")
     terminal.until(lambda screen: "hold r to arm" not in screen, PATIENCE)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
 
 DELAY = 0.4
 """s from the press to the first repeat."""
@@ -19,6 +20,37 @@ def event_times(seconds: float, delay: float = DELAY, gap: float = GAP) -> Itera
     while at <= seconds:
         yield at
         at += gap
+
+
+class HeldTime:
+    """A clock that goes on as another one does, but for a key that is held by `pass_by`: then it goes at its pace.
+
+    A hold is measured between the events of the key. A test that presses it by calls would need a machine that is never
+    late by REPEAT_GAP for all of HOLD_TIME.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._offset = 0.0
+        self._stands_at: float | None = None
+
+    def __call__(self) -> float:
+        """Return the time, s."""
+        return self._clock() + self._offset if self._stands_at is None else self._stands_at
+
+    @contextmanager
+    def pass_by(self) -> Iterator[Callable[[float], None]]:
+        """Stand still until the end of the block, but for calls of the function that it yields: s since its begin."""
+        self._stands_at = begun = self()
+
+        def set_time(since: float) -> None:
+            self._stands_at = begun + since
+
+        try:
+            yield set_time
+        finally:
+            self._offset = self._stands_at - self._clock()
+            self._stands_at = None
 
 
 async def hold_until(press: Callable[[], Awaitable[None]], wanted: Callable[[], object], within: float = 60.0) -> None:

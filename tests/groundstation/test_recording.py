@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -128,6 +128,13 @@ def small_disk(folder: Path) -> Iterator[Path]:
         subprocess.run(["umount", "--lazy", folder], check=True)
 
 
+def fill_disk(filler: Path) -> None:
+    """Write a file into all room of its disk, of which the recorder takes some meanwhile."""
+    with suppress(OSError), filler.open("wb", buffering=0) as file:
+        while True:
+            file.write(bytes(1 << 16))
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts disks")
 def test_full_disk_is_told_once_and_recording_resumes_with_room(tmp_path: Path) -> None:
@@ -141,9 +148,7 @@ def test_full_disk_is_told_once_and_recording_resumes_with_room(tmp_path: Path) 
             first = screen.see(lambda seen: seen.recording is not None and seen.recording.size > 1000).recording
             assert first is not None
             assert [path.exists() for path in old] == [False, False, True], "the oldest make room"
-            room = os.statvfs(disk)
-            with filler.open("wb") as file:
-                os.posix_fallocate(file.fileno(), 0, room.f_bavail * room.f_frsize)
+            fill_disk(filler)
             seen = screen.see(lambda seen: bool(seen.recording and seen.recording.problem)).recording
             assert seen is not None
             assert seen.problem.endswith((f"MiB free ({disk})", f"No space left on device ({disk})"))

@@ -25,8 +25,8 @@ from link.core import LinkReport
 
 ASKED = (m.SysStatus, m.BatteryStatus, m.GpsRawInt, m.GlobalPositionInt, m.VfrHud, m.AutopilotVersion, m.ControlStatus)
 """Messages that `status` requests where they are not heard: ArduPilot sends nothing that nobody has requested."""
-ARRIVES_WITHIN = 0.3
-"""s for a message after its request was accepted."""
+ARRIVES_WITHIN = 2.0
+"""s for a message after its request was accepted. It comes at once unless a frame is lost or a program late."""
 BAD_STATES = (SystemState.CRITICAL, SystemState.EMERGENCY)
 PERIOD = 1.0
 """s between two lines of `status --watch`."""

@@ -14,6 +14,7 @@ import pytest
 from textual.pilot import Pilot
 
 from groundstation.input.keymap import KEYMAPS, Keymap
+from groundstation.intents.driving import HOLD_TIME
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.app.help import HelpScreen
@@ -21,10 +22,13 @@ from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.terminal.key_parser import KeyEventParser
-from tests.groundstation.held_key import hold_until
+from tests.groundstation.held_key import HeldTime, event_times
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.waits import until
+
+HELD = HOLD_TIME + 1.0
+"""s for which a key is held that confirms an action."""
 
 
 @dataclass
@@ -34,6 +38,7 @@ class Console:
     app: ConsoleApp
     station: Recorder
     pilot: Pilot[int]
+    clock: HeldTime
     offered: int = 0
 
     async def show(self, picture: Snapshot) -> None:
@@ -59,8 +64,18 @@ class Console:
         return isinstance(top, kind) and not top.takes_text and top.question is None
 
     async def hold(self, key: str, wanted: Callable[[], object]) -> None:
-        """Hold a key until it is true."""
-        await hold_until(lambda: self.press(key), wanted)
+        """Hold a key for HELD at most, until it is true."""
+        await self.hold_for(key, HELD, wanted)
+        await until(wanted)
+
+    async def hold_for(self, key: str, seconds: float, ended: Callable[[], object] = lambda: False) -> None:
+        """Hold a key for so long, or until `ended`, by the clock of the app."""
+        with self.clock.pass_by() as set_time:
+            for at in event_times(seconds):
+                set_time(at)
+                await self.press(key)
+                if ended():
+                    return
 
     @property
     def text(self) -> str:
@@ -79,12 +94,12 @@ async def console(
     clock: Callable[[], float] = time.monotonic,
 ) -> AsyncIterator[Console]:
     """The app at work: a picture is shown and, where the size allows, keys drive."""
-    station = Recorder()
-    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, look=look, clock=clock)
+    station, held_time = Recorder(), HeldTime(clock)
+    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, look=look, clock=held_time)
     try:
         async with app.run_test(size=size) as pilot:
             await until(lambda: app.gate.closure != STARTING)
-            made = Console(app, station, pilot)
+            made = Console(app, station, pilot, held_time)
             await made.show(snapshot() if picture is None else picture)
             yield made
     finally:

@@ -16,6 +16,7 @@ from groundstation.views.replay import ReplayView
 from groundstation.views.requests import RequestLine
 from link.tlog.tlog import read_records
 from tests.groundstation.export.logs import drive
+from tests.groundstation.held_key import hold_until
 from tests.groundstation.replay.logs import NOON, BytesSource, build_station, drive_log, finish
 from tests.groundstation.ui.files.test_screen import WIDE, open_files
 from tests.groundstation.ui.pilots import console
@@ -78,7 +79,7 @@ async def test_files_exports_the_log_under_the_cursor(log: Path) -> None:
         await open_files(screen)
         await screen.press("E", "enter")
         await until(lambda: (log.parent / "a.mcap").exists())
-        await screen.hold("R", lambda: "accepted" in screen.text)
+        await hold_until(lambda: screen.press("R"), lambda: "accepted" in screen.text)
         (row,) = (line for line in screen.text.splitlines() if "export a.mcap" in line)
         assert "✓" in row
         await screen.press("tab", "tab", "down", "E", "enter")  # the newest file is the first
