@@ -8,13 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.intents.driving import DriveKeyUp
 from groundstation.intents.session import Quit, ReportKeyReleases
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import GiveControl, KeepControl, ReleaseControl, RequestControl
 from groundstation.snapshot import Snapshot
 from tests.e2e.programs import Vehicle
-from tests.groundstation.screen import FORWARD, Screen
+from tests.groundstation.screen import Screen
 from tests.ports import free_port
 from tests.waits import wait_until
 
@@ -33,7 +32,7 @@ class Pair:
         self.other = stack.enter_context(Screen(endpoint, system=254))
         self.other.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver is not None)
         self.driver.hold_forward()
-        wait_until(self.vehicle.turning)
+        self.driver.turn_wheels(self.vehicle.turning)
         self.other.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 255)
         self.other.client.send(RequestControl())
         self.driver.see(lambda seen: seen.handover is not None and seen.handover.station == 254)
@@ -69,7 +68,7 @@ def test_given_control_stops_the_rover_and_the_other_drives(pair: Pair, intent: 
         pair.driver.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 254)
         assert pair.driver.snapshot.handover is None
     pair.other.client.send(ReportKeyReleases())
-    pair.other.insist(lambda: pair.other.client.send(DriveKeyUp(key="i"), FORWARD), lambda _: pair.vehicle.turning())
+    pair.other.turn_wheels(pair.vehicle.turning)
     assert in_manual(pair.other)
     texts = [line.text for screen in (pair.driver, pair.other) for line in screen.snapshot.texts]
     assert any("in control" in text for text in texts)
@@ -79,5 +78,5 @@ def test_given_control_stops_the_rover_and_the_other_drives(pair: Pair, intent: 
 def test_kept_control_drives_on(pair: Pair) -> None:
     pair.answer(KeepControl())
     pair.driver.see(lambda seen: seen.handover is None)
-    wait_until(pair.vehicle.turning)  # a control cycle that the machine delays is one without power
+    pair.driver.turn_wheels(pair.vehicle.turning)  # a control cycle that the machine delays is one without power
     assert drives(pair.driver).vehicle is not None

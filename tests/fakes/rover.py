@@ -26,10 +26,17 @@ NOT_KNOWN = (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STAT
 class FakeArduPilot(FakeVehicle):
     """Axes y and z, one ground station by its system id, no arming with throttle, telemetry on request."""
 
-    def __init__(self, *, station: int = 255, mode: int | None = None, autopilot: int = Autopilot.ARDUPILOT) -> None:
+    def __init__(
+        self,
+        *,
+        station: int = 255,
+        mode: int | None = None,
+        autopilot: int = Autopilot.ARDUPILOT,
+        latch: float = LATCH,
+    ) -> None:
         super().__init__(autopilot=autopilot, mode=mode)
         self.answers |= dict.fromkeys(NOT_KNOWN, Result.UNSUPPORTED)
-        self.params |= {"RC_OVERRIDE_TIME": LATCH, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0}
+        self.params |= {"RC_OVERRIDE_TIME": latch, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0}
         self.streams = [number for number, wanted in STREAM_RATES.items() if wanted.only in (None, autopilot)]
         """Messages that it has."""
         self.rates = dict.fromkeys(self.streams, 1.0)
@@ -38,7 +45,7 @@ class FakeArduPilot(FakeVehicle):
         """Time, steering and throttle whenever one of them changed."""
         self.sticks: dict[int, int] = {}
         """RC channel -> pulse of the transmitter, us, in place of the demand."""
-        self._station = station
+        self._station, self._latch = station, latch
         self._steering = self._throttle = 0
         self._demand_at = 0.0
         self._due = dict.fromkeys(self.streams, 0.0)
@@ -71,7 +78,7 @@ class FakeArduPilot(FakeVehicle):
     def tick(self, now: float) -> None:
         """Drop an old demand, send telemetry."""
         super().tick(now)
-        if now - self._demand_at > LATCH:
+        if now - self._demand_at > self._latch:
             self._steering = self._throttle = 0
         self._drive(now)
         for number, due in self._due.items():

@@ -18,7 +18,7 @@ from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import Snapshot
 from tests.fakes.vehicle import FakeVehicle
 from tests.ports import free_port
-from tests.waits import PATIENCE, wait_until
+from tests.waits import PATIENCE
 
 TRY = 3.0
 """s for a key to show; a screen or a station that the machine held up for 0.3 s wants it pressed again."""
@@ -61,6 +61,11 @@ class Screen:
     def endpoint(self) -> str:
         return self.client.endpoints[0]
 
+    @property
+    def speed(self) -> float:
+        """Of the vehicle in the newest snapshot, m/s."""
+        return 0.0 if self.snapshot.vehicle is None else self.snapshot.vehicle.speed or 0.0
+
     def freeze(self) -> None:
         """Stop renewing the lease."""
         self._stop.set()
@@ -82,7 +87,7 @@ class Screen:
         """Arm and hold `i`; return when the vehicle receives the demand."""
         self.hold_forward()
         begun = time.monotonic()
-        wait_until(lambda: any(x == 600 for _, x in vehicle.demands(begun)))
+        self.turn_wheels(lambda: any(x == 600 for _, x in vehicle.demands(begun)))
 
     def hold_forward(self) -> None:
         """Arm and hold `i`; return when the snapshot shows the demand."""

@@ -56,7 +56,7 @@ def test_kill_loses_less_than_0_2_s_and_pymavlink_reads_the_log(tmp_path: Path) 
     options = RecordOptions(tmp_path, 100, 2000)
     with Screen(sitl=True, record=options) as screen:
         screen.hold_forward()
-        screen.see(lambda seen: seen.vehicle is not None and (seen.vehicle.speed or 0) > 0.3)
+        screen.turn_wheels(lambda: screen.speed > 0.3)
         screen.client.send(DriveKeyUp(key="i"))
         screen.see(lambda seen: not seen.operator.throttle)
         screen.client.send(FORWARD)
@@ -106,7 +106,7 @@ def test_a_failing_disk_is_told_once_and_driving_goes_on(tmp_path: Path) -> None
         seen = screen.see(lambda seen: seen.recording is not None and bool(seen.recording.problem))
         assert seen.recording is not None
         assert seen.recording.problem == f"not recording: File too large ({tmp_path / 'logs'})"
-        screen.see(lambda seen: seen.vehicle is not None and (seen.vehicle.speed or 0) > 0.3)
+        screen.turn_wheels(lambda: screen.speed > 0.3)
         screen.client.send(DriveKeyUp(key="i"))
         screen.see(lambda seen: seen.vehicle is not None and (seen.vehicle.speed or 0) < 0.02)
         assert log_file.read_text().count("not recording") == 1
@@ -153,7 +153,7 @@ def test_full_disk_is_told_once_and_recording_resumes_with_room(tmp_path: Path) 
             assert seen is not None
             assert seen.problem.endswith((f"MiB free ({disk})", f"No space left on device ({disk})"))
             screen.hold_forward()
-            screen.see(lambda seen: seen.vehicle is not None and (seen.vehicle.speed or 0) > 0.3)
+            screen.turn_wheels(lambda: screen.speed > 0.3)
             screen.client.send(DriveKeyUp(key="i"))
             filler.unlink()
             again = screen.see(lambda seen: bool(seen.recording and not seen.recording.problem)).recording
