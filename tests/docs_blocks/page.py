@@ -14,6 +14,9 @@ from tests.docs_blocks.markdown import Block, find_blocks
 from tests.docs_blocks.programs import NEEDS, Stays, find_asking, find_staying
 from tests.docs_blocks.terminal import LineError, StuckError, Terminal
 
+AGAIN, TRIES = 5.0, 10
+"""s after which a key that has ended nothing is pressed again, and how often: ROS may lose a Ctrl-C at its start."""
+
 
 class Command(NamedTuple):
     """What is typed up to the next prompt."""
@@ -133,10 +136,16 @@ class Page:
 
 
 def _end(terminal: Terminal, row: Stays) -> None:
-    """End a program with its keys. Raises LineError."""
+    """End a program with its keys, pressed again if it prints nothing: it may be starting. Raises LineError."""
     terminal.wait_for_program()
-    terminal.type(row.ends)
-    _, code = terminal.answer()
+    for within in (None,) if row.shows else (*[AGAIN] * TRIES, None):
+        terminal.type(row.ends)
+        try:
+            _, code = terminal.answer(within=within)
+            break
+        except StuckError:
+            if within is None:
+                raise
     if code not in row.codes:
         raise LineError(f"exit code {code} after {row.ends!r}")
 

@@ -41,7 +41,7 @@ STAYS = (
     Stays(r"python own_sensor.py", "water to udpout"),
     Stays(r"roscore\b", "started core service"),
     Stays(r"rostopic echo\b", "---", codes=(0, 130)),
-    Stays(r"rostopic pub -r\b", "", codes=(130,)),
+    Stays(r"rostopic pub -r\b", "", codes=(0, 130)),
     Stays(r"/usr/bin/python3 docs/examples/command_node.py", "Ctrl-C ends"),
 )
 

@@ -69,9 +69,11 @@ class Terminal:
         self.type(f"{line}\n")
         return self._answer(start, meanwhile)
 
-    def answer(self, meanwhile: Callable[[str], bool] = lambda _: False) -> tuple[str, int | None]:
-        """Do the same for what comes from now on."""
-        return self._answer(len(self._raw), meanwhile)
+    def answer(
+        self, meanwhile: Callable[[str], bool] = lambda _: False, within: float | None = None
+    ) -> tuple[str, int | None]:
+        """Do the same for what comes from now on, within so many s (default: the patience of the terminal)."""
+        return self._answer(len(self._raw), meanwhile, within)
 
     def type(self, keys: str) -> None:
         """Send keys to the program that runs."""
@@ -109,8 +111,11 @@ class Terminal:
         """Let time pass, up to the next output."""
         select.select([self._terminal], [], [], seconds)
 
-    def _answer(self, start: int, meanwhile: Callable[[str], bool] = lambda _: False) -> tuple[str, int | None]:
-        deadline = time.monotonic() + self._patience
+    def _answer(
+        self, start: int, meanwhile: Callable[[str], bool] = lambda _: False, within: float | None = None
+    ) -> tuple[str, int | None]:
+        within = self._patience if within is None else within
+        deadline = time.monotonic() + within
         while True:
             text = plain(self._raw[start:])
             if prompt := _PROMPT.search(text):
@@ -118,7 +123,7 @@ class Terminal:
             if text.endswith(_MORE) or meanwhile(text):
                 return text, None
             if not select.select([self._terminal], [], [], max(0.0, deadline - time.monotonic()))[0]:
-                raise StuckError(f"no end within {self._patience:.0f} s")
+                raise StuckError(f"no end within {within:.0f} s")
             if not self._read():
                 raise StuckError("the shell has ended")
 

@@ -19,7 +19,7 @@ from tests.e2e.conftest import Rig
 from tests.e2e.programs import LET_GO, GroundStation, drive_on
 from tests.e2e.test_stop_matrix import assert_stood, assert_stops
 from tests.fakes.lines import on_line
-from tests.fakes.rover import LATCH, FakeArduPilot
+from tests.fakes.rover import LONG_LATCH, FakeArduPilot
 from tests.groundstation.screen import children, running
 from tests.groundstation.ui.wheel import modes
 from tests.ports import free_port
@@ -68,10 +68,10 @@ def test_a_held_key_moves_nothing_after_the_freeze(rig: Build) -> None:
 
 
 class Bench:
-    """The ground station in a terminal, and an ArduRover, which keeps a demand for 3 s."""
+    """The ground station in a terminal, and an ArduRover, which keeps a demand for LONG_LATCH."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
-        self.rover = FakeArduPilot()
+        self.rover = FakeArduPilot(latch=LONG_LATCH)
         vehicle = stack.enter_context(on_line(self.rover, "udpin"))
         self.program = GroundStation(folder, vehicle.endpoint)
         stack.callback(self.program.end)
@@ -86,7 +86,7 @@ class Bench:
 
     def stops_soon(self, since: float) -> None:
         self.program.wait_for(lambda: not self.rover.moves, PATIENCE, "the rover stops")
-        assert self.rover.stopped_at - since < TAKES_OVER + 0.4 + self.waits.total() < LATCH
+        assert self.rover.stopped_at - since < TAKES_OVER + 0.4 + self.waits.total() < LONG_LATCH
 
 
 @pytest.fixture

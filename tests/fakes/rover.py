@@ -14,6 +14,8 @@ from tests.fakes.vehicle import PX4_MANUAL, FakeVehicle
 
 LATCH = 3.0
 """RC_OVERRIDE_TIME, s."""
+LONG_LATCH = 30.0
+"""The same for tests of stops, so that one on a machine that is late by seconds is still not the rover's own doing."""
 
 PULSES = {"MIN": 1000.0, "TRIM": 1500.0, "MAX": 2000.0, "REVERSED": 0.0}
 """SERVOn_ and RCn_ of its simulation, us."""

@@ -21,7 +21,7 @@ FOLDERS = ("tests/e2e", "tests/interop", *(f"tests/{folder}" for folder in WAITI
 
 def is_selected(item: pytest.Item) -> bool:
     """Return whether a test depends on how soon the machine runs a program, a thread or a socket."""
-    return not gives_way(item) or _is_in_real_time(item.path)
+    return item.nodeid.startswith(FOLDERS) or not gives_way(item) or _is_in_real_time(item.path)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

@@ -10,15 +10,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from tests.fakes.lines import on_line
-from tests.fakes.rover import LATCH, FakeArduPilot
+from tests.fakes.rover import LONG_LATCH, FakeArduPilot
 from tests.ports import free_port
 from tests.waits import PATIENCE, wait_until
 
 
 @contextmanager
 def driving(*words: str) -> Iterator[tuple[FakeArduPilot, subprocess.Popen[str]]]:
-    """An armed vehicle that holds a demand for 3 s as ArduPilot does, driven by the real program."""
-    core = FakeArduPilot(station=254)
+    """An armed vehicle that holds a demand for LONG_LATCH as ArduPilot does, driven by the real program."""
+    core = FakeArduPilot(station=254, latch=LONG_LATCH)
     core.armed = True
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "groundstation", *words, "-e", endpoint]
@@ -53,7 +53,7 @@ def _stop(core: FakeArduPilot, process: subprocess.Popen[str], number: signal.Si
     process.send_signal(number)
     at = time.monotonic()
     wait_until(lambda: not core.moves, "the wheels turn on")
-    assert core.stopped_at - at < LATCH / 2
+    assert core.stopped_at - at < LONG_LATCH / 2
 
 
 def _errors(process: subprocess.Popen[str]) -> str:

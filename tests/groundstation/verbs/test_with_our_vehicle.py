@@ -14,7 +14,7 @@ import pytest
 
 from groundstation.verbs.common.exit_codes import ExitCode
 from tests.e2e.programs import Vehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_demanding, run_verb
 from tests.ports import free_port
 from tests.waits import Waits, wait_until
 
@@ -148,8 +148,8 @@ def test_it_is_driven_by_a_process_that_is_killed(verb: Verb, vehicle: Vehicle) 
 def test_it_is_armed_driven_and_disarmed(verb: Verb, vehicle: Vehicle) -> None:
     at = time.monotonic()
     words = ["drive", "--arm", "--wait", "20", "--throttle", "-50", "--for", "1", "-e", verb.endpoint, "-v", "1"]
-    driven = subprocess.run([sys.executable, "-m", "groundstation", *words], capture_output=True, text=True, timeout=60)
-    assert driven.returncode == 0, driven.stderr
+    driven = run_demanding(*words)
+    assert driven.code == 0, driven.err
     assert min(min(each.throttles) for each in vehicle.outputs() if each.at > at) < -0.3
     assert verb.status("armed") is False
 
@@ -159,9 +159,9 @@ def test_a_demand_in_hold_moves_nothing_and_says_so(verb: Verb, vehicle: Vehicle
     assert verb("stop").code == 0
     at = time.monotonic()
     words = ["send", "MANUAL_CONTROL", "x=500", "--rate", "20", "--for", "0.3", "--yes", "-e", verb.endpoint, "-v", "1"]
-    sent = subprocess.run([sys.executable, "-m", "groundstation", *words], capture_output=True, text=True, timeout=60)
-    assert sent.returncode == 0
-    assert "ignores demands in HOLD" in sent.stderr
+    sent = run_demanding(*words)
+    assert sent.code == 0, sent.err
+    assert "ignores demands in HOLD" in sent.err
     assert not vehicle.moved_since(at)
 
 

@@ -13,7 +13,7 @@ from groundstation.verbs.common.exit_codes import ExitCode
 from tests.fakes.params import Param
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.driving_process import check_signal, check_standstill
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_demanding, run_verb
 from tests.waits import PATIENCE, wait_until
 
 Capture = pytest.CaptureFixture[str]
@@ -21,11 +21,8 @@ PX4_MANUAL, PX4_MISSION = 1 << 16, 4 << 16 | 4 << 24
 
 
 def drive(vehicle: ForeignVehicle, *words: str) -> VerbRun:
-    """Run the verb as a process: its watchdog is a fork."""
-    command = [sys.executable, "-m", "groundstation", "drive", *words, "-e", vehicle.endpoint, "-v", "1"]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
-    assert "Traceback" not in ended.stderr
-    return VerbRun(ended.returncode, ended.stdout, ended.stderr)
+    """Run the verb with a vehicle."""
+    return run_demanding("drive", *words, "-e", vehicle.endpoint, "-v", "1")
 
 
 DRIVE = ("drive", "--throttle", "40", "--for", "9")

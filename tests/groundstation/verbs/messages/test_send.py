@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import signal
-import subprocess
-import sys
 
 import pytest
 
 from tests.fakes.services import PX4, foreign_vehicle
 from tests.groundstation.verbs.driving_process import check_signal, check_standstill
-from tests.groundstation.verbs.verb_runs import run_verb
-from tests.waits import PATIENCE
+from tests.groundstation.verbs.verb_runs import run_demanding, run_verb
 
 Capture = pytest.CaptureFixture[str]
 DRIVE = ("send", "MANUAL_CONTROL", "z=400", "--rate", "20", "--for", "30", "--yes")
@@ -29,9 +26,8 @@ def test_stopped_process_leaves_no_demand_and_does_not_drive_on() -> None:
 def test_a_demand_begins_and_ends_neutral_in_the_vehicles_axes() -> None:
     with foreign_vehicle(PX4) as vehicle:
         vehicle.armed = True
-        words = ["send", "MANUAL_CONTROL", "z=700", "--rate", "20", "--for", "0.3", "--yes", "-v", "1"]
-        command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
-        assert subprocess.run(command, timeout=PATIENCE).returncode == 0
+        words = ("send", "MANUAL_CONTROL", "z=700", "--rate", "20", "--for", "0.3", "--yes", "-v", "1")
+        assert run_demanding(*words, "-e", vehicle.endpoint).code == 0
         throttles = [each.z for each in vehicle.of("MANUAL_CONTROL")]
         assert throttles[:3] == [500] * 3
         assert throttles[-5:] == [500] * 5
@@ -40,9 +36,8 @@ def test_a_demand_begins_and_ends_neutral_in_the_vehicles_axes() -> None:
 
 def test_overridden_channels_are_centred_and_given_back() -> None:
     with foreign_vehicle() as vehicle:
-        words = ["send", "RC_CHANNELS_OVERRIDE", "chan3_raw=1600", "--yes", "-v", "1"]
-        command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
-        assert subprocess.run(command, timeout=PATIENCE).returncode == 0
+        words = ("send", "RC_CHANNELS_OVERRIDE", "chan3_raw=1600", "--yes", "-v", "1")
+        assert run_demanding(*words, "-e", vehicle.endpoint).code == 0
         sent = [(each.chan3_raw, each.chan1_raw) for each in vehicle.of("RC_CHANNELS_OVERRIDE")]
         assert sorted(set(sent), key=sent.index) == [(1500, 65535), (1600, 65535), (0, 65535)]
 
