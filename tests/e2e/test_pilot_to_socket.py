@@ -15,7 +15,7 @@ from groundstation.intents.driving import SetStyle
 from groundstation.ui.app.app import ConsoleApp
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
-from tests.groundstation.held_key import hold_until
+from tests.groundstation.held_key import HeldTime
 from tests.groundstation.host.crashing_station import ORDER
 from tests.groundstation.ui.frames import text
 from tests.ports import free_port
@@ -27,12 +27,14 @@ pytestmark = pytest.mark.e2e
 async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path: Path) -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     client = StationClient.start([endpoint], log_file=tmp_path / "log")
-    app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]))
+    clock = HeldTime(time.monotonic)
+    app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]), clock=clock)
     try:
         with on_line(FakeVehicle(), endpoint=endpoint) as vehicle:
             async with app.run_test(size=(80, 24)) as pilot:
                 await until(lambda: app.drive.snapshot.vehicle is not None)
-                await hold_until(lambda: pilot.press("r"), lambda: vehicle.armed)
+                await clock.hold(lambda: pilot.press("r"), ended=lambda: vehicle.armed)
+                await until(lambda: vehicle.armed)
                 await until(lambda: app.drive.snapshot.operator.gate_open)
                 pressed = time.monotonic()
 

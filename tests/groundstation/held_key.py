@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterator
-from contextlib import contextmanager
+
+from groundstation.intents.driving import HOLD_TIME
 
 DELAY = 0.4
 """s from the press to the first repeat."""
 
 GAP = 0.033
 """s between repeats: 30 a second, as most systems send."""
+
+HELD = HOLD_TIME + 1.0
+"""s for which a key is held that confirms an action."""
 
 
 def event_times(seconds: float, delay: float = DELAY, gap: float = GAP) -> Iterator[float]:
@@ -23,7 +27,7 @@ def event_times(seconds: float, delay: float = DELAY, gap: float = GAP) -> Itera
 
 
 class HeldTime:
-    """A clock that goes on as another one does, but for a key that is held by `pass_by`: then it goes at its pace.
+    """A clock that goes on as another one does, but goes at the pace of a key while that is held by `hold`.
 
     A hold is measured between the events of the key. A test that presses it by calls would need a machine that is never
     late by REPEAT_GAP for all of HOLD_TIME.
@@ -38,16 +42,17 @@ class HeldTime:
         """Return the time, s."""
         return self._clock() + self._offset if self._stands_at is None else self._stands_at
 
-    @contextmanager
-    def pass_by(self) -> Iterator[Callable[[float], None]]:
-        """Stand still until the end of the block, but for calls of the function that it yields: s since its begin."""
+    async def hold(
+        self, press: Callable[[], Awaitable[object]], seconds: float = HELD, ended: Callable[[], object] = lambda: False
+    ) -> None:
+        """Press a key as one that is held for so long, or until `ended`, which is asked after each event."""
         self._stands_at = begun = self()
-
-        def set_time(since: float) -> None:
-            self._stands_at = begun + since
-
         try:
-            yield set_time
+            for at in event_times(seconds):
+                self._stands_at = begun + at
+                await press()
+                if ended():
+                    return
         finally:
             self._offset = self._stands_at - self._clock()
             self._stands_at = None

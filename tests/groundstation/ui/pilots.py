@@ -14,7 +14,6 @@ import pytest
 from textual.pilot import Pilot
 
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.intents.driving import HOLD_TIME
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.app.help import HelpScreen
@@ -22,13 +21,10 @@ from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.terminal.key_parser import KeyEventParser
-from tests.groundstation.held_key import HeldTime, event_times
+from tests.groundstation.held_key import HeldTime
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.waits import until
-
-HELD = HOLD_TIME + 1.0
-"""s for which a key is held that confirms an action."""
 
 
 @dataclass
@@ -64,18 +60,9 @@ class Console:
         return isinstance(top, kind) and not top.takes_text and top.question is None
 
     async def hold(self, key: str, wanted: Callable[[], object]) -> None:
-        """Hold a key for HELD at most, until it is true."""
-        await self.hold_for(key, HELD, wanted)
+        """Hold a key long enough to confirm an action, by the clock of the app, and wait until it is true."""
+        await self.clock.hold(lambda: self.press(key), ended=wanted)
         await until(wanted)
-
-    async def hold_for(self, key: str, seconds: float, ended: Callable[[], object] = lambda: False) -> None:
-        """Hold a key for so long, or until `ended`, by the clock of the app."""
-        with self.clock.pass_by() as set_time:
-            for at in event_times(seconds):
-                set_time(at)
-                await self.press(key)
-                if ended():
-                    return
 
     @property
     def text(self) -> str:

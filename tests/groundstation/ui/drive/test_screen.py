@@ -90,7 +90,7 @@ async def test_a_small_terminal_arms_nothing_and_shows_the_state() -> None:
     async with console(size=(60, 9), picture=DISARMED) as screen:
         await screen.press("r")
         assert screen.app.gate.hold is None
-        await screen.hold_for("r", 2.0)
+        await screen.clock.hold(lambda: screen.press("r"))
         assert not screen.station.of(Arm)
         assert "Rover 1 · MANUAL · DISARMED\n" in screen.text
         await screen.show(STOPPED)
