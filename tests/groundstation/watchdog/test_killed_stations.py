@@ -13,7 +13,7 @@ import pytest
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.session import Quit, RenewLease
 from tests.fakes.lines import LINES, on_line
-from tests.fakes.rover import LATCH, FakeArduPilot
+from tests.fakes.rover import LATCH, LONG_LATCH, FakeArduPilot
 from tests.groundstation.screen import FORWARD, Screen, children, running
 from tests.waits import Waits, wait_until
 
@@ -25,15 +25,15 @@ NOISE = 0.4
 
 
 class Drive:
-    """A station process that drives an ArduRover, which keeps a demand for 3 s."""
+    """A station process that drives an ArduRover, which keeps a demand for `latch` s."""
 
-    def __init__(self, line: str, stack: ExitStack) -> None:
-        self.rover = FakeArduPilot()
+    def __init__(self, line: str, stack: ExitStack, latch: float = LONG_LATCH) -> None:
+        self.rover = FakeArduPilot(latch=latch)
         vehicle = stack.enter_context(on_line(self.rover, line))
         self.screen = stack.enter_context(Screen(vehicle.endpoint))
         self.station = self.screen.client.pid
         self.screen.hold_forward()
-        wait_until(lambda: self.rover.moves)
+        self.screen.turn_wheels(lambda: self.rover.moves)
         (self.watchdog,) = children(self.station)
         self.waits = Waits(self.station, self.watchdog)
 
@@ -43,9 +43,9 @@ class Drive:
         return time.monotonic()
 
     def stops_within(self, seconds: float, since: float) -> None:
-        """Check that the wheels stop, in less than the 3 s that the rover takes by itself."""
+        """Check that the wheels stop, in less than the time that the rover takes by itself."""
         wait_until(lambda: not self.rover.moves)
-        assert self.rover.stopped_at - since < seconds + NOISE + self.waits.total() < LATCH
+        assert self.rover.stopped_at - since < seconds + NOISE + self.waits.total() < LONG_LATCH
 
     def outage(self) -> str:
         self.screen.client.receive()
@@ -85,7 +85,7 @@ def test_stopped_stations_held_key_moves_nothing_when_it_goes_on(line: str, stac
     back = time.monotonic()
     wait_until(lambda: send(REPEAT) is None and time.monotonic() > back + 1.5)
     assert not drive.rover.moves, "the key was held all along"
-    assert drive.rover.stopped_at < back
+    assert drive.rover.stopped_at < back, [(at - back, *outputs) for at, *outputs in drive.rover.turning]
     assert drive.outage() == ""
     drive.screen.see(lambda seen: any("station stopped for" in line.text for line in seen.texts))
     drive.screen.insist(lambda: send(DriveKeyUp(key="i"), FORWARD), lambda seen: seen.operator.throttle > 0)
@@ -157,7 +157,7 @@ def test_stopped_watchdog_does_not_take_the_station_for_stopped(stack: ExitStack
 
 def test_without_the_watchdog_the_rover_drives_on_for_3_s(stack: ExitStack) -> None:
     """The fault that the watchdog cures: what the other tests measure is not the rover's own doing."""
-    drive = Drive("udpin", stack)
+    drive = Drive("udpin", stack, LATCH)
     os.kill(drive.watchdog, signal.SIGKILL)
     wait_until(lambda: not running(drive.watchdog))
     killed = drive.signal(signal.SIGKILL)
