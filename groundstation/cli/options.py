@@ -132,7 +132,7 @@ def _parse(row: SettingRow) -> Callable[[str], Any]:
         try:
             return row.convert(text, strict=False)
         except msgspec.ValidationError:
-            raise argparse.ArgumentTypeError(f"{text!r} is not {row.allowed}") from None
+            raise argparse.ArgumentTypeError(row.refuse(text, repr(text))) from None
 
     return parse
 

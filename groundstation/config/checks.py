@@ -77,7 +77,7 @@ def _value_problems(name: str, value: Any, values: Mapping[str, Any]) -> Iterato
         row.convert(value)
     except msgspec.ValidationError:
         hint = f"; {suggest(value, row.choices)}" if row.choices and isinstance(value, str) else ""
-        yield f"{_show(value)} is not {row.allowed}{hint}"
+        yield f"{row.refuse(value, _show(value))}{hint}"
         return
     if name == "open":
         yield from _open_problems(value, values.get("endpoints", {}))

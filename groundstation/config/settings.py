@@ -6,6 +6,7 @@ file and of the command line, and Option the option of the command line. To add 
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from enum import StrEnum
@@ -131,6 +132,15 @@ class SettingRow(msgspec.Struct, frozen=True):
         if self.is_switch:
             return "true or false"
         return TEXTS if self.name == "open" else 'text in "quotes"'
+
+    def refuse(self, value: object, shown: str) -> str:
+        """Return why a value that `convert` refuses is not taken; a percentage in place of a fraction is explained."""
+        hint = ""
+        with contextlib.suppress(TypeError, ValueError, msgspec.ValidationError):
+            percent = float(value)  # type: ignore[arg-type]  # anything: the error says that it is no number
+            if percent > 1:
+                hint = f"; {percent:g} % is {self.convert(percent / 100):g}"
+        return f"{shown} is not {self.allowed}{hint}"
 
     @property
     def default_text(self) -> str:

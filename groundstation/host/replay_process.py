@@ -56,6 +56,8 @@ class FileSource:
                 raise ReplayError(f"{path}: is a folder: name a telemetry log (.tlog)")
             if not path.is_file() and path.exists():
                 raise ReplayError(f"{path}: is no regular file: name a telemetry log (.tlog)")
+            if not path.exists():
+                raise ReplayError(f"{path}: no such file: name a telemetry log (.tlog)")
             self._descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
         except OSError as error:
             raise ReplayError(f"{path}: {error.strerror}") from error

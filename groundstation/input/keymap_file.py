@@ -59,6 +59,8 @@ def load_keymap(name_or_path: str) -> Keymap:
     path = Path(os.path.expanduser(name_or_path))
     if path.suffix != ".toml" and not os.path.isfile(path):
         raise KeymapError(f"unknown key map {name_or_path!r}: choose {', '.join(KEYMAPS)} or the path of a .toml file")
+    if not os.path.exists(path):
+        raise KeymapError(f"key map {path}: no such file: name one of your own, or choose {', '.join(KEYMAPS)}")
     try:
         content = parse_toml(read_text(path, MAX_SIZE), str(path))
     except TomlError as error:

@@ -75,6 +75,8 @@ def _run(arguments: list[str]) -> int:
         run: Callable[[Sequence[str]], int] = import_module(SUBCOMMANDS[arguments[0]]).run
         return run(arguments[1:])
     parser = _parser()
+    parser.reject_unknown_options(arguments)
+    parser.reject_unknown_word(arguments, SUBCOMMANDS)
     options = parser.parse_args(parser.reject_empty(arguments))
     _check(options.endpoints, parser)
     stdio.log_plainly(logging.StreamHandler(), logging.INFO, "bridge: %(message)s")

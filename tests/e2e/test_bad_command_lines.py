@@ -44,7 +44,9 @@ def run(words: list[str], folder: Path) -> tuple[int, str, str]:
     return done.returncode, done.stdout, done.stderr
 
 
-def run_in_terminal(words: list[str], folder: Path, size: tuple[int, int] = SIZE) -> tuple[int, str, str]:
+def run_in_terminal(
+    words: list[str], folder: Path, size: tuple[int, int] = SIZE, term: str = "xterm-256color"
+) -> tuple[int, str, str]:
     """Do the same in a terminal of this size. Only stderr is no terminal, so that the two can be told apart."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
@@ -56,7 +58,7 @@ def run_in_terminal(words: list[str], folder: Path, size: tuple[int, int] = SIZE
         stderr=subprocess.PIPE,
         text=True,
         cwd=folder,
-        env=environment | {"PYTHONPATH": str(ROOT), "TERM": "xterm-256color"},
+        env=environment | {"PYTHONPATH": str(ROOT), "TERM": term},
     ) as process:
         os.close(theirs)
         _, complaint = process.communicate(timeout=WITHIN)
@@ -100,10 +102,15 @@ def taken() -> Iterator[dict[str, str]]:
 ENDPOINTS = [
     ("carrier:pigeon", ["'carrier:pigeon'", "udpin:HOST:PORT", "serial:PATH:BAUD"]),
     ("udpn:127.0.0.1:14550", ["did you mean udpin:127.0.0.1:14550?"]),
+    ("127.0.0.1:14550", ["did you mean udpin:127.0.0.1:14550?"]),
+    ("udpin:127.0.0.1:abc", ["port 'abc' is not a number from 1 to 65535"]),
+    ("serial:/dev/ttyUSB0", ["write serial:PATH:BAUD, for example serial:/dev/ttyAMA0:57600"]),
+    ("serial:/dev/ttyUSB0:abc", ["baud rate 'abc' is not a number from 300 to 12000000"]),
 ]
 """Invalid endpoints -> what the error must name. tests/link/test_endpoint.py has all of them."""
 ABSENT = [
     ("serial:/dev/null:57600", ["/dev/null is not a serial port"]),
+    ("serial:/etc/passwd:57600", ["/etc/passwd is not a serial port but a file"]),
     ("serial:/tmp:57600", ["/tmp is not a serial port"]),
     ("udpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
     ("tcpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
@@ -145,7 +152,19 @@ def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None
         ("--system 300", ["'300'", "1 to 255"]),
         ("--system", ["--system"]),
         ("--keys emacs", ["'emacs'", "standard, teleop"]),
-        ("--keys /nowhere/keys.toml", ["/nowhere/keys.toml"]),
+        ("--keys /nowhere/keys.toml", ["/nowhere/keys.toml", "no such file", "choose standard, teleop"]),
+        ("--master udp:127.0.0.1:14550", ["--master", "write the endpoint without an option, e.g. udpin:"]),
+        ("--baud 57600 /dev/ttyUSB0", ["--baud", "write serial:PATH:BAUD, e.g. serial:/dev/ttyUSB0:57600"]),
+        ("--theme solarized", ["'solarized'", "'dark', 'light'"]),
+        ("--speed 60", ["'60'", "0.1 to 1", "60 % is 0.6"]),
+        ("--dialect none.xml", ["none.xml", "no such file", "name the XML file"]),
+        ("help", ["did you mean --help?"]),
+        ("drve", ["did you mean `groundstation drive`?"]),
+        ("attach", ["no station runs here", "`groundstation` or `groundstation serve --headless` starts one"]),
+        ("replay none.tlog", ["none.tlog", "no such file", "name a telemetry log"]),
+        ("replay /etc/passwd", ["/etc/passwd", "is no telemetry log"]),
+        ("export none.tlog --csv out", ["none.tlog", "no such file", "name a telemetry log"]),
+        ("export /etc/passwd --csv out", ["/etc/passwd", "is no telemetry log"]),
         ("--style wild", ["'wild'", "hold"]),
         ("--log-file /nowhere/station.log", ["/nowhere/station.log", "No such file"]),
         ("--log-file /tmp", ["/tmp", "directory"]),
@@ -159,6 +178,9 @@ def test_options_of_the_ground_station(words: str, names: list[str], tmp_path: P
     ("words", "names"),
     [
         ("--sim --fly", ["--fly"]),
+        ("chek rover.toml", ["'chek'", "did you mean `vehicle check`?"]),
+        ("help", ["'help'", "did you mean vehicle --help?"]),
+        ("--config none.toml", ["none.toml", "No such file", "`vehicle init none.toml` writes a template"]),
         ("--sim --system 0", ["'0'", "1 to 255"]),
         ("--sim --system 300", ["'300'", "1 to 255"]),
         ("--sim --param SPEED=9", ["'SPEED'"]),
@@ -175,6 +197,24 @@ def test_options_of_the_ground_station(words: str, names: list[str], tmp_path: P
 )
 def test_options_of_the_vehicle(words: str, names: list[str], tmp_path: Path) -> None:
     assert_one_line(run(["vehicle", *words.split()], tmp_path), "vehicle", *names)
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        ("--config bridge.toml", ["unknown option --config"]),
+        ("--tlg logs udpin:127.0.0.1:14550", ["unknown option --tlg", "did you mean --tlog?"]),
+        ("doctr udpin:127.0.0.1:14550", ["'doctr'", "did you mean `bridge doctor`?"]),
+        ("udpin:127.0.0.1:14550", ["two endpoints or more are needed, for example serial:"]),
+    ],
+)
+def test_command_lines_of_the_bridge(words: str, names: list[str], tmp_path: Path) -> None:
+    assert_one_line(run(["link.bridge", *words.split()], tmp_path), "bridge", *names)
+
+
+def test_a_terminal_that_cannot_place_text(tmp_path: Path) -> None:
+    result = run_in_terminal(["groundstation", "udpin:127.0.0.1:14999"], tmp_path, term="dumb")
+    assert_one_line(result, "groundstation", "TERM=dumb", "run groundstation in a terminal such as xterm or tmux")
 
 
 def test_not_a_terminal(tmp_path: Path) -> None:

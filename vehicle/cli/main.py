@@ -17,7 +17,6 @@ from vehicle.cli.options import (
     SIMULATION_OPTIONS,
     USAGE,
     build_parser,
-    find_unknown_option,
     join_home_option,
 )
 
@@ -42,8 +41,8 @@ def _run_arguments(arguments: list[str]) -> int:
         return subcommands.run(arguments)
     try:
         parser = build_parser()
-        if unknown := find_unknown_option(arguments):
-            parser.error(unknown)
+        parser.reject_unknown_options(arguments)
+        parser.reject_unknown_word(arguments, subcommands.SUBCOMMANDS)
         options = parser.parse_intermixed_args(join_home_option(parser.reject_empty(arguments)))
         with startup_gc.paused():
             return _run(options, parser)

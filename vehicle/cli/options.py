@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Sequence
 from typing import Any
 
 from link.endpoint import EndpointError, endpoint_help, parse_endpoint
@@ -88,19 +87,6 @@ def build_parser() -> CommandLineParser:
     for name, option in (OPTIONS | SIMULATION_OPTIONS).items():
         parser.add_argument(name, **option)
     return parser
-
-
-def find_unknown_option(arguments: Sequence[str]) -> str | None:
-    """Return an error for the first unknown option; argparse would report its value as an invalid endpoint instead."""
-    known = [*OPTIONS, *SIMULATION_OPTIONS, "--help"]
-    for argument in arguments:
-        name = argument.partition("=")[0]
-        if name.startswith("--") and name not in known:
-            import difflib  # when it is needed: it takes 1 ms of each start
-
-            near = difflib.get_close_matches(name, known, n=1)
-            return f"unknown option {name}" + (f"; did you mean {near[0]}?" if near else "")
-    return None
 
 
 def join_home_option(arguments: list[str]) -> list[str]:

@@ -6,13 +6,14 @@ What makes a vehicle move, or changes what an armed one does, asks first.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Protocol
+from typing import Any, Protocol
 
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import VehicleView
 from groundstation.ui.keys.mode_keys import MODE_KEYS
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.map.picture import title_of, way_text
+from groundstation.ui.map.plan.rows import item_key
 from groundstation.views.plan import PlanKind, PlanView
 
 NOT_TOLD, ACTIVE, PAUSED = 0, 3, 4
@@ -184,18 +185,22 @@ class DriveKeys:
 
     def _ask(self, text: str, view: PlanView, perform: Callable[[], Iterable[AnyIntent]]) -> None:
         """Ask; what has changed meanwhile, the vehicle or the plan (a file was opened), is not what was asked for."""
-        rows = self._model.editor.rows()
+        plan = self._plan_keys()
 
         def answer() -> None:
             newest = self._model.view
             if newest is None or newest.system != view.system:
                 self._screen.say("another vehicle is selected: nothing was sent")
-            elif self._model.editor.rows() is not rows:
+            elif self._plan_keys() != plan:
                 self._screen.say("the plan has changed meanwhile: nothing was sent")
             else:
                 self._screen.send(perform())
 
         self._screen.ask(text, answer)
+
+    def _plan_keys(self) -> list[tuple[Any, ...]]:
+        """Return what an upload of the edited plan would send; the vehicle's copy, when it is read back, is equal."""
+        return [item_key(item) for item in self._model.editor.items(self._model.editor.layer)]
 
 
 _ACTIONS: dict[str, Callable[[DriveKeys, PlanView], None]] = {

@@ -53,7 +53,7 @@ def in_terminal(
         (["carrier:pigeon"], "udpin:HOST:PORT"),
         (["udpin:127.0.0.1:0"], "port '0' is not a number from 1 to 65535"),
         (["--keys", "emacs"], "unknown key map 'emacs': choose standard, teleop"),
-        (["--keys", "/nowhere/keys.toml"], "No such file"),
+        (["--keys", "/nowhere/keys.toml"], "no such file: name one of your own"),
         (["udpin:127.0.0.1:14999"], "is not a terminal"),
         (["walk"], "'walk' is not an endpoint such as udpin:127.0.0.1:14550 (groundstation --help lists them)"),
         (["help"], "'help' is not an endpoint: did you mean --help?"),

@@ -120,7 +120,7 @@ def test_files_that_are_no_log_get_one_line(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.tlog")
     words = {
         tmp_path: "is a folder", tmp_path / "empty.tlog": "is empty", tmp_path / "text.tlog": "is no telemetry log",
-        tmp_path / "none.tlog": "No such file", tmp_path / "pipe.tlog": "is no regular file",
+        tmp_path / "none.tlog": "no such file: name a telemetry log", tmp_path / "pipe.tlog": "is no regular file",
     }  # fmt: skip
     for path, text in words.items():
         with pytest.raises(ReplayError, match=text) as caught:

@@ -75,13 +75,13 @@ def test_mistakes_are_reported_in_one_line_with_the_choices(tmp_path: Path, text
 
 
 def test_a_missing_file_and_an_unknown_name() -> None:
-    with pytest.raises(KeymapError, match=r"key map nowhere\.toml: No such file"):
+    with pytest.raises(KeymapError, match=r"key map nowhere\.toml: no such file: name one of your own"):
         load_keymap("nowhere.toml")
     with pytest.raises(KeymapError, match=r"unknown key map 'vim': choose standard, teleop or the path"):
         load_keymap("vim")
     with pytest.raises(KeymapError, match=r"unknown key map 'aaaa"):
         load_keymap("a" * 300)
-    with pytest.raises(KeymapError, match=r"key map ~nobody-of-this-name/keys\.toml: No such file"):
+    with pytest.raises(KeymapError, match=r"key map ~nobody-of-this-name/keys\.toml: no such file"):
         load_keymap("~nobody-of-this-name/keys.toml")
 
 

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from groundstation.intents.driving import STOP_KEY, Stop
 from groundstation.intents.plan import (
@@ -382,5 +383,10 @@ async def test_after_an_upload_a_fence_that_is_off_can_be_switched_on() -> None:
         screen.station.offer_view(plan_view(ended=(UPLOADED,)))
         await screen.show(shown)
         assert "the fence is on the vehicle, but switched off: switch it on" in screen.text
+        again = tuple(PlanSummary(2, plan.count) for plan in plan_view().plans)
+        screen.station.offer_view(plan_view(plans=again))  # the plans that the vehicle has are read back meanwhile
+        for page in pages():
+            screen.station.offer_view(replace(page, version=2))
+        await screen.show(shown)
         await screen.press("y")
         assert [each.on for each in screen.station.of(EnableFence)] == [True]
