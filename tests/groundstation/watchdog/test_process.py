@@ -397,5 +397,6 @@ def test_the_forked_process_ends_with_its_station(loop: Loop) -> None:
         wait_until(
             lambda: os.getsid(process) == process and ignores_hangup(process), "the end of a terminal is not its own"
         )
-        station.send(encode_report(StationReport(ending=True)))
+        station.send(encode_report(StationReport()))
     assert os.waitpid(process, 0)[1] == 0
+    assert decode_from_station(loop.ends[1].recv(65536)) == StationOutage(ENDED + "nothing is sent", True)
