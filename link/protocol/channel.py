@@ -45,8 +45,6 @@ _RATE_CLASS_OF_STATIONS = {**_RATE_CLASS, FileTransferProtocol.id: "file"}
 _ANSWERS = frozenset({Ping.id, Timesync.id})
 MAX_ANSWERS = 32
 """Answers to PING that wait for the next tick."""
-FRAME = codec.HEADER_V2 + 2
-"""Bytes around a payload, without a signature."""
 LOOK_WITHIN = 2.0
 """s until a vehicle that is looked at sends everything."""
 
@@ -254,7 +252,7 @@ class Channel:
         number, _, _, _, raw = frame
         if (budget := state.budget) is not None and not budget.proven:
             budget.grant(number, len(raw))
-            budget.proven |= verified
+            budget.proven = verified
             if number in _ANSWERS:
                 budget.note_answer(codec.decode_frame(number, raw))
         if number == Ping.id and self._answers_ping and len(self._answers) < MAX_ANSWERS:
@@ -319,11 +317,10 @@ class Channel:
         number = type(message).id
         payload = codec.encode_payload(message) if payload is None else payload
         for state in self._peers.recipients(outgoing):
-            if not self.may_send(number, len(payload) + FRAME, state.peer.address):
-                continue
             for version in TWO if state.is_modern else state.versions(number, target_system(message)):
-                sequence = state.sequence
-                yield self._build(number, payload, state, now, version), state.peer.address, sequence
+                if self.may_send(number, len(payload) + self._around(state), state.peer.address):
+                    sequence = state.sequence
+                    yield self._build(number, payload, state, now, version), state.peer.address, sequence
 
     def may_send(self, number: int, size: int, address: Hashable) -> bool:
         """Return whether a message may go to an address now, and count it: see `bounded`."""
@@ -332,6 +329,11 @@ class Channel:
             return True
         self._withheld += 1
         return False
+
+    def _around(self, state: PeerState) -> int:
+        """Return the bytes around a payload in a frame to a peer."""
+        signs = state.budget is not None and self.guard is not None and self.guard.signs_to(state)
+        return codec.HEADER_V2 + codec.CRC_SIZE + (codec.SIGNATURE_SIZE if signs else 0)
 
     def questions(self, now: float) -> Iterator[tuple[bytes, Hashable]]:
         """Yield what asks the addresses that have shown nothing yet, and answers to others who ask us so."""

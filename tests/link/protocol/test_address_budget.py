@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import pytest
+
 from dialects import codec
 from dialects import messages as m
 from link.core import Outgoing
 from link.protocol.address_budget import AddressBudget
 from link.protocol.channel import Channel
-from tests.link.frames import frame, heartbeat
+from link.protocol.signing_guard import SigningPolicy
+from link.signing.role import Role
+from tests.link.frames import frame, heartbeat, version_1
+from tests.link.signing import signed as signing
 
 VICTIM = ("192.0.2.7", 14550)
 BEAT = m.Heartbeat(10, 0, 81, 0, 3, 3)
-STATUS = m.SysStatus(*(0,) * 13)
+STATUS = m.SysStatus(*(1,) * 13)
+OPEN = SigningPolicy(unsigned=Role.WATCH)
 
 
 def vehicle(*, stream: bool = False, target: tuple[str, int] | None = None, bounded: bool = True) -> Channel:
@@ -19,7 +25,7 @@ def vehicle(*, stream: bool = False, target: tuple[str, int] | None = None, boun
     return Channel("udp", 0, system=1, component=1, stream=stream, target=target, wanted=wanted, bounded=bounded)
 
 
-def told(channel: Channel, message: m.Message = STATUS, times: int = 10_000) -> int:
+def told(channel: Channel, message: m.Message = STATUS, times: int = 3000) -> int:
     """Bytes of a message that the address gets when it is sent again and again."""
     outgoing = Outgoing(message)
     return sum(len(data) for _ in range(times) for data, _, _ in channel.send(outgoing))
@@ -100,6 +106,38 @@ def test_it_asks_five_times_and_then_seldom() -> None:
     assert times[5:] == [14.0, 24.0, 34.0, 44.0, 54.0]
 
 
+def test_who_has_sent_no_heartbeat_is_not_asked() -> None:
+    channel = vehicle()
+    channel.receive(frame(m.ParamRequestList(1, 1), 1), VICTIM, 0.0)
+    assert asked(channel, 0.0) == []
+
+
+def test_a_signature_lifts_the_limit_for_good() -> None:
+    channel = signing.vehicle(signing.keep(signing.DRIVER), OPEN, bounded=True)
+    channel.receive(heartbeat(0, system=100), VICTIM, 0.0)
+    assert 1900 < told(channel) < 2200
+    channel.receive(signing.signed(), VICTIM, 0.1)
+    channel.receive(heartbeat(1, system=100), VICTIM, 0.2)
+    assert told(channel) > 100_000
+
+
+def test_frames_in_both_versions_count_twice() -> None:
+    """A forger may send both, and has every broadcast come twice."""
+    channel = vehicle()
+    for each in (version_1(m.Heartbeat(6, 8, 0, 0, 4, 3), 0, 253, 190), heartbeat(0, system=254)):
+        channel.receive(each, VICTIM, 0.0)
+    assert len(list(channel.send(Outgoing(STATUS)))) == 2
+    assert told(channel) < 100 * (17 + 21)
+
+
+def test_what_was_withheld_is_reported_as_dropped() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    size = len(next(channel.send(Outgoing(STATUS)))[0])
+    sent = 1 + told(channel, times=100) // size
+    assert channel.report(dropped=5).dropped == 5 + 101 - sent
+
+
 def test_named_addresses_connections_stations_have_no_limit() -> None:
     for channel in (vehicle(target=VICTIM), vehicle(stream=True), vehicle(bounded=False)):
         channel.receive(heartbeat(0), VICTIM, 0.0)
@@ -107,15 +145,29 @@ def test_named_addresses_connections_stations_have_no_limit() -> None:
         assert asked(channel, 0.0) == []
 
 
-def test_a_program_that_handles_no_ping_answers_it() -> None:
-    channel = Channel("udp", 0, system=255, component=190)
-    channel.receive(frame(BEAT, 0, 1, 1), VICTIM, 0.0)
-    channel.receive(frame(m.Ping(77, 3, 0, 0), 1, 1, 1), VICTIM, 0.0)
-    channel.receive(frame(m.Ping(78, 3, 255, 190), 2, 1, 1), VICTIM, 0.0)
+@pytest.mark.parametrize("wanted", [None, frozenset({m.Heartbeat.id})])
+def test_a_program_that_handles_no_ping_answers_it(wanted: frozenset[int] | None) -> None:
+    channel = Channel("udp", 0, system=255, component=190, wanted=wanted)
+    channel.receive(frame(BEAT, 0, 7, 9), VICTIM, 0.0)
+    channel.receive(frame(m.Ping(77, 3, 0, 0), 1, 7, 9), VICTIM, 0.0)
+    channel.receive(frame(m.Ping(78, 3, 255, 190), 2, 7, 9), VICTIM, 0.0)
     [answer] = asked(channel, 0.0)
     assert isinstance(answer, m.Ping)
-    assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (77, 3, 1, 1)
+    assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (77, 3, 7, 9)
     assert asked(channel, 0.0) == []
+
+
+def test_a_program_that_handles_ping_answers_it_itself() -> None:
+    channel = vehicle(bounded=False)
+    channel.receive(frame(m.Ping(77, 3, 0, 0), 1), VICTIM, 0.0)
+    assert asked(channel, 0.0) == []
+
+
+def test_32_answers_to_ping_wait_at_once() -> None:
+    channel = Channel("udp", 0, system=255, component=190)
+    for number in range(40):
+        channel.receive(frame(m.Ping(number, number, 0, 0), number, 7, 9), VICTIM, 0.0)
+    assert [each.time_usec for each in asked(channel, 0.0) if isinstance(each, m.Ping)] == list(range(32))
 
 
 def test_a_message_that_is_no_answer_proves_nothing() -> None:

@@ -546,6 +546,9 @@ def test_what_speaks_version_1_is_answered_in_it() -> None:
     assert magics(channel, ManualControl(1, 0, 0, 500, 0, 0)) == [MAGIC_V1]
     assert channel.report().version_1 == {1}
     assert channel.speaks_version_1(HERE, 1)
+    channel.receive(frame(Heartbeat(10, 3, 81, 0, 4, 3), 1, 1, 1), HERE, 1.0)
+    assert not channel.speaks_version_1(HERE, 1)
+    assert not channel.speaks_version_1(THERE, 1)
 
 
 def test_a_heartbeat_goes_in_both_versions_so_that_it_may_change() -> None:

@@ -71,6 +71,7 @@ def test_mavlink_1_is_answered_in_it_if_nothing_is_signed(keys: tuple[SigningKey
     [answer] = send(channel, ARM)
     assert (answer[0] == MAGIC_V1, is_signed(answer)) == (is_old, not is_old)
     assert channel.speaks_version_1(HERE, 1) is is_old
+    assert not channel.speaks_version_1(THERE, 1)
 
 
 def test_unsigned_frames_have_the_role_that_the_link_grants() -> None:
