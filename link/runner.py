@@ -324,6 +324,10 @@ class Runner:
             link.look_at(self._looked_at)
             link.channel.look_at(self._looked_at, time.monotonic())
 
+    def observe(self) -> None:
+        """Report the links to the core now, beside the reports each REPORT_PERIOD."""
+        self._observe(time.monotonic())
+
     def _observe(self, now: float) -> None:
         if self._signing is not None:
             self._signing.update(now)

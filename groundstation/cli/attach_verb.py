@@ -11,6 +11,7 @@ from groundstation.cli.console import open_screen, terminal_path
 from groundstation.cli.local_verb import UsageError, load_settings, run_local
 from groundstation.cli.options import add_config, add_settings
 from groundstation.client import StationClient, StationError
+from groundstation.station_socket.about import describe_stations
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
 from groundstation.watchdog.terminal_guard import guard_terminal
@@ -65,7 +66,7 @@ def choose_station(wanted: int | None) -> int:
     if not found:
         raise StationError("no station runs here: `groundstation` or `groundstation serve --headless` starts one")
     if wanted is None and len(found) > 1:
-        raise UsageError(f"stations {', '.join(map(str, found))} run here: name one, as in `attach {found[0]}`")
+        raise UsageError(f"stations {describe_stations(found)} run here: name one, as in `attach {found[0]}`")
     return found[0] if wanted is None else wanted
 
 

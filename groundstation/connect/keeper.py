@@ -14,6 +14,7 @@ import msgspec
 from dialects.enums import Severity
 from groundstation.intents.links import AddLink
 from groundstation.station.station import Station
+from groundstation.station_socket.about import ATTACH, explain_taken
 from groundstation.vehicles.state.places import PLACES
 from groundstation.views.connect import LinkAttempt
 from link.core import LinkReport
@@ -132,7 +133,7 @@ class LinkKeeper:
             try:
                 result = open_transports([attempt.endpoint], Side.GROUND_STATION)[0]
             except (LinkError, EndpointError) as error:
-                result = str(error)
+                result = explain_taken(str(error), ATTACH)
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 loop.call_soon_threadsafe(self._opened, attempt, result)
 

@@ -7,14 +7,15 @@ import os
 import socket
 from collections.abc import Callable
 
+from groundstation.host.about import answer_about
 from groundstation.host.listener import Caller, ProgramListener
 from groundstation.host.names import answer_names
 from groundstation.host.screens import ScreenSet
 from groundstation.host.verb_port import VerbPort
 from groundstation.ipc import protocol_version
 from groundstation.station.station import Station
-from groundstation.station_socket import names, relay
-from groundstation.station_socket.hello import NAMES, SCREEN, VERB, Hello
+from groundstation.station_socket import about, names, relay
+from groundstation.station_socket.hello import ABOUT, NAMES, SCREEN, VERB, Hello
 from groundstation.station_socket.relay import VerbReady
 
 
@@ -80,13 +81,17 @@ class ProgramSet:
         hello = caller.hello
         if self._ending:
             return "this station ends"
-        versions = {SCREEN: self._screen_version, VERB: relay.VERSION, NAMES: names.VERSION}
+        versions = {SCREEN: self._screen_version, VERB: relay.VERSION, NAMES: names.VERSION,
+                    ABOUT: about.VERSION}  # fmt: skip
         if hello.version != versions.get(hello.kind):
             return f"this station (pid {os.getpid()}) has another version: end it and start it again"
         if hello.kind == SCREEN:
             return self._screens.add(caller.sock, hello.name, watches=hello.watches)
         if hello.kind == NAMES:
             answer_names(caller.sock, hello.name, self._station)
+            return None
+        if hello.kind == ABOUT:
+            answer_about(caller.sock, self._station, self._screens)
             return None
         self._verbs.add(caller.sock, f"{hello.name} (pid {caller.pid})", hello)
         return None

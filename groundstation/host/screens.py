@@ -96,6 +96,11 @@ class ScreenSet:
         port.start()
         return None
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the screens, the one that has started the station first."""
+        return tuple(each.screen.name for each in sorted(self._attached.values(), key=lambda each: not each.owner))
+
     def close(self) -> None:
         """End all connections."""
         for port in self._attached:

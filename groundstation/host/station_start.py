@@ -58,7 +58,9 @@ def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedSta
         known = tuple(parse_endpoint(text).text for text in endpoints)
     except (DialectError, EndpointError, LinkError, OSError) as error:
         watchdog.close()
-        raise StartError(_one_line(error)) from error
+        from groundstation.station_socket.about import ATTACH, explain_taken
+
+        raise StartError(explain_taken(_one_line(error), ATTACH)) from error
     simulators = SimulatorControl()
     problem = simulators.start([link.endpoint for link in links]) if options.sitl else None
     if problem is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-SCREEN, VERB, NAMES = "screen", "verb", "names"
+SCREEN, VERB, NAMES, ABOUT = "screen", "verb", "names", "about"
 """Kinds of programs."""
 
 MAX_HELLO = 4096

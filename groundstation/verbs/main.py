@@ -19,6 +19,7 @@ from dialects.extra.errors import DialectError
 from dialects.extra.option import use_dialect
 from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
 from groundstation.formats.errors import FileFormatError
+from groundstation.station_socket.about import explain_taken
 from groundstation.station_socket.hello import HELLO_WITHIN, VERB, Hello
 from groundstation.station_socket.relay import VERSION
 from groundstation.verbs.action import ONLY, VerbAction
@@ -52,6 +53,9 @@ SYSTEM = 254
 
 STOP_WAIT = 30.0
 """s for which a stop is sent to a vehicle that is not heard: a radio link may be cut for some seconds."""
+
+HELD = "--station {pid} goes through it"
+"""What to do where a station of one's own has the port or device that a verb opens."""
 
 HELP_ALL = "all vehicles that are heard, at once; prints a table, and the exit code is the worst"
 HELP_GROUP = "likewise: a name of [groups] in the config file, system ids as 1-20,31, or a pattern of names"
@@ -93,7 +97,7 @@ def run(arguments: Sequence[str]) -> int:
             output.error(problem)
         return int(ExitCode.USAGE)
     except (VerbError, FileFormatError, DialectError, EndpointError, link_error()) as error:
-        output.error(str(error))
+        output.error(explain_taken(str(error), HELD))
         return int(error.code if isinstance(error, VerbError) else ExitCode.USAGE)
     except (KeyboardInterrupt, asyncio.CancelledError):
         return 128 + (caught[0] if caught else signal.SIGINT)

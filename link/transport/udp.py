@@ -92,7 +92,10 @@ class UdpTransport:
         for _ in range(BATCH):
             try:
                 data, address = self._buffer.recvfrom(self._socket)
-            except (BlockingIOError, ConnectionRefusedError):
+            except BlockingIOError:
+                break
+            except ConnectionRefusedError:
+                self.dropped += 1  # nobody has listened when the last datagram came there
                 break
             except OSError as error:
                 self.problem = f"{self.endpoint.text}: {error.strerror}"

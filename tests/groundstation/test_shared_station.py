@@ -16,12 +16,14 @@ import msgspec
 import pytest
 
 from dialects import messages as m
+from groundstation.cli.main import main
 from groundstation.client import StationClient, StationError
 from groundstation.host.listener import ProgramListener
 from groundstation.intents.driving import STOP_KEY, Stop
 from groundstation.intents.session import Quit
 from groundstation.intents.vehicle import Arm, GiveControl, RequestControl
 from groundstation.ipc import protocol_version
+from groundstation.station_socket.about import describe_stations
 from groundstation.station_socket.connect import NoStationError, connect, running_stations
 from groundstation.station_socket.folder import (
     LONGEST_ADDRESS,
@@ -211,6 +213,46 @@ def test_a_folder_that_others_can_change_is_not_used(
         make_folder()
     with pytest.raises(FolderError, match=said):
         running_stations()
+
+
+def test_several_stations_say_what_they_are(capsys: pytest.CaptureFixture[str]) -> None:
+    with Screen() as first, Screen() as second, on_line(FakeVehicle(system=7), endpoint=first.endpoint):
+        pids = sorted((first.client.pid, second.client.pid))
+        wait_until(lambda: running_stations() == pids)
+        first.see(lambda seen: seen.vehicle is not None)
+        texts = {
+            first.client.pid: f"{first.client.pid} ({_vehicle_name(first)}, {first.endpoint}, first screen)",
+            second.client.pid: f"{second.client.pid} (no vehicle, {second.endpoint}, first screen)",
+        }
+        which = ", ".join(texts[pid] for pid in pids)
+        assert describe_stations(pids) == which
+        assert main(["arm"]) == 2
+        assert capsys.readouterr().err == f"groundstation: stations {which} run here: name one with --station PID\n"
+        os.kill(second.client.pid, signal.SIGSTOP)
+        try:
+            texts[second.client.pid] = str(second.client.pid)  # it does not answer
+            assert describe_stations(pids) == ", ".join(texts[pid] for pid in pids)
+        finally:
+            os.kill(second.client.pid, signal.SIGCONT)
+
+
+def _vehicle_name(screen: Screen) -> str:
+    vehicle = screen.snapshot.vehicle
+    assert vehicle is not None
+    return vehicle.name
+
+
+def test_a_port_of_another_station_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    with Screen() as screen:
+        pid, port = screen.client.pid, screen.endpoint.rpartition(":")[2]
+        wait_until(lambda: running_stations() == [pid])
+        for endpoint in (screen.endpoint, f"udpin:0.0.0.0:{port}"):
+            with pytest.raises(StationError) as caught:
+                StationClient.start([endpoint])
+            held = f"{endpoint}: port {port} is in use; a station of yours ({pid}) has it: "
+            assert str(caught.value) == f"{held}groundstation attach"
+            assert main(["status", "-e", endpoint, "--station", "never"]) == 2
+            assert capsys.readouterr().err == f"groundstation: {held}--station {pid} goes through it\n"
 
 
 def _attach_with(station: int, hello: Hello) -> StationClient:

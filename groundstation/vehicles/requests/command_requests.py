@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from dialects import messages as m
 from dialects.enums import Command, Result, command_name, result_token
 from groundstation.vehicles.requests.requests import RequestBook
@@ -9,10 +11,19 @@ from link.core import Outgoing, Received
 from link.services.command.client import TRIES, CommandClient, CommandOutcome, CommandPlace
 
 
+class _Held(NamedTuple):
+    """A request that waits for the end of a query."""
+
+    number: int
+    params: tuple[float, ...]
+    place: CommandPlace | None
+
+
 class CommandRequests:
     """COMMAND_LONG and COMMAND_INT requests to the component `target` (system, component).
 
-    COMMAND_ACK does not tell two commands of one kind apart, so the second waits for the end of the first.
+    COMMAND_ACK does not tell two commands of one kind apart, so a request waits for the end of a query, and is refused
+    while another request of its kind is under way.
     """
 
     def __init__(self, client: CommandClient, book: RequestBook, target: tuple[int, int]) -> None:
@@ -21,6 +32,8 @@ class CommandRequests:
         self.target = target
         self._numbers: dict[int, int] = {}
         """Command -> the request under way."""
+        self._held: dict[int, _Held] = {}
+        """Command -> the request that is sent after the query under way."""
         self._queries: list[CommandOutcome] = []
 
     def send(
@@ -35,12 +48,14 @@ class CommandRequests:
         """Send a command with up to 7 parameters; `what` names it for the operator. With a `place` a COMMAND_INT."""
         if not self._book.begin(number, what):
             return
-        if self.is_waiting(command):
+        if int(command) in self._numbers or int(command) in self._held:
             text = f"{command_name(int(command))} is being requested already"
             self._book.refuse(number, text, now, by_vehicle=False)
-            return
-        self._numbers[int(command)] = number
-        self._transmit(int(command), params, now, place)
+        elif self.is_waiting(command):
+            self._held[int(command)] = _Held(number, params, place)
+        else:
+            self._numbers[int(command)] = number
+            self._transmit(int(command), params, now, place)
 
     def query(self, command: Command, params: tuple[float, ...], now: float) -> None:
         """Send a command that is no request of the operator; call it only while none of its kind is_waiting."""
@@ -56,7 +71,11 @@ class CommandRequests:
         return queries
 
     def cancel(self, number: int, now: float) -> None:
-        """Stop repeating a command. The vehicle may have done it."""
+        """Stop repeating a command. The vehicle may have done it, unless it still waits for a query."""
+        for command, held in list(self._held.items()):
+            if held.number == number:
+                del self._held[command]
+                self._book.cancel(number)
         for command, each in list(self._numbers.items()):
             if each == number:
                 del self._numbers[command]
@@ -89,11 +108,18 @@ class CommandRequests:
         system, component = self.target
         self._client.send(command, *params, target_system=system, target_component=component, now=now, place=place)
 
+    def _release(self, command: int, now: float) -> None:
+        """Send the request that has waited for the end of a query."""
+        if (held := self._held.pop(command, None)) is not None:
+            self._numbers[command] = held.number
+            self._transmit(command, held.params, now, held.place)
+
     def _handle_outcomes(self, now: float) -> None:
         for outcome in self._client.outcomes():
             number = self._numbers.pop(outcome.command, None)
             if number is None:
                 self._queries.append(outcome)
+                self._release(outcome.command, now)
             elif outcome.result is Result.ACCEPTED:
                 self._book.accept(number)
             elif outcome.refusal:

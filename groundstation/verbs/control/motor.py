@@ -42,7 +42,7 @@ def duration(text: str) -> float:
 async def run(session: DoctorSession, options: argparse.Namespace, output: Output) -> int:
     """Turn a motor; done when the vehicle has accepted and the time is over."""
     if not await session.find_vehicle(options.wait, options.vehicle):
-        raise VerbError(ExitCode.NO_VEHICLE, f"no vehicle within {options.wait:g} s")
+        raise VerbError(ExitCode.NO_VEHICLE, f"no vehicle within {options.wait:g} s{session.describe_links()}")
     await session.until(lambda: bool(session.doctor.motors), KNOWN_WITHIN)
     view = session.doctor
     if not view.motors:

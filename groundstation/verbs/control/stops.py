@@ -117,7 +117,8 @@ def _tell_unheard(session: VerbSession, blind: BlindStop | None, output: Output)
     if blind is not None:
         silent = not session.core.frames_sent and not session.core.has_heard_all
         nobody = "; nobody was heard there, so there is no address to send to" if silent else f"; {blind.describe()}"
-        text = f"no heartbeat of a vehicle on {session.where} within {wait:.0f} s{nobody}"
+        why = session.describe_links()
+        text = f"no heartbeat of a vehicle on {session.where} within {wait:.0f} s{why}{nobody}"
     output.error(text)
     output.result(False, blind.system if blind else 0, detail=text)
     return ExitCode.NO_ANSWER if blind is not None and blind.answers else ExitCode.NO_VEHICLE

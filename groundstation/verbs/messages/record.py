@@ -89,7 +89,7 @@ async def record(session: VerbSession, options: argparse.Namespace, output: Outp
     finally:
         recording.close()
         _report(recording, session.now - session.began, output)
-    return _end(recording)
+    return _end(recording, session)
 
 
 def _is_over(session: VerbSession, seconds: float | None) -> bool:
@@ -104,7 +104,7 @@ def _report(recording: FileRecording, seconds: float, output: Output) -> None:
     output.record(file=recording.path, messages=count, sources=sources, seconds=round(seconds, 3))
 
 
-def _end(recording: FileRecording) -> int:
+def _end(recording: FileRecording, session: VerbSession) -> int:
     """Return the exit code. Raises VerbError if not all is in the file."""
     failure, lost = recording.recorder.failure, recording.recorder.lost
     if failure is not None:
@@ -113,5 +113,5 @@ def _end(recording: FileRecording) -> int:
     if lost:
         raise VerbError(ExitCode.PARTLY, f"{recording.path}: {SLOW}: {lost}")
     if not recording.heard:
-        raise VerbError(ExitCode.NO_VEHICLE, "nothing was heard, so there is no file")
+        raise VerbError(ExitCode.NO_VEHICLE, f"no file, because nothing was heard{session.describe_links()}")
     return ExitCode.DONE

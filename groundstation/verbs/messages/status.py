@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import SystemState, state_name
+from dialects.enums import Result, SystemState, result_token, state_name
 from groundstation.snapshot import VehicleView
 from groundstation.station.links.link_stats import lost_frames
 from groundstation.vehicles.requests.requests import RequestState
@@ -25,8 +25,15 @@ from link.core import LinkReport
 
 ASKED = (m.SysStatus, m.BatteryStatus, m.GpsRawInt, m.GlobalPositionInt, m.VfrHud, m.AutopilotVersion, m.ControlStatus)
 """Messages that `status` requests where they are not heard: ArduPilot sends nothing that nobody has requested."""
+ASKED_ONCE = (m.AutopilotVersion, m.ControlStatus)
+"""Those of them that do not change."""
+NOT_YET = result_token(Result.TEMPORARILY_REJECTED)
 ARRIVES_WITHIN = 2.0
 """s for a message after its request was accepted. It comes at once unless a frame is lost or a program late."""
+COMPLETE_WITHIN = 1.5
+"""s for messages that a vehicle refuses at first or sends once a second: ours answers only who has been heard."""
+ASK_PERIOD = 0.1
+"""s between two rounds of requests within that time."""
 BAD_STATES = (SystemState.CRITICAL, SystemState.EMERGENCY)
 PERIOD = 1.0
 """s between two lines of `status --watch`."""
@@ -132,21 +139,30 @@ class _Asker:
         self._refused: set[type[m.Message]] = set()
 
     async def ask(self, *, every: bool) -> None:
-        """Request what was not heard lately; `every`: also what is asked for once only."""
+        """Request what was not heard lately; `every`: also what is asked for once only, until COMPLETE_WITHIN."""
+        until = self._session.now + COMPLETE_WITHIN
+        while await self._ask_round(every) and every and self._missing() and self._session.now < until:
+            await self._session.look_for(lambda: not self._missing(), ASK_PERIOD)
+
+    async def _ask_round(self, every: bool) -> bool:
+        """Request each message once, as long as the vehicle takes requests; return whether it answers at all."""
         for kind in ASKED:
-            once = kind in (m.AutopilotVersion, m.ControlStatus)
+            once = kind in ASKED_ONCE
             fresh = self._session.now - self._session.heard_at(kind) < PERIOD
             if fresh or kind in self._refused or (once and not every):
                 continue
-            if not await self._request(kind):
-                return
+            report = await self._session.request_message(kind, ARRIVES_WITHIN)
+            if report.state is RequestState.NO_ANSWER:
+                return False
+            if report.state is RequestState.REFUSED and report.detail == NOT_YET:
+                break
+            if report.state is not RequestState.ACCEPTED:
+                self._refused.add(kind)
+        return True
 
-    async def _request(self, kind: type[m.Message]) -> bool:
-        """Request one message; return whether the vehicle answers at all."""
-        report = await self._session.request_message(kind, ARRIVES_WITHIN)
-        if report.state is not RequestState.ACCEPTED:
-            self._refused.add(kind)
-        return report.state is not RequestState.NO_ANSWER
+    def _missing(self) -> bool:
+        """Return whether a message that may still come was never heard."""
+        return any(kind not in self._refused and self._session.heard_at(kind) == -math.inf for kind in ASKED)
 
 
 def _print(contact: VehicleContact, now: float, output: Output) -> None:

@@ -46,7 +46,8 @@ class VerbCore:
         self.reports: tuple[LinkReport, ...] = ()
         """The newest of each link."""
         self.heard: dict[tuple[int, type[m.Message]], float] = {}
-        """System id and kind -> when the newest such message arrived, also the first ones, before any tap."""
+        """System id of a vehicle and kind -> when the newest such message arrived that its contact knows; also the
+        first ones, before any tap."""
         self.frames_sent = 0
         """On links of this program; each address counts."""
         self.taps: list[Tap] = []
@@ -74,7 +75,7 @@ class VerbCore:
         contact = self.contacts.get(received.system)
         if contact is not None:
             contact.receive(received, now)
-        self.heard[received.system, type(received.message)] = now
+            self.heard[received.system, type(received.message)] = now
         for tap in self.taps:
             tap(received, now)
         if self.chosen is None and not self.has_heard_all:

@@ -19,6 +19,7 @@ from groundstation.station.operator_core import OperatorCore
 from groundstation.station_socket.relay import LinksReport
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.session.link_reasons import describe_silence
 from groundstation.verbs.session.station_link import StationLink, StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
 from link.endpoint import Side
@@ -36,8 +37,10 @@ LEASE_PERIOD = 0.1
 class DoctorSession:
     """What a verb does with its core. The key gate stays closed: no demand but neutral is ever sent."""
 
-    def __init__(self, core: OperatorCore, feed: DoctorFeed, request: DoctorRequest, flush: Callable[[], None]) -> None:
-        self._core, self._feed, self._request, self._flush = core, feed, request, flush
+    def __init__(
+        self, core: OperatorCore, feed: DoctorFeed, request: DoctorRequest, runner: Runner | StationRunner
+    ) -> None:
+        self._core, self._feed, self._request, self._runner = core, feed, request, runner
         self._numbers = 0
         self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
@@ -50,7 +53,7 @@ class DoctorSession:
         """Carry out intents now."""
         for intent in intents:
             self._core.handle_intent(intent, self._now)
-        self._flush()
+        self._runner.flush()
 
     @property
     def snapshot(self) -> Snapshot:
@@ -88,6 +91,11 @@ class DoctorSession:
             self.do(SelectVehicle(system))
         return found
 
+    def describe_links(self) -> str:
+        """Return why no vehicle is heard, behind ": "; "" if nothing is known."""
+        self._runner.observe()
+        return describe_silence(self.snapshot.links)
+
     def _find(self, wanted: int | str | None) -> int | None:
         states = (contact.state for contact in self._core.fleet)
         return next((each.system for each in states if is_chosen(wanted, each.system, each.fleet_name)), None)
@@ -118,7 +126,7 @@ async def run_doctor(
     runner = _open(core, endpoints, system) if link is None else _go_through(core, link)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins
-    session = DoctorSession(core, feed, DoctorRequest(station=driver), runner.flush)
+    session = DoctorSession(core, feed, DoctorRequest(station=driver), runner)
     lease = asyncio.ensure_future(_renew(core, session))
     verb = asyncio.ensure_future(script(session))
     try:

@@ -18,6 +18,7 @@ from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.core import ALONE_AFTER, VerbCore
+from groundstation.verbs.session.link_reasons import describe_silence, to_view
 from groundstation.verbs.session.station_link import StationLink, StationRunner
 from link.protocol.log_tap import LogTap
 
@@ -67,6 +68,8 @@ class VerbSession:
         """When the verb began."""
         self.afterwards = "; this program no longer sends heartbeats"
         """What becomes of this program when the verb has ended, for a vehicle that moves by itself."""
+        self.observe: Callable[[], None] = lambda: None
+        """Gets the newest reports of links of its own; those of a station come by themselves."""
 
     @property
     def now(self) -> float:
@@ -109,8 +112,8 @@ class VerbSession:
         """Wait for the HEARTBEAT of the vehicle. Raises VerbError after `wait` s."""
         if not await self.wait_for(lambda: self.core.chosen is not None, wait):
             which = "no vehicle" if wanted is None else f"no vehicle {wanted}"
-            heard = f", but {_names(self.core.contacts)}" if self.core.contacts else ""
-            raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {where} within {wait:g} s{heard}")
+            why = f", but {_names(self.core.contacts)}" if self.core.contacts else self.describe_links()
+            raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {where} within {wait:g} s{why}")
 
     async def need_only_vehicle(self, wanted: int | str | None) -> None:
         """Before the first change: there must be only one, or only one with that name. Raises VerbError."""
@@ -174,6 +177,13 @@ class VerbSession:
     def explain_silence(self) -> str:
         """Return why the vehicle may answer nothing, behind "; "; "" if nothing is known."""
         return self.core.explain_silence(self.vehicle.system)
+
+    def describe_links(self) -> str:
+        """Return why no vehicle is heard, behind ": "; "" if one is, or if nothing is known."""
+        if self.core.contacts:
+            return ""
+        self.observe()
+        return describe_silence([to_view(report) for report in self.core.reports])
 
     @property
     def _refusal(self) -> str:
@@ -263,7 +273,9 @@ async def run_session(
         runner = Runner(core, links, period=PERIOD, route=False, log_tap=log_tap, sent=sent, signing=signing)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins
-    verb = asyncio.ensure_future(script(VerbSession(core, runner.flush, progress)))
+    verb_session = VerbSession(core, runner.flush, progress)
+    verb_session.observe = runner.observe
+    verb = asyncio.ensure_future(script(verb_session))
     reporting = asyncio.ensure_future(guard.run(core.driven)) if guard else None
     try:
         await asyncio.wait({running, verb}, return_when=asyncio.FIRST_COMPLETED)

@@ -12,6 +12,7 @@ import msgspec
 
 from dialects import codec
 from dialects.messages import MESSAGES
+from groundstation.station_socket.about import describe_stations
 from groundstation.station_socket.connect import NoStationError, connect, running_stations
 from groundstation.station_socket.folder import FolderError
 from groundstation.station_socket.hello import HELLO_WITHIN, Hello, StationFailed
@@ -59,9 +60,12 @@ class SeveralStationsError(VerbError):
     """Several stations run, of which none is named."""
 
     def __init__(self, pids: Sequence[int]) -> None:
-        which = ", ".join(map(str, pids))
-        super().__init__(ExitCode.USAGE, f"stations {which} run here: name one with --station PID")
+        super().__init__(ExitCode.USAGE, "")
         self.pids = pids
+
+    def __str__(self) -> str:
+        """Return one line; asks the stations what they are, for which a stop does not wait."""
+        return f"stations {describe_stations(self.pids)} run here: name one with --station PID"
 
 
 class StationLink:
@@ -187,6 +191,9 @@ class StationRunner:
     def flush(self) -> None:
         """Send the core's messages now."""
         self._guard(self._flush)
+
+    def observe(self) -> None:
+        """Do nothing: the station reports its links by itself."""
 
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()

@@ -35,7 +35,7 @@ async def run(session: DoctorSession, options: argparse.Namespace, output: Outpu
         log = (f"{line.label}: {line.text}" for line in session.snapshot.texts)
         write_text(options.report, format_report(view, log=log))
         output.note(f"report saved to {options.report}")
-    return _finish(view, found, output)
+    return _finish(view, output, None if found else session.describe_links())
 
 
 async def _ask(session: DoctorSession) -> None:
@@ -57,11 +57,12 @@ def _fix(fix: object) -> object:
     return None if fix is None else {"name": getattr(fix, "name", ""), "value": getattr(fix, "value", None)}
 
 
-def _finish(view: DoctorView, found: bool, output: Output) -> int:
+def _finish(view: DoctorView, output: Output, silence: str | None) -> int:
+    """`silence`: why no vehicle was heard, None if one was."""
     stops = [row.title for row in view.faults]
-    output.result(found and not stops, view.system or None, faults=[row.id for row in view.faults])
-    if not found:
-        output.error("no vehicle was heard: switch it on, check address and power")
+    output.result(silence is None and not stops, view.system or None, faults=[row.id for row in view.faults])
+    if silence is not None:
+        output.error(f"no vehicle was heard{silence}")
         return ExitCode.NO_VEHICLE
     if stops:
         output.note(f"{view.name} cannot be driven: {', '.join(stops)} ({MARKS[Health.FAULT]} above)")

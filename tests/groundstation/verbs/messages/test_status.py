@@ -9,11 +9,13 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from dialects import messages as m
+from dialects.enums import Command, Result
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.messages.status import _failsafes, _link_cells, _speed
 from groundstation.verbs.messages.status_changes import ChangePrinter
 from groundstation.verbs.session.contact import VehicleContact
+from groundstation.verbs.session.core import VerbCore
 from link.core import LinkReport, SourceCount
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.vehicles.state.test_vehicle_state import heartbeat, received
@@ -46,6 +48,34 @@ def test_status_requests_what_the_vehicle_does_not_send(capsys: Capture) -> None
         watched = run_verb(capsys, "status", "--watch", "--for", "0.2", "--json", "-e", vehicle.endpoint).records
         assert [each["armed"] for each in watched] == [True]
         assert watched[0]["time"].endswith("Z")
+
+
+def test_status_asks_again_a_vehicle_that_refuses_at_first(capsys: Capture) -> None:
+    refusals = iter([Result.TEMPORARILY_REJECTED])
+    with foreign_vehicle() as vehicle:
+        vehicle.telemetry = {
+            1: mav.MAVLink_sys_status_message(PREARM, PREARM, PREARM, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0),
+            24: mav.MAVLink_gps_raw_int_message(0, 4, 0, 0, 0, 0, 0, 0, 0, 11),
+            33: mav.MAVLink_global_position_int_message(0, -353632620, 1491652370, 0, 0, 0, 0, 0, 0),
+        }
+        vehicle.answers[Command.REQUEST_MESSAGE] = lambda command: next(refusals, None)
+        shown = run_verb(capsys, "status", "-e", vehicle.endpoint)
+        assert next(refusals, None) is None
+        for line in ("pre-arm   ready to arm", "battery   11.8 V 73 %", "gps       3D fix, 11 satellites"):
+            assert line in shown.out
+        assert "position  -35.3632620 149.1652370" in shown.out
+
+
+def test_a_message_before_the_first_heartbeat_does_not_count() -> None:
+    """The state of a vehicle begins with its HEARTBEAT: what came before must be requested."""
+    core = VerbCore((254, 190), None, 1)
+    status = mav.MAVLink_sys_status_message(PREARM, PREARM, PREARM, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0)
+    early = received(m.SysStatus(*(getattr(status, name) for name in status.fieldnames)))
+    core.receive(early, 0.0)
+    assert (core.contacts, core.heard) == ({}, {})
+    core.receive(received(heartbeat()), 0.1)
+    core.receive(early, 0.2)
+    assert (1, m.SysStatus) in core.heard
 
 
 def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) -> None:
