@@ -1,4 +1,6 @@
-"""Hint for a key that does nothing: because of Caps Lock or the keyboard layout, or because it arrived in pieces."""
+"""Hint for a key that does nothing: because of Caps Lock, the keyboard layout or the screen, or because it arrived in
+pieces.
+"""
 
 from __future__ import annotations
 
@@ -41,6 +43,9 @@ class KeyHint:
         if key in MODE_KEYS:
             opens = main_key(self._keymap, "app.map")
             return f"{key} is {MODE_KEYS[key][0]} on the Map" + (f" ({format_key(opens)})" if opens else "")
+        if key == "tab":
+            style = main_key(self._keymap, "drive.style")
+            return "no panels to choose on this screen" + (f"; {format_key(style)}: drive style" if style else "")
         if len(key) != 1 or not key.isalpha():
             return None
         if not key.isascii():

@@ -13,6 +13,7 @@ from textual.pilot import Pilot
 
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, Keymap
+from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.app.app import ConsoleApp
@@ -20,6 +21,7 @@ from groundstation.ui.app.navigation import load_screen
 from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from groundstation.ui.widgets.line_field import FieldUse
+from tests.groundstation.ui import frames
 from tests.groundstation.ui.live_station import LiveStation
 from tests.test_stops import Drive
 from vehicle.safety.states import SafetyState
@@ -27,7 +29,7 @@ from vehicle.safety.states import SafetyState
 OTHERS = [row for row in SCREENS if row.in_tabs and row.id != "drive"]
 BYTES = {
     "up": "\x1b[A", "down": "\x1b[B", "right": "\x1b[C", "left": "\x1b[D", "comma": ",", "full_stop": ".", "space": " ",
-    "tab": "\t", "ctrl+k": "\x0b", "exclamation_mark": "!", "f1": "\x1bOP",
+    "ctrl+k": "\x0b", "ctrl+y": "\x19", "exclamation_mark": "!", "f1": "\x1bOP",
 }  # fmt: skip
 """Bytes of keys whose name is not the byte."""
 
@@ -160,6 +162,35 @@ async def test_keys_drive_nothing_on_another_screen_and_stops_stop(row: ScreenRo
         await drives(wheels)
         await wheels.open(row)
         await stops_stop(wheels)
+
+
+async def test_tab_on_drive_keeps_the_style_and_says_so() -> None:
+    """TAB chooses panels on the other screens: no key of theirs may make a key on Drive go on by itself."""
+    async with driving_wheels() as wheels:
+        await wheels.type("\t")
+        await wheels.pass_time(0.3)
+        frame = frames.text(wheels.app)
+        assert "no panels to choose on this screen; ^y: drive style" in frame
+        await drives(wheels)
+        sticks = wheels.station.drive.station.operator.sticks
+        assert sticks.style is Style.HOLD
+        while sticks.style is not Style.LATCH:  # the key does change it
+            await wheels.type("\x19")
+            await wheels.pass_time(1.0)
+        await wheels.type("i")
+        await wheels.pass_time(4.0)
+        assert wheels.power > 0.2
+        await wheels.type("k")
+        await wheels.pass_time(1.0)
+        assert wheels.power == 0.0
+
+
+def test_no_screen_has_the_key_of_the_style() -> None:
+    for name in KEYMAPS:
+        styles = Keymap(name, KEYMAPS[name]).get_keys("drive.style")
+        assert len(styles) == 1
+        for row in OTHERS:
+            assert not {each.key for each in load_screen(row).KEYS} & set(styles), row.id
 
 
 async def stops_stop(wheels: Wheels) -> None:

@@ -75,7 +75,7 @@ def test_the_gate_lets_no_other_style_pass(proxy: str, chosen: str) -> None:
     why = style_refusal("another one", proxy)
     gate.set_closure(None)
     gate.update(armed=False, driving=False)
-    gate.handle_keys([KeyEvent("tab")])
+    gate.handle_keys([KeyEvent("ctrl+y")])
     assert [each for each in recorder.intents if isinstance(each, SetStyle)] == [SetStyle(style=chosen, why=why)]
     assert gate.allow(SetStyle(style="next")) == SetStyle(style=chosen, why=why)
     recorder.close()
@@ -198,7 +198,7 @@ def test_the_style_key_says_why_it_stays_hold(
         opened.append(inside := Inside(tmp_path, vehicle.endpoint))
         run(inside)
         inside.until("hold r to arm")
-        inside.press("Tab")
+        inside.press("C-y")
         inside.until("drive style hold: another one drives on when the terminal freezes, which")
         inside.press("C-c")
         assert inside.ended()[0] == 0

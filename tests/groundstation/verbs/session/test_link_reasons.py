@@ -8,7 +8,7 @@ import socket
 import threading
 import time
 import tty
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pytest
@@ -32,13 +32,13 @@ def said(capsys: Capture, *endpoints: str, wait: float = 0.5, verb: str = "statu
 
 
 @contextmanager
-def sending(send: bytes, where: int | socket.socket) -> Iterator[None]:
-    """Send these bytes again and again, to a terminal or a connected socket."""
+def sending(send: Callable[[], object]) -> Iterator[None]:
+    """Send again and again."""
     done = threading.Event()
 
     def repeat() -> None:
         while not done.wait(0.01):
-            where.send(send) if isinstance(where, socket.socket) else os.write(where, send)
+            send()
 
     thread = threading.Thread(target=repeat)
     thread.start()
@@ -79,7 +79,7 @@ def test_a_wrong_baud_rate(capsys: Capture) -> None:
     ours, theirs = pty.openpty()
     tty.setraw(ours)
     tty.setraw(theirs)
-    with sending(bytes(range(0x80, 0xD0)), ours):
+    with sending(lambda: os.write(ours, bytes(range(0x80, 0xD0)))):
         line = said(capsys, f"serial:{os.ttyname(theirs)}:57600", wait=2.5)
     os.close(ours)
     os.close(theirs)
@@ -90,8 +90,7 @@ def test_a_sender_that_is_no_vehicle(capsys: Capture) -> None:
     port = free_port()
     beat = codec.frame(m.Heartbeat.id, codec.encode_payload(m.Heartbeat(6, 8, 0, 0, 4, 3)), 0, 77, 190)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        sock.connect(("127.0.0.1", port))
-        with sending(beat, sock):
+        with sending(lambda: sock.sendto(beat, ("127.0.0.1", port))):
             line = said(capsys, f"udpin:127.0.0.1:{port}")
     assert line.endswith(" s: MAVLink arrives from system 77, but no HEARTBEAT of a vehicle")
 
