@@ -85,7 +85,7 @@ _ROWS = (
     OperatorAction("view.wider", "Wider", "Zoom out of the pane", "view", keys=("pagedown",), steady=True),
     OperatorAction("drive.gamepad", "Next gamepad", "Choose the next gamepad, of several", "drive"),
     OperatorAction("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next"),
-                   ("ctrl+y",)),  # not TAB, which chooses panels on the other screens: latched driving goes on by itself
+                   ("ctrl+y",)),  # not TAB, which chooses panels on the other screens: a latched key goes on by itself
     OperatorAction("vehicle.arm", "Arm", "Arm; when armed, one press disarms", "vehicle", Arm(), ("r",), confirm=True,
                    when_armed=Disarm()),
     OperatorAction("vehicle.disarm", "Disarm", "Motors off at once, armed or not", "vehicle", Disarm()),

@@ -1,6 +1,4 @@
-"""Hint for a key that does nothing: because of Caps Lock, the keyboard layout or the screen, or because it arrived in
-pieces.
-"""
+"""Hint for a key that does nothing: because of Caps Lock, the layout or the screen, or because it arrived in pieces."""
 
 from __future__ import annotations
 

@@ -173,7 +173,7 @@ async def test_tab_on_drive_keeps_the_style_and_says_so() -> None:
         assert "no panels to choose on this screen; ^y: drive style" in frame
         await drives(wheels)
         sticks = wheels.station.drive.station.operator.sticks
-        assert sticks.style is Style.HOLD
+        assert sticks.style.value == "hold"
         while sticks.style is not Style.LATCH:  # the key does change it
             await wheels.type("\x19")
             await wheels.pass_time(1.0)

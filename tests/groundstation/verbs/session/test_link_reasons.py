@@ -89,9 +89,9 @@ def test_a_wrong_baud_rate(capsys: Capture) -> None:
 def test_a_sender_that_is_no_vehicle(capsys: Capture) -> None:
     port = free_port()
     beat = codec.frame(m.Heartbeat.id, codec.encode_payload(m.Heartbeat(6, 8, 0, 0, 4, 3)), 0, 77, 190)
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        with sending(lambda: sock.sendto(beat, ("127.0.0.1", port))):
-            line = said(capsys, f"udpin:127.0.0.1:{port}")
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    with sock, sending(lambda: sock.sendto(beat, ("127.0.0.1", port))):
+        line = said(capsys, f"udpin:127.0.0.1:{port}")
     assert line.endswith(" s: MAVLink arrives from system 77, but no HEARTBEAT of a vehicle")
 
 
