@@ -106,15 +106,18 @@ class KeyEventParser(XTermParser):
         self._mouse_reports = 0
         self._pasting = False
         self._read_at = 0.0
-        """Time of the last read."""
+        """Time of the last read with more than an answer to a ping."""
         self._names: dict[str, str] = {}
         """Code of a key -> its name when pressed: if Shift is released before W, the release must still be of "W"."""
         super().__init__(debug)
 
     def feed(self, data: str) -> Iterable[Message]:
         """Return the events of one read. Its keys have gone to the sink when this returns."""
-        self._read_at = self._clock()
-        return self._handle(self._sequences.feed(data, self._read_at))
+        now = self._clock()
+        pieces = self._sequences.feed(data, now)
+        if any(piece.text != PONG for piece in pieces):  # answers to pings go on for ever, and are no text
+            self._read_at = now
+        return self._handle(pieces)
 
     @property
     def waiting(self) -> bool:

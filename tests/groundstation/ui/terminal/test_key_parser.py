@@ -142,6 +142,21 @@ def test_an_endless_paste_does_not_keep_the_keys_for_ever() -> None:
     assert sink.batches[1:] == [[KeyEvent("paste")], [KeyEvent("exclamation_mark")]]
 
 
+@pytest.mark.parametrize("reads", [("\x1b[0n",), ("\x1b[", "0n")])
+def test_answers_to_pings_do_not_keep_a_paste_open(reads: tuple[str, ...]) -> None:
+    sink, clock = Sink(), Clock()
+    parser = KeyEventParser(sink, clock=clock)
+    parser.feed("\x1b[200~ryi")
+    for _ in range(5):
+        clock.now += 0.5
+        for data in reads:
+            parser.feed(data)
+        parser.tick()
+    parser.feed("!")
+    assert sink.batches[-1] == [KeyEvent("exclamation_mark")]
+    assert sink.told == []
+
+
 @pytest.mark.parametrize("size", ["99999;80", "24;99999"])
 def test_no_terminal_is_as_large_as_that(size: str) -> None:
     """Its text would be drawn for minutes, and no key would be looked at."""
