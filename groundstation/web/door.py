@@ -1,7 +1,7 @@
-"""Door of the web server: connections that have not asked for anything yet, in number and in time.
+"""Door of the web server: connections that have not asked for anything with the token, in number and in time.
 
-Every user of this machine may connect. Without a bound, a thousand silent connections use up the descriptors, and no
-page is shown any more. Tabs that are open are not counted here: their request has come.
+Every user of this machine may connect. Without a bound, a thousand connections that say nothing, or nothing that is
+right, use up the descriptors, and no page is shown any more. Tabs that are open are not counted: they were admitted.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ import time
 from collections.abc import Callable
 
 MAX_WAITING = 32
-"""Connections without a request. One more closes the one that has waited longest: a browser asks at once."""
+"""Connections without a request that was admitted. One more closes the one that has waited longest: browsers ask at
+once."""
 REQUEST_WITHIN = 5.0
 """s for a request to arrive, and for the next one over the same connection."""
 LINES, MINUTE = 20, 60.0
@@ -28,19 +29,14 @@ class Door:
     ) -> None:
         self._make, self._places, self._within = make, places, within
         self._waiting: dict[asyncio.BaseTransport, asyncio.TimerHandle] = {}
-        """Connection -> the timer that ends it, the oldest first."""
+        """Connection that was not admitted -> the timer that ends it, the oldest first."""
 
     def __call__(self) -> asyncio.Protocol:
         """Return what takes a new connection, and hands it to the protocol that serves."""
         return _Arrival(self)
 
-    @property
-    def waiting(self) -> int:
-        """Connections without a request."""
-        return len(self._waiting)
-
     def admit(self, transport: asyncio.BaseTransport | None) -> None:
-        """Note that a request has come over a connection."""
+        """Note that a request which is not refused has come over a connection; None if that has ended."""
         if transport is not None and (timer := self._waiting.pop(transport, None)):
             timer.cancel()
 
@@ -54,7 +50,6 @@ class Door:
         return self._make()
 
     def _end(self, transport: asyncio.BaseTransport) -> None:
-        self.admit(transport)
         assert isinstance(transport, asyncio.Transport)
         transport.abort()
 
@@ -72,11 +67,10 @@ class _Arrival(asyncio.Protocol):
         protocol.connection_made(transport)
 
 
-class FewLines(logging.Filter):
-    """Lets LINES records through in a minute."""
+class FewLines:
+    """A filter of a logger, which lets LINES records through in a minute."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        super().__init__()
         self._clock = clock
         self._since, self._count = -math.inf, 0
 

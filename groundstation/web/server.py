@@ -22,7 +22,7 @@ from aiohttp import WSMsgType, web
 
 from groundstation.web.door import REQUEST_WITHIN, Door, FewLines
 from groundstation.web.guard import HEADERS, TOKEN, Guard, WebRequest
-from groundstation.web.tab import Tab
+from groundstation.web.tab import Tab, screen_command
 
 MAX_TABS = 7
 """Tabs at once: a station takes 8 screens, and one is left for a terminal."""
@@ -34,9 +34,12 @@ HEARTBEAT = 4.0
 """s between pings of a socket. A lost tab ends within 6 s; its screen was neutral 0.5 s after the loss."""
 
 SHUTDOWN = 1.0
-"""s for tabs that are open when the server ends."""
+"""s for the screens to end when the server ends, before they are killed."""
 
-DEFAULT_SIZE, DEFAULT_FONT = 80, 16
+DEFAULT_SIZE, DEFAULT_FONT = (80, 24), 16
+"""Columns and rows, and pixels of the letters, where the address does not say."""
+
+log = logging.getLogger("groundstation.web")
 
 ENTER = (
     '<!DOCTYPE html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=/"><title>mavhelm</title>'
@@ -49,12 +52,11 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class WebServer:
-    """One port, one station. `arguments` are those of `groundstation` for a tab."""
+    """One port, one station. `command` runs the screen of a tab in its terminal."""
 
-    def __init__(self, guard: Guard, arguments: Sequence[str]) -> None:
-        self._guard = guard
-        self._arguments = arguments
-        self._tabs = 0
+    def __init__(self, guard: Guard, command: Sequence[str], *, heartbeat: float = HEARTBEAT) -> None:
+        self._guard, self._command, self._heartbeat = guard, command, heartbeat
+        self._tabs: set[Tab] = set()
         self.door: Door | None = None
         """Bounds who has connected and asks nothing; None: nobody waits there."""
         self._page, self._script = (
@@ -66,9 +68,11 @@ class WebServer:
 
         @web.middleware
         async def check(request: web.Request, handler: Handler) -> web.StreamResponse:
+            if refused := self._refuse(request):
+                return refused
             if self.door is not None:
                 self.door.admit(request.transport)
-            return self._refuse(request) or await handler(request)
+            return await handler(request)
 
         app = web.Application(middlewares=[check])
         app.add_routes(
@@ -76,10 +80,11 @@ class WebServer:
                 web.get("/", self._show_page),
                 web.get("/page.js", self._show_script),
                 web.get(self._guard.socket_path, self._run_tab),
-                web.static("/static", str(files("textual_serve") / "static"), show_index=False),
+                web.static("/static", str(files("textual_serve") / "static")),
             ]
         )
         app.on_response_prepare.append(_add_headers)
+        app.on_shutdown.append(self._hang_up)
         return app
 
     def _refuse(self, request: web.Request) -> web.Response | None:
@@ -91,13 +96,17 @@ class WebServer:
             cookie=request.cookies.get(self._guard.cookie_name),
         )
         refusal = self._guard.refuse(asked)
-        return None if refusal is None else web.Response(status=refusal.status, text=f"{refusal.line}\n")
+        if refusal is None:
+            return None
+        response = web.Response(status=refusal.status, text=f"{refusal.line}\n")
+        response.force_close()  # who is refused keeps no connection
+        return response
 
     async def _show_page(self, request: web.Request) -> web.StreamResponse:
         if TOKEN in request.query:
             response = web.Response(text=ENTER, content_type="text/html")
             name = self._guard.cookie_name
-            response.set_cookie(name, self._guard.token, httponly=True, samesite="Strict", path="/")
+            response.set_cookie(name, self._guard.token, httponly=True, samesite="Strict")
             return response
         size = min(40, max(8, _number(request.query.get("fontsize"), DEFAULT_FONT)))
         page = self._page.replace("@HOST@", request.host).replace("@SIZE@", str(size))
@@ -108,21 +117,34 @@ class WebServer:
 
     async def _run_tab(self, request: web.Request) -> web.StreamResponse:
         """Run one screen as long as its socket is open, or until it ends."""
-        if self._tabs >= MAX_TABS:
+        if len(self._tabs) >= MAX_TABS:
             return web.Response(status=503, text=f"{MAX_TABS} tabs are open already\n")
-        sock = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=MAX_MESSAGE)
-        self._tabs += 1
+        columns, rows = DEFAULT_SIZE
+        size = (_number(request.query.get("width"), columns), _number(request.query.get("height"), rows))
+        try:
+            tab = Tab.open(self._command, size)
+        except OSError as error:
+            log.error("no screen for a tab: %s", error)
+            return web.Response(status=503, text=f"no screen: {error}\n")
+        sock = web.WebSocketResponse(heartbeat=self._heartbeat, max_msg_size=MAX_MESSAGE)
+        self._tabs.add(tab)
         try:
             await sock.prepare(request)
-            size = (_number(request.query.get("width"), DEFAULT_SIZE), _number(request.query.get("height"), 24))
-            tab = Tab.open(self._arguments, size)
-            try:
-                await _join(tab, sock)
-            finally:
-                await asyncio.shield(tab.close())
+            await _join(tab, sock)
         finally:
-            self._tabs -= 1
+            await asyncio.shield(tab.close())
+            self._tabs.remove(tab)
         return sock
+
+    async def _hang_up(self, app: web.Application) -> None:
+        """End the screens, so that each shows its end and closes its socket."""
+        for tab in self._tabs:
+            tab.hang_up()
+
+    def kill_screens(self) -> None:
+        """End those that are still there when the server has ended."""
+        for tab in self._tabs:
+            tab.kill()
 
 
 async def _join(tab: Tab, sock: web.WebSocketResponse) -> None:
@@ -146,12 +168,12 @@ async def _join(tab: Tab, sock: web.WebSocketResponse) -> None:
 
 def _take(tab: Tab, text: str) -> None:
     """Carry out a message of textual.js, a list of a name and a value. Any other text does nothing."""
-    with contextlib.suppress(ValueError, TypeError, KeyError, OverflowError, RecursionError):
-        name, value = (*json.loads(text), None)[:2]
-        if name == "stdin":
-            tab.type(str(value))
-        elif name == "resize":
-            tab.resize((int(value["width"]), int(value["height"])))
+    with contextlib.suppress(ValueError, TypeError, OverflowError, RecursionError):
+        match json.loads(text):
+            case ["stdin", str(keys)]:
+                tab.type(keys)
+            case ["resize", {"width": width, "height": height}]:
+                tab.resize((int(width), int(height)))
 
 
 def _number(text: str | None, default: int) -> int:
@@ -162,22 +184,32 @@ async def _add_headers(request: web.Request, response: web.StreamResponse) -> No
     response.headers.update(HEADERS)
 
 
-async def serve(sock: socket.socket, server: WebServer) -> None:
-    """Serve until standard input is closed: the program that has started this process has ended."""
-    app = server.build()
+async def serve(sock: socket.socket, server: WebServer, parent: int, *, within: float = REQUEST_WITHIN) -> None:
+    """Serve until the file descriptor `parent` is closed at its other end: the program that wants it has ended.
+
+    A request, and the next one of a connection, must arrive `within` s.
+    """
     runner = web.AppRunner(
-        app, access_log=None, shutdown_timeout=SHUTDOWN, keepalive_timeout=REQUEST_WITHIN, lingering_time=SHUTDOWN
+        server.build(),
+        access_log=None,
+        shutdown_timeout=SHUTDOWN,
+        keepalive_timeout=within,
+        lingering_time=0.0,  # no request here has a body
     )
     await runner.setup()
     assert runner.server is not None
-    server.door = Door(runner.server)
+    server.door = Door(runner.server, within=within)
     loop = asyncio.get_running_loop()
     listening = await loop.create_server(server.door, sock=sock)
     ended = asyncio.Event()
-    loop.add_reader(0, ended.set)
-    await ended.wait()
-    listening.close()
-    await runner.cleanup()
+    loop.add_reader(parent, ended.set)
+    try:
+        await ended.wait()
+    finally:
+        loop.remove_reader(parent)
+        listening.close()
+        await runner.cleanup()
+        server.kill_screens()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -186,11 +218,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--fd", type=int, required=True, help="the socket that listens")
     parser.add_argument("rest", nargs="*", help="arguments of `groundstation` for a tab")
     options: Any = parser.parse_args(arguments)
+    parent = sys.stdin.fileno()
+    token = os.read(parent, 256).decode().strip()
+    if not token:  # it has ended before it said one; an empty cookie must not be right
+        return 1
     sock = socket.socket(fileno=options.fd)
-    token = os.read(sys.stdin.fileno(), 256).decode().strip()
     for name in ("aiohttp.server", "asyncio"):
         logging.getLogger(name).addFilter(FewLines())
-    asyncio.run(serve(sock, WebServer(Guard(sock.getsockname()[1], token), options.rest)))
+    guard = Guard(sock.getsockname()[1], token)
+    asyncio.run(serve(sock, WebServer(guard, screen_command(options.rest)), parent))
     return 0
 
 

@@ -11,6 +11,7 @@ import contextlib
 import fcntl
 import os
 import pty
+import signal
 import struct
 import subprocess
 import sys
@@ -18,6 +19,11 @@ import termios
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 
 READ_SIZE = 1 << 16
+"""Bytes of output in one message."""
+
+MAX_UNREAD = 1 << 16
+"""Bytes of input that wait for the screen: one message of the largest size, as a pasted text. The kernel takes 4 to
+14 kB at once, and a paste whose end is lost would swallow keys."""
 
 END_WITHIN = 3.0
 """s for the screen to leave before it is killed: it is neutral at once, and needs 0.3 s."""
@@ -29,22 +35,28 @@ _OTHERS = ("TMUX", "TMUX_PANE", "STY", "COLUMNS", "LINES", "TERM_PROGRAM", "NO_C
 """Variables of the terminal in which the server was started, which is not that of the tab."""
 
 
+def screen_command(arguments: Sequence[str]) -> list[str]:
+    """Return the command that runs `groundstation` with these arguments in the terminal that is its standard input."""
+    return [sys.executable, "-P", "-m", "groundstation.web.controlling_terminal", *arguments]
+
+
 class Tab:
     """A screen in a pseudo-terminal."""
 
     def __init__(self, terminal: int, process: subprocess.Popen[bytes]) -> None:
         self._terminal = terminal
         self._process = process
+        self._unread = bytearray()
 
     @classmethod
-    def open(cls, arguments: Sequence[str], size: tuple[int, int]) -> Tab:
-        """Start `python -m groundstation` with these arguments. Raises OSError."""
+    def open(cls, command: Sequence[str], size: tuple[int, int]) -> Tab:
+        """Start a program in a terminal of this size. Raises OSError."""
         ours, theirs = pty.openpty()
         try:
             _set_size(ours, size)
             os.set_blocking(ours, False)
             process = subprocess.Popen(
-                [sys.executable, "-P", "-m", "groundstation.web.controlling_terminal", *arguments],
+                command,
                 stdin=theirs,
                 stdout=theirs,
                 stderr=theirs,
@@ -64,23 +76,47 @@ class Tab:
             await send(data)
 
     def type(self, text: str) -> None:
-        """Pass on what the browser sends: keys, and answers to pings. A screen that does not read gets nothing."""
-        with contextlib.suppress(OSError):
-            os.write(self._terminal, text.encode("utf-8", "ignore"))
+        """Pass on what the browser sends: keys, and answers to pings. Of a screen that does not read it is dropped."""
+        data = text.encode("utf-8", "ignore")
+        if len(self._unread) + len(data) <= MAX_UNREAD:
+            self._unread += data
+            self._write()
 
     def resize(self, size: tuple[int, int]) -> None:
         """Change the size in columns and rows."""
         with contextlib.suppress(OSError):
             _set_size(self._terminal, size)
 
-    async def close(self) -> None:
-        """Close the terminal, and wait for the end of the screen."""
+    def hang_up(self) -> None:
+        """Tell the screen that its terminal goes, as the end of a terminal does."""
+        self._process.send_signal(signal.SIGHUP)
+
+    def kill(self) -> None:
+        """End a screen that does not end by itself."""
+        self._process.kill()
+
+    async def close(self, within: float = END_WITHIN) -> None:
+        """Close the terminal, and wait for the end of the screen; kill it after `within` s."""
+        asyncio.get_running_loop().remove_writer(self._terminal)
         os.close(self._terminal)
         try:
-            async with asyncio.timeout(END_WITHIN):
+            async with asyncio.timeout(within):
                 await asyncio.to_thread(self._process.wait)
         except TimeoutError:
-            self._process.kill()
+            self.kill()
+
+    def _write(self) -> None:
+        """Write what the terminal takes now, and the rest when it takes more."""
+        loop = asyncio.get_running_loop()
+        loop.remove_writer(self._terminal)
+        try:
+            del self._unread[: os.write(self._terminal, self._unread)]
+        except BlockingIOError:
+            pass
+        except OSError:  # EIO: the screen has ended
+            return
+        if self._unread:
+            loop.add_writer(self._terminal, self._write)
 
     async def _read(self) -> bytes:
         """Return the next output, b"" at the end."""

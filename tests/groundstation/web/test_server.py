@@ -1,13 +1,27 @@
-"""What a tab may send: keys and sizes for the pseudo-terminal; anything else does nothing."""
+"""The web server in this process: who is let in, what a tab may send, and what ends when a tab or the server ends."""
 
 from __future__ import annotations
 
+import asyncio
 import json
+import re
 
 import pytest
 
 pytest.importorskip("aiohttp", reason="the extra [web] is not installed")
+import aiohttp
+
+from groundstation.web import server as serving
 from groundstation.web.server import _number, _take
+from tests.groundstation.screen import running
+from tests.groundstation.web.served import PATIENCE, TOKEN, Served, end_of, read_until, rest_of, served
+from tests.waits import until
+
+PAGES = ("/", "/page.js", "/static/js/textual.js", "/static/css/xterm.css")
+PASTE = (
+    "sh", "-c", "stty raw -echo; echo ready; head -c 60000 | tr -d x | wc -c; cat",
+)  # fmt: skip
+"""A program that counts what is not "x" among 60000 characters."""
 
 
 class Terminal:
@@ -23,6 +37,13 @@ class Terminal:
         self.got.append(size)
 
 
+@pytest.mark.parametrize(
+    ("name", "value"), [("MAX_TABS", 7), ("MAX_MESSAGE", 65_536), ("HEARTBEAT", 4.0), ("SHUTDOWN", 1.0)]
+)
+def test_a_bound_is_this_number(name: str, value: float) -> None:
+    assert getattr(serving, name) == value
+
+
 def test_keys_and_sizes_reach_the_terminal() -> None:
     terminal = Terminal()
     for message in (["stdin", "i"], ["resize", {"width": 100, "height": 30}], ["ping", "1"], ["focus"], ["blur"]):
@@ -35,6 +56,9 @@ def test_keys_and_sizes_reach_the_terminal() -> None:
     [
         "", "{}", "[]", "null", "1", '"stdin"', '["resize"]', '["resize", 3]', '["resize", {"width": "wide"}]',
         '["resize", {"width": Infinity, "height": 3}]', '["resize", {"width": NaN, "height": 3}]', "[" * 100_000,
+        '["resize", {"width": 30}]', '["resize", {"width": null, "height": 3}]', '["stdin"]', '["stdin", null]',
+        '["stdin", 1]', '["stdin", ["i"]]', '["stdin", "i", "k"]', '{"stdin": "i", "r": "r"}',
+        f'["resize", {{"width": {"9" * 5000}, "height": 3}}]',
     ],
 )  # fmt: skip
 def test_anything_else_does_nothing(text: str) -> None:
@@ -44,4 +68,316 @@ def test_anything_else_does_nothing(text: str) -> None:
 
 
 def test_numbers_of_an_address() -> None:
-    assert [_number(text, 80) for text in (None, "", "-1", "1e3", "\u0663", "999999", "100")] == [80] * 6 + [100]
+    texts = (None, "", "-1", "1e3", "\u0663", "999999", "100", "99999")
+    assert [_number(text, 80) for text in texts] == [80] * 6 + [100, 99999]
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({}, 200),
+        ({"Cookie": ""}, 401),
+        ({"Cookie": f"mavhelm-8000={TOKEN}"}, 401),
+        ({"Cookie": "mavhelm-{port}=wrong"}, 401),
+        ({"Cookie": "mavhelm-{port}="}, 401),
+        ({"Cookie": '\xff;;=;"; mavhelm-{port}'}, 401),
+        ({"Authorization": f"Bearer {TOKEN}", "Cookie": ""}, 401),
+        ({"Host": "localhost:{port}"}, 200),
+        ({"Host": "127.0.0.1"}, 403),
+        ({"Host": "evil.example:{port}"}, 403),
+        ({"Host": "[::1]:{port}"}, 403),
+        ({"Origin": "http://127.0.0.1:{port}"}, 200),
+        ({"Origin": "https://evil.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Host": "localhost:{port}", "Origin": "http://127.0.0.1:{port}"}, 403),
+        ({"X-Forwarded-Host": "evil.example"}, 200),
+    ],
+)
+async def test_who_is_let_in(headers: dict[str, str], status: int) -> None:
+    async with served() as server:
+        sent = {name: value.replace("{port}", str(server.port)) for name, value in headers.items()}
+        for page in PAGES:
+            found, text = await server.get(page, sent)
+            assert found == status, page
+            assert status == 200 or text in {
+                "no valid token: open the address that `groundstation serve --web` has printed\n",
+                f"wrong Host: open http://127.0.0.1:{server.port}\n",
+                "wrong Origin: only this server's own page may open it\n",
+            }
+
+
+@pytest.mark.parametrize(
+    ("path", "status"),
+    [
+        (f"/?token={TOKEN}", 200),
+        (f"/?token={TOKEN}&token=wrong", 200),
+        ("/?token=wrong", 401),
+        ("/?token=", 401),
+        (f"/?Token={TOKEN}", 401),
+        (f"//?token={TOKEN}", 401),
+        (f"/page.js?token={TOKEN}", 401),
+        (f"/ws?token={TOKEN}", 403),
+        ("/nothing", 401),
+        ("/static", 401),
+    ],
+)
+async def test_the_token_lets_in_at_the_first_address_only(path: str, status: int) -> None:
+    async with served() as server:
+        assert (await server.get(path, {"Cookie": ""}))[0] == status
+
+
+async def test_first_address_gives_a_cookie_and_leaves_the_token() -> None:
+    async with served() as server:
+        url = f"{server.base}/?token={TOKEN}"
+        async with server.browser.get(url, headers={"Host": f"127.0.0.1:{server.port}"}) as answer:
+            text, cookie = await answer.text(), answer.headers["Set-Cookie"]
+            assert answer.content_type == "text/html"
+        assert set(cookie.split("; ")) == {
+            f"mavhelm-{server.port}={TOKEN}", "HttpOnly", "Path=/", "SameSite=Strict",
+        }  # fmt: skip
+        assert 'content="0; url=/"' in text
+        assert TOKEN not in text
+
+
+@pytest.mark.parametrize(
+    ("path", "status", "kind"),
+    [
+        ("/", 200, "text/html"),
+        ("/page.js", 200, "text/javascript"),
+        ("/static/images/background.png", 200, "image/png"),
+        ("/static/css/xterm.css", 200, "text/css"),
+        ("/static", 403, "text/plain"),
+        ("/static/", 403, "text/plain"),
+        ("/static/js", 403, "text/plain"),
+        ("/static/%2e%2e/server.py", 404, "text/plain"),
+        ("/static/..%2fserver.py", 404, "text/plain"),
+        ("/static//etc/passwd", 404, "text/plain"),
+        ("/server.py", 404, "text/plain"),
+        ("/favicon.ico", 404, "text/plain"),
+    ],
+)
+async def test_the_browser_gets_its_own_files_and_no_other(path: str, status: int, kind: str) -> None:
+    async with served() as server:
+        reader = await server.connect(server.request(path, Connection="close"))
+        head, _, body = (await rest_of(reader)).partition(b"\r\n\r\n")
+        assert head.startswith(f"HTTP/1.1 {status} ".encode())
+        assert f"Content-Type: {kind}".encode() in head
+        assert b"Content-Security-Policy: default-src 'none'" in head
+        assert b"X-Content-Type-Options: nosniff" in head
+        assert b"Cache-Control: no-store" in head
+        assert TOKEN.encode() not in head + body
+
+
+@pytest.mark.parametrize(
+    ("query", "size"),
+    [("", 16), ("?fontsize=20", 20), ("?fontsize=0", 8), ("?fontsize=99", 40), ('?fontsize="><script>', 16)],
+)
+async def test_the_page_has_the_address_and_size_of_letters(query: str, size: int) -> None:
+    async with served() as server:
+        _, text = await server.get(f"/{query}")
+        assert f'ws://127.0.0.1:{server.port}/ws" data-font-size="{size}"' in text
+        assert "@" not in re.sub(r"@font-face", "", text)
+
+
+async def test_the_script_is_that_of_the_page() -> None:
+    async with served() as server:
+        assert "focusTerminal" in (await server.get("/page.js"))[1]
+
+
+@pytest.mark.parametrize(
+    ("request_line", "status"),
+    [
+        ("rubbish", 400),
+        ("\x16\x03\x01", 400),
+        ("GET / HTTP/9", 400),
+        ("GET /" + "a" * 10_000 + " HTTP/1.1", 400),
+        ("GET / HTTP/1.1\r\nCookie: " + "a" * 10_000, 400),
+        ("GET / HTTP/1.1\r\nHost: evil.example", 400),
+        ("GET / HTTP/1.1\r\nno colon", 400),
+        ("GET / HTTP/1.1\r\nContent-Length: 3\r\nTransfer-Encoding: chunked", 400),
+        ("POST / HTTP/1.1\r\nContent-Length: 0", 405),
+        ("GET http://evil.example/?token=x HTTP/1.1", 200),
+    ],
+)
+async def test_a_malformed_request_ends_its_connection_only(request_line: str, status: int) -> None:
+    async with served() as server:
+        own = "".join(f"{name}: {value}\r\n" for name, value in server.own.items())
+        reader = await server.connect(f"{request_line}\r\n{own}Connection: close\r\n\r\n")
+        assert (await rest_of(reader)).startswith(f"HTTP/1.1 {status} ".encode()) or status == 400
+        assert (await server.get("/"))[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Origin": "http://127.0.0.1:{port}"}, 101),
+        ({}, 403),
+        ({"Origin": "https://evil.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Origin": "http://127.0.0.1:{port}", "Cookie": ""}, 401),
+        ({"Origin": "http://127.0.0.1:{port}", "Host": "evil.example:{port}"}, 403),
+        ({"Origin": "http://127.0.0.1:{port}", "Sec-WebSocket-Version": "12"}, 400),
+        ({"Origin": "http://127.0.0.1:{port}", "Sec-WebSocket-Key": "short"}, 400),
+        ({"Origin": "http://127.0.0.1:{port}", "Upgrade": "other"}, 400),
+    ],
+)
+async def test_who_may_open_a_tab(headers: dict[str, str], status: int) -> None:
+    async with served() as server:
+        sent = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13"}
+        sent |= {"Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA=="}
+        sent |= {name: value.replace("{port}", str(server.port)) for name, value in headers.items()}
+        for _ in range(8 if status != 101 else 1):  # who is refused takes no place
+            reader = await server.connect(server.request("/ws", **sent))
+            assert (await reader.readline()).startswith(f"HTTP/1.1 {status} ".encode())
+        tab = await server.tab()
+        await read_until(tab, "ready")
+
+
+@pytest.mark.parametrize(
+    ("query", "size"),
+    [
+        ("", "24 80"), ("?width=100&height=30", "30 100"), ("?width=1&height=1", "5 20"), ("?width=x&height=", "24 80"),
+        ("?width=99999&height=99999", "200 500"),
+    ],
+)  # fmt: skip
+async def test_a_tab_has_its_size_and_passes_both_ways(query: str, size: str) -> None:
+    async with served() as server:
+        tab = await server.tab(query)
+        await tab.send_bytes(b'["stdin", "no keys\\r"]')
+        await tab.send_json(["stdin", "häh\r"])
+        drawn = await read_until(tab, size)
+        assert "got häh" in drawn
+        assert "no keys" not in drawn
+        await tab.send_json(["resize", {"width": 90, "height": 25}])
+        await tab.send_json(["stdin", "\r"])
+        await read_until(tab, "25 90")
+
+
+async def test_the_end_of_the_screen_ends_the_tab() -> None:
+    async with served("sh", "-c", "echo bye") as server:
+        tab = await server.tab()
+        await read_until(tab, "bye")
+        assert await end_of(tab) == 1000
+
+
+@pytest.mark.parametrize("how", ["close", "abort"])
+async def test_the_end_of_a_tab_ends_its_screen(how: str) -> None:
+    async with served("sh", "-c", "echo pid=$$.; exec cat") as server:
+        tab = await server.tab()
+        pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
+        assert running(pid)
+        if how == "close":
+            await tab.close()
+        else:
+            connection = tab._response.connection
+            assert connection is not None
+            assert connection.transport is not None
+            connection.transport.abort()
+        await until(lambda: not running(pid))
+
+
+async def next_tab(server: Served) -> aiohttp.ClientWebSocketResponse:
+    """Open a tab as soon as there is a place."""
+    async with asyncio.timeout(PATIENCE):
+        while True:
+            try:
+                return await server.tab()
+            except aiohttp.WSServerHandshakeError:
+                await asyncio.sleep(0)
+
+
+async def test_seven_tabs_at_once_and_another_after_one_ends() -> None:
+    async with served() as server:
+        tabs = [await server.tab() for _ in range(7)]
+        with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+            await server.tab()
+        assert refused.value.status == 503
+        assert (await server.get("/ws", {"Origin": server.base})) == (503, "7 tabs are open already\n")
+        for number, each in enumerate(tabs):
+            await each.send_json(["stdin", f"tab {number}\r"])
+            await read_until(each, f"got tab {number}")
+        for each in tabs[:2]:
+            await each.send_json(["stdin", "\x04"])
+            assert await end_of(each) == 1000
+        tabs[:2] = [await next_tab(server), await next_tab(server)]
+        with pytest.raises(aiohttp.WSServerHandshakeError):
+            await server.tab()
+
+
+async def test_a_pasted_text_arrives_whole() -> None:
+    async with served(*PASTE) as server:
+        tab = await server.tab()
+        await read_until(tab, "ready")
+        await tab.send_json(["stdin", "x" * 59_000 + "y" * 1000])
+        await read_until(tab, "1000")
+
+
+@pytest.mark.parametrize(("size", "code"), [(60_000, None), (70_000, 1009)])
+async def test_a_message_has_65536_bytes_at_most(size: int, code: int | None) -> None:
+    async with served() as server:
+        tab = await server.tab()
+        await read_until(tab, "ready")
+        await tab.send_str("x" * size)
+        if code is not None:
+            assert await end_of(tab) == code
+            tab = await server.tab()
+        await tab.send_json(["stdin", "here\r"])
+        await read_until(tab, "got here")
+
+
+async def test_a_tab_that_answers_no_ping_ends() -> None:
+    async with served("sh", "-c", "echo pid=$$.; exec cat", heartbeat=0.2) as server:
+        tab = await server.tab(autoping=False)
+        pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
+        async with asyncio.timeout(PATIENCE):
+            while (await tab.receive()).type != aiohttp.WSMsgType.PING:
+                pass
+        await until(lambda: not running(pid))
+
+
+async def test_a_tab_that_answers_pings_goes_on() -> None:
+    async with served(heartbeat=0.05) as server:
+        tab = await server.tab()
+        for count in range(20):
+            await tab.send_json(["stdin", f"{count}.\r"])
+            await read_until(tab, f"got {count}.")
+
+
+async def test_a_screen_that_cannot_start_takes_no_place(caplog: pytest.LogCaptureFixture) -> None:
+    async with served("/no/such/program") as server:
+        for _ in range(8):
+            status, text = await server.get("/ws", {"Origin": server.base})
+            assert (status, text) == (503, "no screen: [Errno 2] No such file or directory: '/no/such/program'\n")
+    assert caplog.messages == ["no screen for a tab: [Errno 2] No such file or directory: '/no/such/program'"] * 8
+
+
+async def test_the_end_of_the_program_that_wants_it_ends_all() -> None:
+    async with served("sh", "-c", "echo pid=$$.; exec cat") as server:
+        tab = await server.tab()
+        pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
+        assert not server.task.done()
+        server.end_parent()
+        assert await end_of(tab) == 1000
+        async with asyncio.timeout(PATIENCE):
+            await server.task
+        assert not running(pid)
+        with pytest.raises(ConnectionRefusedError):
+            await server.connect()
+
+
+async def test_a_screen_that_ignores_the_end_is_killed() -> None:
+    async with served("sh", "-c", "trap '' HUP; echo pid=$$.; exec sleep 600", apart=True) as server:
+        tab = await server.tab()
+        pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
+        server.end_parent()
+        async with asyncio.timeout(PATIENCE):
+            await server.task
+        await until(lambda: not running(pid))
+
+
+async def test_a_tab_ends_also_when_the_browser_does_not_read() -> None:
+    """What is drawn then waits in the terminal, and the screen notices."""
+    async with served("sh", "-c", "echo pid=$$.; exec yes", heartbeat=0.2) as server:
+        tab = await server.tab(autoping=False)
+        pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
+        await until(lambda: not running(pid))
