@@ -43,7 +43,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "link/fleet/rights": _ROLE_TESTS,
     "groundstation/watchdog": ("tests/groundstation/watchdog", "tests/test_bounds.py"),
     "groundstation/input": ("tests/groundstation/input", *_STICK_TESTS, "tests/test_bounds.py"),
-    "groundstation/web/guard.py": ("tests/groundstation/web/test_guard.py",),
+    "groundstation/web": ("tests/groundstation/web", "tests/test_bounds.py"),
     "groundstation/station_socket": ("tests/groundstation/station_socket", "tests/test_bounds.py"),
 }
 """Folders and modules to mutate: those that decide whether the wheels turn, which frames count and who gets in -> tests

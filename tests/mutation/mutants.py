@@ -163,7 +163,7 @@ def _scope(parents: tuple[ast.AST, ...], field: str) -> str | None:
     for at, node in enumerate(parents):
         if isinstance(node, ast.ClassDef):
             names.append(node.name)
-        if isinstance(node, ast.FunctionDef):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             inner = parents[at + 1] if at + 1 < len(parents) else None
             in_body = field == "body" if inner is None else inner in node.body
             return ".".join([*names, node.name]) if in_body else None
