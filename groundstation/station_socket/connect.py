@@ -76,7 +76,7 @@ def _open(path: Path, within: float) -> socket.socket | None:
     # Only the kernel waits for room in the queue: with a timeout of Python, connect() returns EAGAIN at once
     wait = divmod(round(within * 1_000_000), 1_000_000)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _TIMEVAL.pack(*wait))
-    sock.setblocking(within > 0.0)
+    sock.setblocking(bool(within))
     try:
         with socket_address(path) as address:
             sock.connect(address)

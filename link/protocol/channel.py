@@ -28,7 +28,7 @@ from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, find_mismatches, noise_hint, sum_counts
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
-from link.protocol.peer import ONE, TWO, PeerState, count_sources, find_signing, find_version_1
+from link.protocol.peer import ONE, PeerState, count_sources, find_signing, find_version_1
 from link.protocol.peer_table import MAX_PEERS, PeerTable
 from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
@@ -315,9 +315,9 @@ class Channel:
         """
         message = outgoing.message
         number = type(message).id
-        payload = codec.encode_payload(message) if payload is None else payload
+        payload, target = codec.encode_payload(message) if payload is None else payload, target_system(message)
         for state in self._peers.recipients(outgoing):
-            for version in TWO if state.is_modern else state.versions(number, target_system(message)):
+            for version in state.versions(number, target):
                 if self.may_send(number, len(payload) + self._around(state), state.peer.address):
                     sequence = state.sequence
                     yield self._build(number, payload, state, now, version), state.peer.address, sequence
