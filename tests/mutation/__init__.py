@@ -20,7 +20,8 @@ How a run works:
    fails or the time for this mutant is over. For a line that only a process executes which a test forks, it runs the
    module's own test file.
 3. For a change at module level (tables, defaults, constants), the child imports vehicle/, link/, groundstation/ and
-   tests/ anew and runs the test files one after the other, the module's own first and in any case.
+   tests/ anew and runs the test files one after the other, the module's own first, that and tests/test_bounds.py in any
+   case.
 
 Tests that start programs (`DESELECTED`) run unchanged code in them and notice no mutant. What only they test is not run
 here: the entry and files of keys (`NOT_RUN`).
