@@ -19,7 +19,6 @@ from tests.mutation.loading import Functions, find_functions, replace_function, 
 from tests.mutation.mutants import Mutant, unchanged
 from tests.mutation.results import Outcome, Result
 
-
 BOUNDS = "tests/test_bounds.py"
 """Test file with constants as numbers: it imports much, so that it would seldom have room."""
 
