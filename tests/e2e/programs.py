@@ -116,7 +116,13 @@ class GroundStation:
     """`python -m groundstation` in a pty of its own session, as a terminal window gives it."""
 
     def __init__(
-        self, folder: Path, *arguments: str, columns: int = 80, lines: int = 24, module: str = "groundstation"
+        self,
+        folder: Path,
+        *arguments: str,
+        columns: int = 80,
+        lines: int = 24,
+        term: str = "xterm-256color",
+        module: str = "groundstation",
     ) -> None:
         """`module`: another one that runs it, with something plugged in."""
         self.screen = b""
@@ -130,7 +136,7 @@ class GroundStation:
             stderr=program,
             start_new_session=True,
             preexec_fn=_own_terminal,
-            env={**os.environ, "TERM": "xterm-256color", "COLUMNS": str(columns), "LINES": str(lines)},
+            env={**os.environ, "TERM": term, "COLUMNS": str(columns), "LINES": str(lines)},
         )
         os.close(program)
 

@@ -15,16 +15,21 @@ pytestmark = pytest.mark.e2e
 
 
 @pytest.mark.parametrize(
-    ("locale", "options", "ascii_only"),
-    [("C.UTF-8", (), False), ("C.UTF-8", ("--ascii",), True), ("C", (), True), ("C", ("--no-ascii",), False)],
+    ("locale", "options", "ascii_only", "term"),
+    [
+        ("C.UTF-8", (), False, "xterm-256color"),
+        ("C.UTF-8", ("--ascii",), True, "xterm-256color"),
+        ("C", (), True, "vt100"),
+        ("C", ("--no-ascii",), False, "cygwin"),
+    ],
 )
 def test_the_terminal_gets_only_what_it_shows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, locale: str, options: tuple[str, ...], ascii_only: bool
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, locale: str, options: tuple[str, ...], ascii_only: bool, term: str
 ) -> None:
     for name in ("LC_ALL", "LC_CTYPE", "PYTHONUTF8"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("LANG", locale)
-    station = GroundStation(tmp_path, f"udpin:127.0.0.1:{free_port()}", *options)
+    station = GroundStation(tmp_path, f"udpin:127.0.0.1:{free_port()}", *options, term=term)
     try:
         station.wait_for(lambda: b"shows the keys" in station.screen, PATIENCE, "the first page")
         station.type("\x11")

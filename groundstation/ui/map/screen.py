@@ -103,7 +103,7 @@ class MapScreen(ConsoleScreen):
             return status
         if edited.count:
             return f"{edited.text}, not on the vehicle: U uploads · u undoes"
-        return self._drive.advice or "arrows move the cursor · a adds an item there · TAB goes on to the table"
+        return self._drive.advice or "arrows, with Shift by ten, move the cursor · a adds an item · TAB: the table"
 
     # ---- keys ----
 
