@@ -21,6 +21,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.ports import free_port
+
 pytestmark = pytest.mark.e2e
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -212,6 +214,23 @@ def test_command_lines_of_the_bridge(words: str, names: list[str], tmp_path: Pat
     assert_one_line(run(["link.bridge", *words.split()], tmp_path), "bridge", *names)
 
 
+@pytest.mark.parametrize(
+    ("scheme", "names"),
+    [
+        ("tcpout:127.0.0.1:{port}", ["not connected (Connection refused)"]),
+        ("udpout:127.0.0.1:{port}", ["refused: nothing listens there"]),
+        ("udpin:127.0.0.1:{port}", ["nothing arrives; a vehicle must send to UDP port {port} of this computer"]),
+        ("serial:/dev/ttyUSB{port}:57600", ["waiting for /dev/ttyUSB{port}, it is not there; is it plugged in?"]),
+    ],
+)
+def test_a_verb_says_why_it_hears_no_vehicle(scheme: str, names: list[str], tmp_path: Path) -> None:
+    port = free_port()
+    endpoint = scheme.format(port=port)
+    result = run(["groundstation", "status", "--wait", "2", "-e", endpoint], tmp_path)
+    says = [name.format(port=port) for name in names]
+    assert_one_line(result, "groundstation", f"no vehicle on {endpoint} within 2 s", *says, code=3)
+
+
 def test_a_terminal_that_cannot_place_text(tmp_path: Path) -> None:
     result = run_in_terminal(["groundstation", "udpin:127.0.0.1:14999"], tmp_path, term="dumb")
     assert_one_line(result, "groundstation", "TERM=dumb", "run groundstation in a terminal such as xterm or tmux")
@@ -222,8 +241,8 @@ def test_not_a_terminal(tmp_path: Path) -> None:
 
 
 def test_a_terminal_that_is_too_small(tmp_path: Path) -> None:
-    result = run_in_terminal(["groundstation", "udpin:127.0.0.1:14999"], tmp_path, size=(30, 8))
-    assert_one_line(result, "groundstation", "30x8", "80x24")
+    result = run_in_terminal(["groundstation", "udpin:127.0.0.1:14999"], tmp_path, size=(38, 9))
+    assert_one_line(result, "groundstation", "38x9", "at least 40x10, better 80x24")
 
 
 def test_a_key_map_that_is_no_toml(tmp_path: Path) -> None:
