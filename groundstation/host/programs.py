@@ -10,13 +10,14 @@ from collections.abc import Callable
 from groundstation.host.about import answer_about
 from groundstation.host.listener import Caller, ProgramListener
 from groundstation.host.names import answer_names
+from groundstation.host.run_port import RunPort
 from groundstation.host.screens import ScreenSet
 from groundstation.host.verb_port import VerbPort
 from groundstation.ipc import protocol_version
 from groundstation.station.station import Station
-from groundstation.station_socket import about, names, relay
+from groundstation.station_socket import about, names, verb_run
 from groundstation.station_socket.hello import ABOUT, NAMES, SCREEN, VERB, Hello
-from groundstation.station_socket.relay import VerbReady
+from groundstation.station_socket.verb_run import VerbReady
 
 
 class VerbSet:
@@ -26,13 +27,17 @@ class VerbSet:
         self._station = station
         self._ids = ids
         self._flush = flush
-        self._ports: set[VerbPort] = set()
+        self._ports: set[VerbPort | RunPort] = set()
 
     def add(self, sock: socket.socket, name: str, hello: Hello) -> None:
         """Take a verb; the loop runs."""
         station = self._station
         follows = hello.follows and station.relay.may_follow(asyncio.get_running_loop().time())
-        port = VerbPort(sock, station.relay, (name, hello.takes_part, follows), self._flush, self._remove)
+        port: VerbPort | RunPort
+        if hello.runs_here:
+            port = RunPort(sock, station, name, self._flush, self._remove, follows=follows)
+        else:
+            port = VerbPort(sock, station.relay, (name, hello.takes_part, follows), self._flush, self._remove)
         self._ports.add(port)
         port.start(VerbReady(*self._ids, station.operator.session, station.surroundings.endpoints, follows))
 
@@ -41,7 +46,7 @@ class VerbSet:
         for port in list(self._ports):
             self._remove(port)
 
-    def _remove(self, port: VerbPort) -> None:
+    def _remove(self, port: VerbPort | RunPort) -> None:
         self._ports.discard(port)
         port.close()
         self._flush()
@@ -81,7 +86,7 @@ class ProgramSet:
         hello = caller.hello
         if self._ending:
             return "this station ends"
-        versions = {SCREEN: self._screen_version, VERB: relay.VERSION, NAMES: names.VERSION,
+        versions = {SCREEN: self._screen_version, VERB: verb_run.VERSION, NAMES: names.VERSION,
                     ABOUT: about.VERSION}  # fmt: skip
         if hello.version != versions.get(hello.kind):
             return f"this station (pid {os.getpid()}) has another version: end it and start it again"

@@ -18,16 +18,15 @@ from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.relay import (
     BATCH,
     MAX_RELAYED,
-    Alive,
     DemandRefused,
     Heard,
     HeardMessage,
     LinksReport,
     MessageRefused,
-    VerbReady,
     decode_from_verb,
     encode,
 )
+from groundstation.station_socket.verb_run import Alive, VerbReady
 from link.core import LinkReport, Received
 from link.transport.receive_buffer import ReceiveBuffer
 

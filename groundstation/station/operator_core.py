@@ -63,13 +63,16 @@ class OperatorCore:
         if not reading:
             self._links.receive(received, now)
             self._commander.blind_stops.receive(received)
-        self.relay.receive(received, now)
         contact = self.fleet.get_or_add(received, now)
         if contact is not None and self._commander.blind_stops:
             self._commander.stop_late(contact.state, now)
         self._listener.hear(received, contact, now)
-        if contact is None:
-            return
+        if contact is not None:
+            self._receive_known(contact, received, now, reading=reading)
+        self.relay.receive(received, now)  # last: a verb that runs here sees what the others have made of it
+
+    def _receive_known(self, contact: Contact, received: Received, now: float, *, reading: bool) -> None:
+        """Handle a message of a vehicle, or of another component of its system."""
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         contact.details.receive(received, now)
@@ -114,6 +117,7 @@ class OperatorCore:
         self.relay.tick(now)
         if self.operator.live:
             self._queries.tick(now)
+        if self._uses_services:
             self.services.tick(now)
         permission = self.driving.judge(now)
         if self.operator.live and not self.driving.ending:
@@ -227,8 +231,13 @@ class OperatorCore:
             + self._listener.messages_to_send()
             + self._timesync.messages_to_send()
             + outbox
-            + (services if self.operator.live else [])
+            + (services if self._uses_services else [])
         )
+
+    @property
+    def _uses_services(self) -> bool:
+        """Whether somebody is there for whom requests are repeated: a screen, or a verb that runs here."""
+        return self.operator.live or self.relay.uses_services
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""

@@ -9,10 +9,8 @@ from __future__ import annotations
 import msgspec
 
 from groundstation.station_socket.hello import StationFailed
+from groundstation.station_socket.verb_run import Alive, VerbReady
 from link.core import LinkReport
-
-VERSION = 4
-"""Of the packets below."""
 
 MAX_RELAYED = 1 << 16
 """Bytes of the largest packet."""
@@ -20,28 +18,9 @@ MAX_RELAYED = 1 << 16
 BATCH = 100
 """Messages in one packet at most: 28 kB."""
 
-ALIVE_PERIOD = 0.1
-"""s between packets of a verb at least, as of a screen."""
-
-ALIVE_WITHIN = 0.3
-"""s without a packet after which a verb that demands motion counts as dead."""
-
-
 KEEP = 30.0
 """s after the end of a verb for which the next one has its session: our vehicle disarms when nobody has driven it for
 that time (FS_DISARM_T)."""
-
-
-class VerbReady(msgspec.Struct, frozen=True, tag=True):
-    """From the station, first."""
-
-    system: int
-    component: int
-    """The ids of the station, which are those of the verb from now on."""
-    session: int
-    endpoints: tuple[str, ...]
-    follows: bool = False
-    """The verb may prove the session, which a verb has used just before."""
 
 
 class HeardMessage(msgspec.Struct, frozen=True, array_like=True):
@@ -88,10 +67,6 @@ class MessageRefused(msgspec.Struct, frozen=True, tag=True):
     payload: bytes
     why: str
     """One line for the user."""
-
-
-class Alive(msgspec.Struct, frozen=True, tag=True):
-    """From the station: the answer to a packet without messages. A station that hangs does not send it."""
 
 
 class ToSend(msgspec.Struct, frozen=True):

@@ -29,6 +29,8 @@ class VerbAction(msgspec.Struct, frozen=True):
     """Needs neither vehicle nor link: `run` gets None. It has its own arguments, --dialect, --json and --quiet."""
     examines: bool = False
     """`run` gets a DoctorSession: an OperatorCore with the doctor. It finds its vehicle itself."""
+    own_process: bool = False
+    """Runs in its own process also where a station runs: it drives, or has files or programs of this machine."""
     finds: bool = True
     """Waits for the vehicle before it runs."""
     many: bool = False

@@ -21,19 +21,19 @@ from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
 from groundstation.formats.errors import FileFormatError
 from groundstation.station_socket.about import explain_taken
 from groundstation.station_socket.hello import HELLO_WITHIN, VERB, Hello
-from groundstation.station_socket.relay import VERSION
+from groundstation.station_socket.verb_run import VERSION
 from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.common.later import LaterModule
 from groundstation.verbs.common.output import Output
+from groundstation.verbs.performing import perform
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.identity import choose_identity
-from groundstation.verbs.session.kept_session import KeptSession
 from groundstation.verbs.session.session import VerbSession, run_session
-from groundstation.verbs.session.station_link import AUTO, StationLink, find_station, station_choice
+from groundstation.verbs.session.station_choice import AUTO, StationLink, find_station, station_choice
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
+from groundstation.verbs.session.verb_client import VerbClient
 from groundstation.verbs.table import VERBS
 from link.endpoint import EndpointError
 from link.runtime import stdio
@@ -45,8 +45,6 @@ if TYPE_CHECKING:
     from groundstation.verbs.session.demand_guard import DemandGuard
     from groundstation.verbs.session.doctor_session import DoctorSession
     from link.signing_keeper import SigningKeeper
-
-many = LaterModule("many")
 
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
@@ -80,11 +78,8 @@ def run(arguments: Sequence[str]) -> int:
     caught: list[int] = []
     try:
         use_dialect(options.dialect)
-        action = VERBS[arguments[0]][options.action]
-        if action.check is not None:
-            action.check(options)
-        if action.only_reads(options):
-            action = replace(action, watches=True, takes_part=False, shows_neutral=False)
+        action = choose_action(arguments[0], options)
+        options.words = tuple(arguments)
         group = choose_group(output.verb, action, options)
         code = run_loop(
             _run_offline(action, options, output, caught)
@@ -104,6 +99,16 @@ def run(arguments: Sequence[str]) -> int:
     except OSError as error:  # of the output: full, or closed by its reader
         return stdio.end_output(error, lambda reason: output.error(f"output: {reason}"))
     return code
+
+
+def choose_action(verb: str, options: argparse.Namespace) -> VerbAction:
+    """Return the action that the options name, and check them. Raises VerbError, FileFormatError, ConfigError."""
+    action = VERBS[verb][options.action]
+    if action.check is not None:
+        action.check(options)
+    if action.only_reads(options):
+        action = replace(action, watches=True, takes_part=False, shows_neutral=False)
+    return action
 
 
 async def _run_offline(action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int]) -> int:
@@ -140,8 +145,26 @@ async def _run_once(
     through: str,
     patience: float = math.inf,
 ) -> int:
-    """Do so once, by a station or by links of its own. A station may be silent for `patience` s."""
+    """Do so once, in a station, or in this process. A station may be silent for `patience` s."""
     station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))
+    if station is not None and _runs_in_station(action, options):
+        ended = await VerbClient(station, output, patience).run(options.words, group)
+        if options.endpoints and ended.vehicle:
+            remember(endpoints, ended.vehicle)
+        return ended.code
+    return await _run_here(action, options, output, group, station, endpoints, patience)
+
+
+async def _run_here(
+    action: VerbAction,
+    options: argparse.Namespace,
+    output: Output,
+    group: VehicleGroup | None,
+    station: StationLink | None,
+    endpoints: Sequence[str],
+    patience: float,
+) -> int:
+    """Run the action in this process, with links of its own, or with those of a station."""
     ids, kept = choose_identity(action, options, station)
     tap = action.tap(options, ids)
     own = station is None and not action.examines and not getattr(options, "unsigned", False)
@@ -149,15 +172,13 @@ async def _run_once(
     guarded = station is None and action.guarded(options)
     guard = _start_guard(ids, signing) if guarded else None  # before the links are open
 
+    def found(name: str) -> None:
+        if options.endpoints:
+            remember(endpoints, name)
+
     async def script(session: VerbSession) -> int:
-        if group is not None:
-            return await _run_for_group(session, action, options, output, group, " ".join(endpoints))
         session.where = " ".join(endpoints)
-        await _prepare(session, action, options, session.where)
-        _keep(session, kept, output)
-        if action.finds and options.endpoints:
-            remember(endpoints, session.vehicle.name)
-        return await action.run(session, options, output)
+        return await perform(session, action, options, output, group, kept, found)
 
     async def alone(session: DoctorSession) -> int:
         return await action.run(session, options, output)
@@ -189,27 +210,9 @@ async def _run_once(
             guard.close()
 
 
-async def _run_for_group(
-    session: VerbSession,
-    action: VerbAction,
-    options: argparse.Namespace,
-    output: Output,
-    group: VehicleGroup,
-    where: str,
-) -> int:
-    session.where = where
-    if action.stops:
-        from groundstation.verbs.control.stops import stop_unheard
-
-        systems = group.listed or ((0,) if options.all else ())
-        sending = asyncio.ensure_future(stop_unheard(session, output.verb, systems))
-    try:
-        await session.find_vehicle(options.wait, None, where)
-        code: int = await many.ManyVehicles(session, action, options, group, output).run()
-        return code
-    finally:
-        if action.stops:
-            sending.cancel()
+def _runs_in_station(action: VerbAction, options: argparse.Namespace) -> bool:
+    """Return whether a station that is there runs the verb; it has a dialect of its own."""
+    return not action.own_process and options.dialect is None
 
 
 def _find_way(
@@ -221,7 +224,14 @@ def _find_way(
         return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note, reserved=VERBS)
 
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
-    hello = Hello(VERB, VERSION, f"groundstation {output.verb}", takes_part=not action.watches, follows=action.follows)
+    hello = Hello(
+        VERB,
+        VERSION,
+        f"groundstation {output.verb}",
+        takes_part=not action.watches,
+        follows=action.follows,
+        runs_here=_runs_in_station(action, options),
+    )
     station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
         return station, station.ready.endpoints
@@ -242,30 +252,6 @@ def _start_guard(ids: tuple[int, int], signing: SigningKeeper | None) -> DemandG
     from groundstation.verbs.session.demand_guard import DemandGuard
 
     return DemandGuard(ids, signing.signing if signing else None)
-
-
-def _keep(session: VerbSession, kept: KeptSession, output: Output) -> None:
-    """Prove the session of the verb before if this one follows it, so that the vehicle misses no ground station."""
-    if not kept.follows or session.core.chosen is None:
-        return
-    contact = session.contact
-    contact.operator.may_prove = kept.may_prove
-    contact.operator.begin(session.now)
-
-    def tell(_: asyncio.Future[None]) -> None:
-        output.note(f"{contact.state.name} is controlled by the verb before; this one keeps its session")
-
-    session.core.add_look(lambda: contact.in_control).add_done_callback(tell)
-
-
-async def _prepare(session: VerbSession, action: VerbAction, options: argparse.Namespace, where: str) -> None:
-    """Do what the action needs before it runs."""
-    if action.finds:
-        await session.find_vehicle(options.wait, options.vehicle, where)
-    if action.takes_part:
-        await session.take_part()
-    if action.shows_neutral:
-        await session.show_neutral()
 
 
 def _cancel_on_signals(caught: list[int]) -> None:

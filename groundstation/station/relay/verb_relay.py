@@ -23,7 +23,8 @@ from dialects.messages import INVALID_AXIS
 from dialects.traits import ACKED
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
-from groundstation.station_socket.relay import ALIVE_WITHIN, KEEP
+from groundstation.station_socket.relay import KEEP
+from groundstation.station_socket.verb_run import ALIVE_WITHIN
 from groundstation.vehicles.demand.demand_neutrals import DEMANDS
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -61,6 +62,10 @@ class Verb(msgspec.Struct, eq=False):
     """Why no more demands are taken."""
     tell_refusal: Callable[[m.Message, str], None] = lambda message, why: None
     """Takes a message of the verb that our role does not allow, and why."""
+    runs_here: bool = False
+    """It runs in this process, and uses the services of the station."""
+    tick: Callable[[float], None] = lambda now: None
+    """Of a verb that runs here."""
 
 
 class _Ending(msgspec.Struct):
@@ -127,7 +132,7 @@ class VerbRelay:
                 self._newest.clear()
             peer = received.peer if number == m.Heartbeat.id else None
             self._newest[received.system, received.component, number, peer] = (received, now)
-        for verb in self._verbs:
+        for verb in list(self._verbs):
             verb.deliver((received,))
         if isinstance(received.message, m.CommandAck):
             self._note_arming(received.message, received.system, now)
@@ -183,7 +188,8 @@ class VerbRelay:
         screen = self.screen_that_drives()
         if self._operator.live:
             self._used_at = -math.inf
-        for verb in self._verbs:
+        for verb in list(self._verbs):
+            verb.tick(now)
             verb.follows &= not self._operator.live
             self._check_silence(verb, now)
             if screen is not None and verb.demands:
@@ -208,6 +214,11 @@ class VerbRelay:
     def busy(self) -> bool:
         """Whether a verb is connected, or what one demanded is being ended."""
         return bool(self._verbs or self._endings)
+
+    @property
+    def uses_services(self) -> bool:
+        """Whether a verb runs here, so that the services of vehicles are used although no screen is there."""
+        return any(verb.runs_here for verb in self._verbs)
 
     @property
     def finished(self) -> bool:

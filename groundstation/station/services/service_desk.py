@@ -81,8 +81,8 @@ class ServiceDesk:
         self._service_of: dict[int, str] = {}
         """Number of a request -> name of its service."""
         self._ended: dict[str, deque[RequestLine]] = {}
-        self._awaited: dict[int, Callable[[RequestReport], None]] = {}
-        """Number of a request -> what is reported of its end."""
+        self._followed: dict[int, Callable[[RequestReport], None]] = {}
+        """Number of a request -> what gets its reports."""
 
     # ---- requests ----
 
@@ -216,9 +216,9 @@ class ServiceDesk:
             contact.services.note_state(contact.state)
         return contact.services
 
-    def await_end(self, number: int, tell: Callable[[RequestReport], None]) -> None:
-        """Call `tell` when the request with this number has ended, in place of keeping its report for screens."""
-        self._awaited[number] = tell
+    def follow(self, number: int, tell: Callable[[RequestReport], None]) -> None:
+        """Call `tell` with each report of a request up to its end, in place of keeping the last one for screens."""
+        self._followed[number] = tell
 
     def collect(self, now: float) -> None:
         """Log what has ended."""
@@ -228,11 +228,13 @@ class ServiceDesk:
             for report in contact.services.pop_reports(now):
                 if report.state.ended:
                     self._end(report, contact.state.system, contact.state.name, now)
+                elif (tell := self._followed.get(report.number)) is not None:
+                    tell(report)
 
     def _end(self, report: RequestReport, system: int, name: str, now: float) -> None:
         severity = _SEVERITIES.get(report.state, Severity.INFO)
         self._log.add(now, "ack", f"{name}: {report.text}", severity, origin=LogOrigin(system))
-        if (tell := self._awaited.pop(report.number, None)) is not None:
+        if (tell := self._followed.pop(report.number, None)) is not None:
             tell(report)
         elif report.number >= 0:
             line = self._line(report, system)

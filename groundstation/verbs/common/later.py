@@ -38,6 +38,21 @@ class LaterModule:
         return LaterName(self._name, name)
 
 
+class LaterResult:
+    """What a function of the table makes of its arguments, once it is called."""
+
+    def __init__(self, factory: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+        self._factory, self._arguments = factory, arguments
+
+    def resolve(self) -> Any:
+        """Import the module of the factory, and return what it makes. Raises ImportError, AttributeError."""
+        return self._factory(*self._arguments)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it."""
+        return self.resolve()(*arguments)
+
+
 def made(factory: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
     """Return the function that `factory` makes of the arguments; it is made when it is called."""
-    return lambda *rest: factory(*arguments)(*rest)
+    return LaterResult(factory, arguments)

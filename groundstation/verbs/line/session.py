@@ -116,7 +116,7 @@ class LineSession:
         """Make a request and return how it ended."""
         ended: asyncio.Future[RequestReport] = asyncio.get_running_loop().create_future()
         number = next(NUMBERS)
-        self._station.services.await_end(number, lambda report: None if ended.done() else ended.set_result(report))
+        self._station.services.follow(number, lambda report: _end(ended, report))
         start(number, self.now)
         self._station.services.collect(self.now)
         self.flush()
@@ -127,6 +127,11 @@ class LineSession:
             raise
         self.told.append(f"{self.vehicle.name}: {report.text}")
         return report
+
+
+def _end(ended: asyncio.Future[RequestReport], report: RequestReport) -> None:
+    if report.state.ended and not ended.done():
+        ended.set_result(report)
 
 
 class LineOutput:

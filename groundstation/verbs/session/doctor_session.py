@@ -20,7 +20,8 @@ from groundstation.station_socket.relay import LinksReport
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.link_reasons import describe_silence
-from groundstation.verbs.session.station_link import StationLink, StationRunner
+from groundstation.verbs.session.station_choice import StationLink
+from groundstation.verbs.session.station_link import StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
 from link.endpoint import Side
 from link.links import open_links

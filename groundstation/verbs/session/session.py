@@ -19,7 +19,8 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.core import ALONE_AFTER, VerbCore
 from groundstation.verbs.session.link_reasons import describe_silence, to_view
-from groundstation.verbs.session.station_link import StationLink, StationRunner
+from groundstation.verbs.session.station_choice import StationLink
+from groundstation.verbs.session.station_link import StationRunner
 from link.protocol.log_tap import LogTap
 
 if TYPE_CHECKING:

@@ -26,7 +26,8 @@ from groundstation.station_socket.folder import (
 from groundstation.station_socket.hello import NAMES, SCREEN, VERB, Hello, StationFailed, decode_hello
 from groundstation.station_socket.names import MODES, PARAMS, Names, encode_names, find_names, plain_names
 from groundstation.station_socket.packets import read_packet
-from groundstation.station_socket.relay import HeardMessage, ToSend, VerbReady
+from groundstation.station_socket.relay import HeardMessage, ToSend
+from groundstation.station_socket.verb_run import VerbReady
 from link.transport.receive_buffer import ReceiveBuffer
 
 HELLO = Hello(SCREEN, 3, "screen on pts/4", watches=True)

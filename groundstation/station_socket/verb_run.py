@@ -1,0 +1,99 @@
+"""What a shell and the station that runs its verb say to each other: the words of the verb, and what it prints.
+
+The verb runs in the process of the station, with the code, the links and the session of the station. The shell reads
+the command line, prints, and says ten times a second that it is there.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from groundstation.station_socket.hello import StationFailed
+
+VERSION = 5
+"""Of the packets of verbs: those below, and those of relay.py."""
+
+MAX_PRINTED = 1 << 18
+"""Bytes of the largest packet of the station."""
+
+ALIVE_PERIOD = 0.1
+"""s between packets of a verb at least, as of a screen."""
+
+ALIVE_WITHIN = 0.3
+"""s without a packet after which a verb that demands motion counts as dead."""
+
+STILL_WITHIN = 1.0
+"""s without a packet after which a shell counts as standing still, as after Ctrl-Z. Its verb, which demands nothing,
+stands still, too, so that the vehicle misses its ground station as if the verb ran in the shell."""
+
+
+class VerbReady(msgspec.Struct, frozen=True, tag=True):
+    """From the station, first."""
+
+    system: int
+    component: int
+    """The ids of the station, which are those of the verb from now on."""
+    session: int
+    endpoints: tuple[str, ...]
+    follows: bool = False
+    """The verb may prove the session, which a verb has used just before."""
+
+
+class Alive(msgspec.Struct, frozen=True, tag=True):
+    """From the station: the answer to a packet that only asks. A station that hangs does not send it."""
+
+
+class Printed(msgspec.Struct, frozen=True, array_like=True):
+    """One call of a method of Output (verbs/common/output.py)."""
+
+    method: str
+    arguments: tuple[Any, ...] = ()
+    fields: dict[str, Any] = {}
+
+
+class VerbOutput(msgspec.Struct, frozen=True, tag=True):
+    """From the station: what the verb prints."""
+
+    printed: tuple[Printed, ...]
+
+
+class VerbEnded(msgspec.Struct, frozen=True, tag=True):
+    """From the station, last: the verb has ended."""
+
+    code: int
+    """Its exit code."""
+    vehicle: str = ""
+    """Name of the vehicle that was found."""
+
+
+class AskedGroup(msgspec.Struct, frozen=True, array_like=True):
+    """The vehicles of --all or --group, as the config file of the shell names them (config/groups.py)."""
+
+    listed: frozenset[int]
+    others: frozenset[int]
+    patterns: tuple[str, ...]
+
+
+class RunVerb(msgspec.Struct, frozen=True, tag=True):
+    """From the shell, first: the command line."""
+
+    words: tuple[str, ...]
+    group: AskedGroup | None = None
+
+
+class StillHere(msgspec.Struct, frozen=True, tag=True):
+    """From the shell: its process runs. The station answers with Alive."""
+
+
+class CancelVerb(msgspec.Struct, frozen=True, tag=True):
+    """From the shell: its user has interrupted the verb, which ends in order. So does the end of the connection."""
+
+
+ToShell = VerbReady | VerbOutput | VerbEnded | Alive | StationFailed
+FromShell = RunVerb | StillHere | CancelVerb
+
+encode = msgspec.msgpack.Encoder().encode
+decode_from_station = msgspec.msgpack.Decoder(ToShell).decode
+decode_from_shell = msgspec.msgpack.Decoder(FromShell).decode

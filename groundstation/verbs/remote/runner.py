@@ -1,0 +1,119 @@
+"""Runs one verb of a shell in the process of the station."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import logging
+from collections.abc import Callable
+
+from msgspec.structs import astuple, replace
+
+from dialects.extra.errors import DialectError
+from groundstation.config.groups import VehicleGroup
+from groundstation.formats.errors import FileFormatError
+from groundstation.station.operator_core import OperatorCore
+from groundstation.station_socket.verb_run import Printed, RunVerb, VerbEnded
+from groundstation.verbs.action import VerbAction
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.later import LaterName, LaterResult
+from groundstation.verbs.line.parser import LineParser
+from groundstation.verbs.main import build_parser, choose_action
+from groundstation.verbs.performing import perform
+from groundstation.verbs.remote.sent_output import SentOutput
+from groundstation.verbs.session.kept_session import KeptSession
+from groundstation.verbs.session.station_core import StationCore, StationVerbSession
+
+log = logging.getLogger(__name__)
+
+
+class ShellVerb:
+    """One verb of a shell. `name` is what others call it, `follows`: it may prove the session of the verb before.
+
+    `flush` sends what the station has queued, `send` what the verb prints; `silence`: s without a word of the shell.
+    """
+
+    def __init__(
+        self,
+        station: OperatorCore,
+        name: str,
+        *,
+        follows: bool,
+        flush: Callable[[], None],
+        send: Callable[[Printed], None],
+        silence: Callable[[float], float],
+    ) -> None:
+        self._station, self._name, self._follows = station, name, follows
+        self._flush, self._send, self._silence = flush, send, silence
+        self._vehicle = ""
+
+    async def run(self, asked: RunVerb) -> VerbEnded:
+        """Run it to its end. A mistake in the verb is logged, and ends the verb alone."""
+        output = SentOutput(asked.words[0], as_json=False, send=self._send)
+        try:
+            action, options = await asyncio.to_thread(_parse, asked.words)  # it imports the modules of the verb
+            verb = f"{asked.words[0]} {options.action}".strip()
+            output = SentOutput(verb, as_json=options.json, send=self._send)
+            group = None if asked.group is None else VehicleGroup(*astuple(asked.group))
+            code = await self._run_within(group, action, options, output)
+        except (VerbError, FileFormatError, DialectError) as error:
+            output.error(str(error))
+            code = error.code if isinstance(error, VerbError) else ExitCode.USAGE
+        except Exception as error:  # of the verb: it must not end the station
+            log.exception("a verb failed")
+            output.error(f"the verb failed in the station: {type(error).__name__}: {error}")
+            code = ExitCode.BROKEN
+        return VerbEnded(int(code), self._vehicle)
+
+    async def _run_within(
+        self, group: VehicleGroup | None, action: VerbAction, options: argparse.Namespace, output: SentOutput
+    ) -> int:
+        try:
+            async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
+                return await self._run(group, action, options, output)
+        except TimeoutError:
+            raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
+
+    async def _run(
+        self, group: VehicleGroup | None, action: VerbAction, options: argparse.Namespace, output: SentOutput
+    ) -> int:
+        core = StationCore(
+            self._station,
+            options.vehicle,
+            self._name,
+            self._flush,
+            takes_part=not action.watches,
+            follows=self._follows,
+            silence=self._silence,
+        )
+        options.system = core.ids[0]
+        kept = KeptSession(self._station.operator.session, follows=self._follows)
+        session = StationVerbSession(core, core.flush, output.progress)
+        session.where = " ".join(self._station.surroundings.endpoints)
+        core.join()
+        verb = asyncio.ensure_future(perform(session, action, options, output, group, kept, self._note_vehicle))
+        try:
+            await asyncio.wait((verb, core.broken), return_when=asyncio.FIRST_COMPLETED)
+            if core.broken.done():
+                core.broken.result()
+            return await verb
+        finally:
+            if verb.cancel():
+                await asyncio.wait({verb}, timeout=END_WITHIN)
+            core.leave()
+
+    def _note_vehicle(self, name: str) -> None:
+        self._vehicle = name
+
+
+END_WITHIN = 1.0
+"""s for an interrupted verb to send its last messages."""
+
+
+def _parse(words: tuple[str, ...]) -> tuple[VerbAction, argparse.Namespace]:
+    """Parse a command line that the shell has parsed before, and load the verb. Raises VerbError."""
+    options = build_parser(words[0], LineParser).parse_args(words[1:])
+    action = choose_action(words[0], options)
+    if isinstance(action.run, LaterName | LaterResult):
+        action = replace(action, run=action.run.resolve())
+    return action, options

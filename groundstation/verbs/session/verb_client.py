@@ -1,0 +1,116 @@
+"""VerbClient: a verb that a station runs. This process sends the command line, and prints what the verb prints."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import math
+import time
+from collections.abc import Sequence
+
+from groundstation.config.groups import VehicleGroup
+from groundstation.station_socket.packets import read_packet
+from groundstation.station_socket.verb_run import (
+    ALIVE_PERIOD,
+    MAX_PRINTED,
+    Alive,
+    AskedGroup,
+    CancelVerb,
+    Printed,
+    RunVerb,
+    StillHere,
+    VerbEnded,
+    VerbOutput,
+    decode_from_station,
+    encode,
+)
+from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.session.station_choice import StationLink, StationLostError
+from link.transport.receive_buffer import ReceiveBuffer
+
+END_WITHIN = 1.5
+"""s for an interrupted verb to end in order; the station gives it 1 s."""
+
+
+class VerbClient:
+    """One verb. A station that does not answer for `patience` s is lost."""
+
+    def __init__(self, link: StationLink, output: Output, patience: float = math.inf) -> None:
+        self._socket, self._endpoints = link.sock, link.ready.endpoints
+        self._buffer = ReceiveBuffer(MAX_PRINTED)
+        self._output = output
+        self._patience = patience
+        self._asked_at = -math.inf
+        self._unanswered_since = math.inf
+        self.ended: VerbEnded | None = None
+
+    async def run(self, words: Sequence[str], group: VehicleGroup | None) -> VerbEnded:
+        """Run the verb to its end. Raises StationLostError, and OSError of the output."""
+        loop, readable = asyncio.get_running_loop(), asyncio.Event()
+        loop.add_reader(self._socket, readable.set)
+        asked = None if group is None else AskedGroup(group.listed, group.others, group.patterns)
+        self._send(RunVerb(tuple(words), asked))
+        try:
+            return await self._read_to_the_end(readable)
+        except asyncio.CancelledError:
+            self._send(CancelVerb())
+            with contextlib.suppress(TimeoutError, StationLostError):
+                async with asyncio.timeout(END_WITHIN):
+                    await self._read_to_the_end(readable)
+            raise
+        finally:
+            loop.remove_reader(self._socket)
+            self._socket.close()
+
+    async def _read_to_the_end(self, readable: asyncio.Event) -> VerbEnded:
+        while True:
+            readable.clear()
+            self._read()
+            if self.ended is not None:
+                return self.ended
+            self._ask()
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(readable.wait(), ALIVE_PERIOD)
+
+    def _ask(self) -> None:
+        """Say that this process runs, and ask whether the station does.
+
+        What it has said while this process stood still is read first.
+        """
+        now = time.monotonic()
+        if now - self._asked_at < ALIVE_PERIOD:
+            return
+        self._asked_at = now
+        if now - self._unanswered_since > self._patience:
+            silence = f"the station has not answered for {now - self._unanswered_since:.1f} s"
+            raise StationLostError(ExitCode.NO_ANSWER, silence, self._endpoints)
+        self._unanswered_since = min(self._unanswered_since, now)
+        self._send(StillHere())
+
+    def _send(self, packet: RunVerb | StillHere | CancelVerb) -> None:
+        with contextlib.suppress(OSError):  # a full queue: it hangs; a station that has ended: _read
+            self._socket.send(encode(packet))
+
+    def _read(self) -> None:
+        while self.ended is None and (packet := read_packet(self._socket, self._buffer)) is not None:
+            if not packet:
+                ended = "the station that this verb went through has ended"
+                raise StationLostError(ExitCode.NO_ANSWER, ended, self._endpoints)
+            self._unanswered_since = math.inf
+            match decode_from_station(packet):
+                case VerbOutput(printed):
+                    for each in printed:
+                        self._print(each)
+                case VerbEnded() as ended_so:
+                    self.ended = ended_so
+                case Alive():
+                    pass
+
+    def _print(self, printed: Printed) -> None:
+        if printed.method in PRINTS:
+            getattr(self._output, printed.method)(*printed.arguments, **printed.fields)
+
+
+PRINTS = frozenset(("line", "record", "result", "flush", "note", "error", "count"))
+"""Methods of Output that a station may call."""
