@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from dialects import rover
+from dialects.printable import printable as printable
 
 Message = rover.MAVLink_message
 
@@ -186,13 +187,6 @@ def hide_key(message: Message) -> Message:
 def target_system(message: Message) -> int:
     """Return the system that a message is for; 0: all. MANUAL_CONTROL has another name for the field."""
     return int(getattr(message, "target_system", getattr(message, "target", 0)))
-
-
-def printable(text: str) -> str:
-    """Return `text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
-    if text.isprintable():
-        return text
-    return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
 
 
 def field_value(message: Message, name: str) -> Any:

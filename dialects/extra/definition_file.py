@@ -13,7 +13,7 @@ from xml.parsers import expat
 from dialects.extra.attributes import Attributes, read_entry, read_field, read_id, read_name
 from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, Field, FilePosition, MessageDefinition
 from dialects.extra.errors import DialectError
-from dialects.messages import printable
+from dialects.printable import printable
 
 FILE_MAX = 4 << 20
 """Bytes of a file; common.xml has 0.6 MB."""

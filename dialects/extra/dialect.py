@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from dialects.extra.definition_file import read_definitions
 from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, FilePosition, MessageDefinition
 from dialects.extra.errors import DialectError
-from dialects.messages import printable
+from dialects.printable import printable
 
 SHIPPED = Path(pymavlink.__file__).resolve().parent / "dialects" / "v20"
 """The definitions of the installed pymavlink, such as common.xml and ardupilotmega.xml."""

@@ -16,7 +16,7 @@ from dialects.extra.definitions import Field, MessageDefinition
 from dialects.extra.dialect import Dialect
 from dialects.extra.errors import DialectError
 from dialects.extra.message_class import make_class, make_decoder, make_encoder
-from dialects.extra.option import Note
+from dialects.extra.notes import Note
 
 NAMES_MAX = 5
 """Names of messages in one note."""

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import msgspec
+from typing import TYPE_CHECKING
 
-from dialects.enums import Severity
-
-
-class Note(msgspec.Struct, frozen=True):
-    """One line for the log."""
-
-    text: str
-    severity: Severity = Severity.INFO
+if TYPE_CHECKING:
+    from dialects.extra.notes import Note
 
 
 def use_dialect(file: str | None) -> tuple[Note, ...]:

@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape
 
 import msgspec
 
-from dialects.messages import printable
+from dialects.printable import printable
 from groundstation.disk.new_file import NewFile
 from groundstation.export.exporter import LogInfo
 from groundstation.export.log_time import iso_time

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from dialects.enums import Severity, StationEventKind
-from dialects.messages import printable
+from dialects.printable import printable
 from groundstation.connect.desk import ConnectDesk
 from groundstation.connect.signing import StationSigning
 from groundstation.disk.desk import DiskDesk

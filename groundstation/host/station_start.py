@@ -11,7 +11,8 @@ import msgspec
 
 from dialects.enums import Severity
 from dialects.extra.errors import DialectError
-from dialects.extra.option import Note, use_dialect
+from dialects.extra.notes import Note
+from dialects.extra.option import use_dialect
 from groundstation.connect.signing import SigningError, StationSigning
 from groundstation.host.options import log_to
 from groundstation.sitl.sitl import SimulatorControl, free_port

@@ -15,8 +15,9 @@ from dialects import messages as m
 from dialects.enum_names import enum_names
 from dialects.enums import Command, Failsafe, ModeFlag, Severity, SystemState, VehicleType, result_name
 from dialects.kinds import VehicleKind, find_kind
-from dialects.messages import MESSAGES, Message, decode_text, printable
+from dialects.messages import MESSAGES, Message, decode_text
 from dialects.modes import custom_mode_of
+from dialects.printable import printable
 from groundstation.vehicles.readings.values import flag_words
 from groundstation.vehicles.state.chunked_texts import ChunkedText, TextJoiner, TextKey
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from groundstation.verbs.common.arguments import Argument
-from groundstation.verbs.common.output import Output
-from link.protocol.log_tap import LogTap
+if TYPE_CHECKING:
+    from groundstation.verbs.common.arguments import Argument
+    from groundstation.verbs.common.output import Output
+    from link.protocol.log_tap import LogTap
 
 ONLY = ""
 """Name of the action of a verb that has only one, and takes no name for it."""

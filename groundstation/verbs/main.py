@@ -28,8 +28,6 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.performing import perform
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
-from groundstation.verbs.session.identity import choose_identity
-from groundstation.verbs.session.session import VerbSession, run_session
 from groundstation.verbs.session.station_choice import AUTO, StationLink, find_station, station_choice
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
@@ -44,6 +42,7 @@ if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
     from groundstation.verbs.session.demand_guard import DemandGuard
     from groundstation.verbs.session.doctor_session import DoctorSession
+    from groundstation.verbs.session.session import VerbSession
     from link.signing_keeper import SigningKeeper
 
 SYSTEM = 254
@@ -165,6 +164,9 @@ async def _run_here(
     patience: float,
 ) -> int:
     """Run the action in this process, with links of its own, or with those of a station."""
+    from groundstation.verbs.session.identity import choose_identity  # a verb that a station runs does without
+    from groundstation.verbs.session.session import run_session
+
     ids, kept = choose_identity(action, options, station)
     tap = action.tap(options, ids)
     own = station is None and not action.examines and not getattr(options, "unsigned", False)

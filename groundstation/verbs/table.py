@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dialects.enums import MissionType
 from groundstation.formats.param_form import ParamForm
 from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.common.arguments import (
@@ -24,7 +23,7 @@ from groundstation.verbs.common.arguments import (
     seconds,
     system_id,
 )
-from groundstation.verbs.common.later import LaterModule, made
+from groundstation.verbs.common.later import LaterModule, LaterName, made
 from link.signing.key_options import ENTERED, SHOWN
 
 if TYPE_CHECKING:
@@ -81,12 +80,12 @@ def _listen(default: float) -> Argument:
                       "help": f"how long to listen ({default:g})"})  # fmt: skip
 
 
-PLANS = (("mission", MissionType.MISSION), ("fence", MissionType.FENCE), ("rally", MissionType.RALLY))
-"""Verb -> the plan that it is about."""
+PLANS = ("mission", "fence", "rally")
+"""Verbs about a plan; in capitals they are names of MAV_MISSION_TYPE."""
 
 
-def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
-    name = kind.name.lower()
+def _plan_actions(name: str) -> dict[str, VerbAction]:
+    kind = LaterName("dialects.enums", f"MissionType.{name.upper()}")
     return {
         "show": VerbAction(f"print the {name}", made(plan.show, kind), watches=True, many=True),
         "get": VerbAction(f"download the {name} into a file: .plan or .waypoints", made(plan.get, kind),
@@ -96,20 +95,20 @@ def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
         "check": VerbAction(f"compare the {name} of the vehicle with a file", made(mission.check, kind), (_FILE,),
                             watches=True, many=True, own_process=True),
         "clear": VerbAction(f"clear the {name} on the vehicle", made(plan.clear, kind), takes_part=True, many=True),
-        **_MORE_PLAN_ACTIONS.get(kind, {}),
+        **_MORE_PLAN_ACTIONS.get(name, {}),
     }  # fmt: skip
 
 
 _ITEM = {"type": mission.item_number, "metavar": "N", "help": "number of the item, as `mission show` prints it"}
-_MORE_PLAN_ACTIONS: dict[MissionType, dict[str, VerbAction]] = {
-    MissionType.MISSION: {
+_MORE_PLAN_ACTIONS: dict[str, dict[str, VerbAction]] = {
+    "mission": {
         "start": VerbAction("start the mission, or go on with it", mission.start, (("item", {"nargs": "?", **_ITEM}),),
                             takes_part=True, shows_neutral=True, many=True),
         "pause": VerbAction("stop where the vehicle is; start goes on", mission.pause, many=True),
         "jump": VerbAction("make an item the current one", mission.jump, (("item", _ITEM),), takes_part=True,
                            shows_neutral=True, many=True),
     },
-    MissionType.FENCE: {
+    "fence": {
         "on": VerbAction("enable the fence", made(mission.enable_fence, True), takes_part=True, many=True),
         "off": VerbAction("disable the fence", made(mission.enable_fence, False), takes_part=True, many=True),
     },
@@ -235,7 +234,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
                             (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),), takes_part=True,
                             many=True),
     },
-    **{verb: _plan_actions(kind) for verb, kind in PLANS},
+    **{verb: _plan_actions(verb) for verb in PLANS},
     "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes,
                                watches=True, many=True)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,

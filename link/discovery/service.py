@@ -10,7 +10,7 @@ from enum import StrEnum
 
 import msgspec
 
-from dialects.messages import printable
+from dialects.printable import printable
 from link.endpoint import LISTENING, Endpoint, is_loopback
 
 TYPES = {"udp": "_mavlink._udp.local.", "tcp": "_mavlink._tcp.local."}

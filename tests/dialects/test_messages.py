@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dialects import codec
-from dialects.messages import RoverStationEvent, StatusText, boot_ms, decode_text, encode_text, printable
+from dialects.messages import RoverStationEvent, StatusText, boot_ms, decode_text, encode_text
+from dialects.printable import printable
 
 
 def test_text_is_utf8_and_harmless_to_a_terminal() -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import deque
 from typing import Any
 
-from dialects.messages import Message, printable
+from dialects.messages import Message
+from dialects.printable import printable
 from groundstation.formats.csv_row import csv_row
 from groundstation.station.messages.fields import array_length
 from groundstation.station.messages.message_fields import field_value

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from dialects.enum_names import enum_names, flag_names
-from dialects.messages import ExtraMessage, Message, StatusText, SysStatus, decode_text, printable
+from dialects.messages import ExtraMessage, Message, StatusText, SysStatus, decode_text
+from dialects.printable import printable
 from groundstation.views.messages import MessageField
 
 MAX_TEXT = 200

@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import Severity
 from dialects.enums import StationEventKind as Kind
-from dialects.messages import RoverStationEvent, encode_text, printable
+from dialects.messages import RoverStationEvent, encode_text
+from dialects.printable import printable
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, ReleasePad, SetStyle, StepLimits, Stop
 from groundstation.intents.services import ServiceIntent

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import msgspec
 
 from dialects.enums import Severity
-from dialects.messages import StatusText, printable
+from dialects.messages import StatusText
+from dialects.printable import printable
 from groundstation.snapshot import LogLine
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.vehicles.state.chunked_texts import ChunkedText, TextJoiner

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from importlib import import_module
+from operator import attrgetter
 from typing import Any
 
 
 class LaterName:
-    """Something of a module, for the table: a function, or a sequence."""
+    """Something of a module, for the table: a function, a sequence, or a value of one of its classes."""
 
     def __init__(self, module: str, name: str) -> None:
         self._module = module
@@ -16,7 +17,7 @@ class LaterName:
 
     def resolve(self) -> Any:
         """Import the module, and return what the name stands for. Raises ImportError, AttributeError."""
-        return getattr(import_module(self._module), self._name)
+        return attrgetter(self._name)(import_module(self._module))
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it."""
@@ -46,7 +47,8 @@ class LaterResult:
 
     def resolve(self) -> Any:
         """Import the module of the factory, and return what it makes. Raises ImportError, AttributeError."""
-        return self._factory(*self._arguments)
+        known = (each.resolve() if isinstance(each, LaterName) else each for each in self._arguments)
+        return self._factory(*known)
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it."""

@@ -6,10 +6,12 @@ import json
 import math
 import sys
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from dialects.messages import printable
-from groundstation.vehicles.requests.requests import RequestReport
+from dialects.printable import printable
+
+if TYPE_CHECKING:  # it loads the dialect, which a program that only prints does without
+    from groundstation.vehicles.requests.requests import RequestReport
 
 PROGRESS_PERIOD = 0.1
 """s between two progress lines."""

@@ -165,7 +165,7 @@ class StationCore(VerbCore):
         self._guard(lambda: self.handle_refused(message, why, self._now))
 
     def _pass_on(self, now: float) -> None:
-        """Give the messages of the verb to the station, which sends them as its own; later if the shell stands still."""
+        """Give the messages of the verb to the station, which sends them; later if the shell stands still."""
         if self._silence(now) > STILL_WITHIN:
             return
         for outgoing in self.messages_to_send():

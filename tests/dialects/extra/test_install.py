@@ -17,7 +17,8 @@ from dialects import messages as m
 from dialects.enum_names import enum_names, flag_names
 from dialects.enums import Severity
 from dialects.extra.errors import DialectError
-from dialects.extra.option import Note, use_dialect
+from dialects.extra.notes import Note
+from dialects.extra.option import use_dialect
 from tests.dialects.extra.xml_texts import GRIPPER, TABLES, mutated, scope, with_message
 
 DEBUG_VECT = 250
