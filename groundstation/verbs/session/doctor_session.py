@@ -72,7 +72,8 @@ class DoctorSession:
         self._looks.append((condition, found))
         self.look()
         try:
-            await asyncio.wait_for(found, within)
+            async with asyncio.timeout(within):
+                await found
         except TimeoutError:
             return False
         return True

@@ -172,7 +172,8 @@ class VerbSession:
         if condition():
             return True
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self.core.add_look(condition), seconds)
+            async with asyncio.timeout(seconds):  # wait_for() may lose a cancellation
+                await self.core.add_look(condition)
         return condition()
 
     def explain_silence(self) -> str:

@@ -71,7 +71,8 @@ class VerbClient:
                 return self.ended
             self._ask()
             with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(readable.wait(), ALIVE_PERIOD)
+                async with asyncio.timeout(ALIVE_PERIOD):  # wait_for() may lose a Ctrl-C
+                    await readable.wait()
 
     def _ask(self) -> None:
         """Say that this process runs, and ask whether the station does.

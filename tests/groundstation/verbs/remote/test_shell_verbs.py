@@ -1,0 +1,157 @@
+"""Verbs of a shell that run in a station, over a real socket, with a vehicle as ArduPilot behaves."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Awaitable, Callable
+
+import pytest
+
+from dialects import messages as m
+from groundstation.host.run_port import RunPort
+from groundstation.intents.session import RenewLease
+from groundstation.station.component import COMPONENT
+from groundstation.station.station import Station
+from groundstation.station_socket.verb_run import STILL_WITHIN, VerbEnded, VerbReady, decode_from_station
+from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.common.output import Output
+from groundstation.verbs.session.station_choice import StationLink
+from groundstation.verbs.session.station_core import StationCore
+from groundstation.verbs.session.verb_client import VerbClient
+from link.links import open_links
+from link.runner import Runner
+from tests.fakes.params import Param
+from tests.fakes.services import ForeignVehicle, foreign_vehicle
+from tests.groundstation.verbs.setup.test_doctor import MAG_CAL_CANCEL, MAG_CAL_START, commanded, progress
+from tests.waits import PATIENCE
+
+IDS = (255, COMPONENT)
+Use = Callable[["Shells"], Awaitable[None]]
+
+
+class Shells:
+    """A station without a screen that has found its vehicle, and shells beside it."""
+
+    def __init__(self, station: Station, flush: Callable[[], None]) -> None:
+        self.station = station
+        self.flush = flush
+
+    def connect(self) -> StationLink:
+        """Return the end of a shell."""
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        for each in (ours, theirs):
+            each.setblocking(False)
+        port = RunPort(theirs, self.station, "a shell", self.flush, RunPort.close, follows=False)
+        port.start(VerbReady(*IDS, self.station.operator.session, ("here",)))
+        ready = decode_from_station(ours.recv(1 << 16))
+        assert isinstance(ready, VerbReady)
+        return StationLink(ours, ready)
+
+    async def run(self, *words: str) -> VerbEnded:
+        """Run a verb to its end; it prints to stdout and stderr."""
+        as_json = "--json" in words
+        client = VerbClient(self.connect(), Output(words[0], as_json=as_json, quiet=False))
+        return await client.run(words, None)
+
+    async def see(self, condition: Callable[[], bool]) -> None:
+        """Wait until it holds."""
+        while not condition():  # noqa: ASYNC110 - with_station() has the timeout
+            await asyncio.sleep(0.01)
+
+
+def with_station(vehicle: ForeignVehicle, use: Use) -> None:
+    async def main() -> None:
+        now = asyncio.get_running_loop().time
+        station = Station([vehicle.endpoint], system=255, session=7, now=now())
+        runner = Runner(
+            station, open_links([vehicle.endpoint], system=255, component=COMPONENT), period=0.02, route=False
+        )
+        running = asyncio.ensure_future(runner.run())
+        shells = Shells(station, runner.flush)
+        try:
+            async with asyncio.timeout(2 * PATIENCE):
+                station.handle_intent(RenewLease(), now())  # its heartbeat is what the vehicle answers to
+                await shells.see(lambda: station.fleet.selected is not None)
+                await shells.see(lambda: not station.operator.live)
+                await use(shells)
+        finally:
+            runner.stop()
+            await running
+
+    asyncio.run(main())
+
+
+def test_it_prints_in_the_shell_and_has_its_code(capsys: pytest.CaptureFixture[str]) -> None:
+    async def use(shells: Shells) -> None:
+        assert await shells.run("mode", "HOLD") == VerbEnded(ExitCode.DONE, "ArduPilot rover 1")
+        assert vehicle.mode == 4
+        assert (await shells.run("param", "get", "FS_ACTION", "--json")).code == ExitCode.DONE
+        assert '"param_id": "FS_ACTION", "param_value": 2.0' in capsys.readouterr().out
+        assert (await shells.run("mode", "NOWHERE")).code == ExitCode.REFUSED
+        assert "no such mode" in capsys.readouterr().err
+        assert (await shells.run("status", "-v", "9", "--wait", "0.1")).code == ExitCode.NO_VEHICLE
+        assert (await shells.run("rate", "NOTHING", "5")).code == ExitCode.USAGE
+        assert not shells.station.relay.busy
+
+    with foreign_vehicle() as vehicle:
+        vehicle.params["FS_ACTION"] = Param(2.0)
+        with_station(vehicle, use)
+
+
+@pytest.mark.parametrize("killed", [False, True])
+def test_an_interrupted_or_killed_shell_ends_its_verb_in_order(killed: bool) -> None:
+    async def use(shells: Shells) -> None:
+        link = shells.connect()
+        client = VerbClient(link, Output("calibrate", as_json=False, quiet=True))
+        verb = asyncio.ensure_future(client.run(("calibrate", "compass"), None))
+        await shells.see(lambda: commanded(vehicle, MAG_CAL_START))
+        if killed:
+            link.sock.shutdown(socket.SHUT_RDWR)
+        verb.cancel()
+        await shells.see(lambda: commanded(vehicle, MAG_CAL_CANCEL))
+        await shells.see(lambda: not shells.station.relay.busy)
+        await asyncio.wait({verb})
+
+    with foreign_vehicle() as vehicle:
+        vehicle.on_command[MAG_CAL_START] = lambda: vehicle.send(progress(40))
+        with_station(vehicle, use)
+
+
+def test_the_verb_of_a_shell_that_stands_still_sends_nothing() -> None:
+    silence = [0.0]
+
+    async def use(shells: Shells) -> None:
+        core = StationCore(shells.station, 1, "a shell", shells.flush, takes_part=True, silence=lambda now: silence[0])
+        core.join()
+        await shells.see(lambda: core.chosen is not None)
+        silence[0] = STILL_WITHIN + 0.01
+        core.outbox.append(ping)
+        core.flush()
+        until = core.contacts[1].state.heartbeat_at + 2.5
+        await shells.see(lambda: core.contacts[1].state.heartbeat_at > until)
+        assert vehicle.of("PING") == []
+        silence[0] = 0.0
+        await shells.see(lambda: bool(vehicle.of("PING")))
+        core.leave()
+
+    ping = m.Ping(1, 2, 0, 0)
+    with foreign_vehicle() as vehicle:
+        with_station(vehicle, use)
+
+
+def test_a_mistake_in_a_verb_ends_that_verb_alone() -> None:
+    def fail(received: object, now: float) -> None:
+        raise RuntimeError("a mistake")
+
+    async def use(shells: Shells) -> None:
+        core = StationCore(shells.station, 1, "a shell", shells.flush)
+        core.join()
+        core.taps.append(fail)
+        with pytest.raises(RuntimeError, match="a mistake"):
+            await core.broken
+        core.leave()
+        assert (await shells.run("mode", "HOLD")).code == ExitCode.DONE
+
+    with foreign_vehicle() as vehicle:
+        with_station(vehicle, use)
