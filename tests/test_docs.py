@@ -153,7 +153,6 @@ LONG_PROSE = (
     "docs/fleet.md",
     "docs/interop.md",
     "docs/performance.md",
-    "docs/pi.md",
     "docs/reliability.md",
     "docs/safety.md",
     "docs/screens.md",
