@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.enums import Command, Severity
+from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.services.service_desk import ServiceDesk
@@ -46,6 +47,8 @@ class VehicleQueries:
         """Handle a message of a vehicle."""
         own = received.component == contact.state.component  # another component has a clock of its own
         if own and contact.stream_requests.handle_message(received.message, now):
+            origin = LogOrigin(received.system, received.component)
+            self._log.add(now, "station", f"{contact.state.name} has restarted", Severity.WARNING, origin=origin)
             contact.check_settings_again()
             contact.state.restart()
             contact.details.home = None
