@@ -96,6 +96,7 @@ async def served(
             found.end_parent()
             async with asyncio.timeout(PATIENCE):
                 await task
+            assert not asyncio.get_running_loop().remove_reader(theirs)
             os.close(theirs)
 
 

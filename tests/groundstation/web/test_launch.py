@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
 import http.client
-import logging
 import os
 import pty
 import re
@@ -20,15 +18,11 @@ from urllib.parse import urlsplit
 import pytest
 
 pytest.importorskip("aiohttp", reason="the extra [web] is not installed")
-import aiohttp
-
 from groundstation.cli.serve_verb import build_parser
 from groundstation.web import launch as launching
 from groundstation.web.launch import WebLaunch, missing_package
-from groundstation.web.server import main
 from link.runtime.child_process import ROOT
 from tests.groundstation.screen import children, running
-from tests.groundstation.web.served import TOKEN, read_until
 from tests.ports import free_port
 from tests.waits import PATIENCE, wait_until
 
@@ -156,89 +150,6 @@ def test_a_missing_package_is_one_line(
 
 def test_the_port_is_8000() -> None:
     assert build_parser().parse_args(["--web"]).port == 8000
-
-
-class Program:
-    """`main` in a thread, with a pipe as its standard input."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, said: str, *arguments: str) -> None:
-        theirs, self._ours = os.pipe()
-        self._input = os.fdopen(theirs)
-        monkeypatch.setattr(sys, "stdin", self._input)
-        os.write(self._ours, said.encode())
-        sock = socket.create_server(("127.0.0.1", 0))
-        self.port = sock.getsockname()[1]
-        self._fd = sock.detach()
-        self.task = asyncio.create_task(asyncio.to_thread(main, [f"--fd={self._fd}", "--", *arguments]))
-
-    def end_parent(self) -> None:
-        os.close(self._ours)
-
-    def close_port(self) -> None:
-        """Close what a program that does not serve has left."""
-        os.close(self._fd)
-
-    async def ended(self) -> int:
-        async with asyncio.timeout(PATIENCE):
-            code = await self.task
-        self._input.close()
-        return code
-
-
-@pytest.fixture
-def loggers() -> Iterator[list[logging.Logger]]:
-    found = [logging.getLogger(name) for name in ("aiohttp.server", "asyncio")]
-    before = [list(each.filters) for each in found]
-    yield found
-    for each, filters in zip(found, before, strict=True):
-        each.filters[:] = filters
-
-
-async def test_the_program_serves_groundstation_in_tabs(
-    monkeypatch: pytest.MonkeyPatch, loggers: list[logging.Logger], caplog: pytest.LogCaptureFixture
-) -> None:
-    program = Program(monkeypatch, f"{TOKEN}\n", "--version")
-    base = f"http://127.0.0.1:{program.port}"
-    headers = {"Cookie": f"mavhelm-{program.port}={TOKEN}", "Origin": base}
-    async with (
-        aiohttp.ClientSession(headers=headers) as browser,
-        browser.ws_connect(f"{base}/ws") as tab,
-    ):
-        await read_until(tab, "groundstation 0.")
-        for each in loggers:
-            for _ in range(30):
-                each.warning("rubbish")
-    assert caplog.messages.count("rubbish") == 40, "20 lines of each"
-    program.end_parent()
-    assert await program.ended() == 0
-
-
-async def test_without_a_token_the_program_does_not_serve(
-    monkeypatch: pytest.MonkeyPatch, loggers: list[logging.Logger]
-) -> None:
-    """An empty cookie must not be the right one."""
-    program = Program(monkeypatch, "\n")
-    assert await program.ended() == 1
-    program.end_parent()
-    program.close_port()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code", "text"),
-    [
-        (["--help"], 0, r"usage: groundstation.web.server .*the socket that listens"),
-        (["--help"], 0, r"\brest\b.*arguments of `groundstation` for a tab"),
-        ([], 2, "the following arguments are required: --fd"),
-        (["--fd", "x"], 2, "argument --fd: invalid int value: 'x'"),
-    ],
-)
-def test_arguments_of_the_program(
-    arguments: list[str], code: int, text: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(arguments)
-    assert ended.value.code == code
-    assert re.search(text, "".join(capsys.readouterr()), re.DOTALL)
 
 
 def test_the_terminal_becomes_that_of_the_program() -> None:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
+import os
 import re
+import socket
+import sys
+from collections.abc import Iterator
 
 import pytest
 
@@ -12,7 +17,7 @@ pytest.importorskip("aiohttp", reason="the extra [web] is not installed")
 import aiohttp
 
 from groundstation.web import server as serving
-from groundstation.web.server import _number, _take
+from groundstation.web.server import _number, _take, main
 from tests.groundstation.screen import running
 from tests.groundstation.web.served import PATIENCE, TOKEN, Served, end_of, read_until, rest_of, served
 from tests.waits import until
@@ -381,3 +386,95 @@ async def test_a_tab_ends_also_when_the_browser_does_not_read() -> None:
         tab = await server.tab(autoping=False)
         pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
         await until(lambda: not running(pid))
+
+
+async def test_the_token_is_not_logged(caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.DEBUG)
+    async with served() as server:
+        for path in (f"/?token={TOKEN}", f"/nothing?token={TOKEN}"):
+            await server.get(path)
+            await server.get(path, {"Cookie": ""})
+    assert TOKEN not in caplog.text
+
+
+class Program:
+    """`main` in a thread, with a pipe as its standard input."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, said: str, *arguments: str) -> None:
+        theirs, self._ours = os.pipe()
+        self._input = os.fdopen(theirs)
+        monkeypatch.setattr(sys, "stdin", self._input)
+        os.write(self._ours, said.encode())
+        sock = socket.create_server(("127.0.0.1", 0))
+        self.port = sock.getsockname()[1]
+        self._fd = sock.detach()
+        self.task = asyncio.create_task(asyncio.to_thread(main, [f"--fd={self._fd}", "--", *arguments]))
+
+    def end_parent(self) -> None:
+        os.close(self._ours)
+
+    def close_port(self) -> None:
+        """Close what a program that does not serve has left."""
+        os.close(self._fd)
+
+    async def ended(self) -> int:
+        async with asyncio.timeout(PATIENCE):
+            code = await self.task
+        self._input.close()
+        return code
+
+
+@pytest.fixture
+def loggers() -> Iterator[list[logging.Logger]]:
+    found = [logging.getLogger(name) for name in ("aiohttp.server", "asyncio")]
+    before = [list(each.filters) for each in found]
+    yield found
+    for each, filters in zip(found, before, strict=True):
+        each.filters[:] = filters
+
+
+async def test_the_program_serves_groundstation_in_tabs(
+    monkeypatch: pytest.MonkeyPatch, loggers: list[logging.Logger], caplog: pytest.LogCaptureFixture
+) -> None:
+    program = Program(monkeypatch, f"{TOKEN}\n", "--version")
+    base = f"http://127.0.0.1:{program.port}"
+    headers = {"Cookie": f"mavhelm-{program.port}={TOKEN}", "Origin": base}
+    async with (
+        aiohttp.ClientSession(headers=headers) as browser,
+        browser.ws_connect(f"{base}/ws") as tab,
+    ):
+        await read_until(tab, "groundstation 0.")
+        for each in loggers:
+            for _ in range(30):
+                each.warning("rubbish")
+    assert caplog.messages.count("rubbish") == 40, "20 lines of each"
+    program.end_parent()
+    assert await program.ended() == 0
+
+
+async def test_without_a_token_the_program_does_not_serve(
+    monkeypatch: pytest.MonkeyPatch, loggers: list[logging.Logger]
+) -> None:
+    """An empty cookie must not be the right one."""
+    program = Program(monkeypatch, "\n")
+    assert await program.ended() == 1
+    program.end_parent()
+    program.close_port()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "text"),
+    [
+        (["--help"], 0, r"usage: groundstation.web.server .*the socket that listens"),
+        (["--help"], 0, r"\brest\b.*arguments of `groundstation` for a tab"),
+        ([], 2, "the following arguments are required: --fd"),
+        (["--fd", "x"], 2, "argument --fd: invalid int value: 'x'"),
+    ],
+)
+def test_arguments_of_the_program(
+    arguments: list[str], code: int, text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert ended.value.code == code
+    assert re.search(text, "".join(capsys.readouterr()), re.DOTALL)

@@ -56,6 +56,10 @@ class Shown:
             await self.showing
         await self.tab.close()
 
+    def is_writing(self) -> bool:
+        """Does the loop look whether the terminal takes more? (It does no longer, after this.)"""
+        return asyncio.get_running_loop().remove_writer(self.tab._terminal)
+
     async def _take(self, data: bytes) -> None:
         self.drawn += data.decode()
 
@@ -127,11 +131,13 @@ async def test_a_program_that_cannot_start_leaves_nothing(command: tuple[str, ..
 
 async def test_after_a_tab_nothing_is_left() -> None:
     before, processes = open_files(), children(os.getpid())
-    shown = Shown("cat")
-    shown.tab.type("here\r")
+    shown = Shown("sh", "-c", "stty raw; echo here; exec sleep 600")
     await shown.until("here")
+    shown.tab.type("x" * 60_000)
     assert open_files() != before
+    shown.tab.hang_up()
     await shown.close()
+    assert not shown.is_writing()
     assert open_files() == before
     assert children(os.getpid()) == processes
 
@@ -143,6 +149,7 @@ async def test_all_that_a_program_draws_is_shown_to_its_end() -> None:
     assert shown.drawn == "x" * 300_000
     shown.tab.type("no longer")
     shown.tab.resize((90, 30))
+    assert not shown.is_writing()
     await shown.close()
 
 
@@ -189,6 +196,7 @@ async def test_keys_reach_a_screen_after_it_has_read_a_paste() -> None:
     await shown.until("ready")
     shown.tab.type("x" * 60_000)
     await shown.until("60000")
+    assert not shown.is_writing()
     shown.tab.type("key\r")
     await shown.until("key")
     await shown.close()
