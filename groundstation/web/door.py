@@ -68,10 +68,15 @@ class _Arrival(asyncio.Protocol):
 
 
 class FewLines:
-    """A filter of a logger, which lets LINES records through in a minute."""
+    """A filter of a logger, which lets LINES records through in a minute.
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
+    `brief` are errors without a traceback and without their text, which has words of the stranger who made them.
+    """
+
+    def __init__(
+        self, clock: Callable[[], float] = time.monotonic, brief: tuple[type[BaseException], ...] = ()
+    ) -> None:
+        self._clock, self._brief = clock, brief
         self._since, self._count = -math.inf, 0
 
     def filter(self, record: logging.LogRecord) -> bool:
@@ -80,4 +85,8 @@ class FewLines:
         if now - self._since >= MINUTE:
             self._since, self._count = now, 0
         self._count += 1
+        error = record.exc_info[1] if record.exc_info else None
+        if isinstance(error, self._brief):
+            record.msg, record.args = f"{record.getMessage()}: {type(error).__name__}", ()
+            record.exc_info = None
         return self._count <= LINES

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from aiohttp import WSMsgType, web
+from aiohttp.http import HttpProcessingError
 
 from groundstation.web.door import REQUEST_WITHIN, Door, FewLines
 from groundstation.web.guard import HEADERS, TOKEN, Guard, WebRequest
@@ -224,7 +225,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
     sock = socket.socket(fileno=options.fd)
     for name in ("aiohttp.server", "asyncio"):
-        logging.getLogger(name).addFilter(FewLines())
+        logging.getLogger(name).addFilter(FewLines(brief=(HttpProcessingError,)))
     guard = Guard(sock.getsockname()[1], token)
     asyncio.run(serve(sock, WebServer(guard, screen_command(options.rest)), parent))
     return 0

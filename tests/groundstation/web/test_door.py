@@ -117,3 +117,18 @@ def test_the_log_takes_20_lines_a_minute() -> None:
     assert not few.filter(record)
     now[0] = 160.0
     assert [few.filter(record) for _ in range(50)] == [True] * 20 + [False] * 30
+
+
+@pytest.mark.parametrize(
+    ("error", "written"),
+    [
+        (KeyError("theirs"), "of 127.0.0.1: KeyError"),
+        (ValueError("ours"), "of 127.0.0.1\nValueError: ours"),
+        (None, "of 127.0.0.1"),
+    ],
+)
+def test_an_error_of_a_stranger_is_one_line(error: Exception | None, written: str) -> None:
+    info = None if error is None else (type(error), error, None)
+    record = logging.LogRecord("aiohttp.server", logging.ERROR, "", 0, "of %s", ("127.0.0.1",), info)
+    assert FewLines(brief=(KeyError,)).filter(record)
+    assert logging.Formatter().format(record) == written

@@ -452,6 +452,21 @@ async def test_the_program_serves_groundstation_in_tabs(
     assert await program.ended() == 0
 
 
+async def test_rubbish_of_a_stranger_is_one_line_in_the_log(
+    monkeypatch: pytest.MonkeyPatch, loggers: list[logging.Logger], caplog: pytest.LogCaptureFixture
+) -> None:
+    program = Program(monkeypatch, f"{TOKEN}\n")
+    reader, writer = await asyncio.open_connection("127.0.0.1", program.port)
+    writer.write(b"GET / HTTP/1.1\r\n\x1b[31mrubbish\r\n\r\n")
+    assert (await rest_of(reader)).startswith(b"HTTP/1.0 400 ")
+    writer.close()
+    program.end_parent()
+    assert await program.ended() == 0
+    [record] = [each for each in caplog.records if each.name == loggers[0].name]
+    assert record.getMessage().startswith("Error handling request from 127.0.0.1: ")
+    assert "rubbish" not in logging.Formatter().format(record)
+
+
 async def test_without_a_token_the_program_does_not_serve(
     monkeypatch: pytest.MonkeyPatch, loggers: list[logging.Logger]
 ) -> None:
