@@ -258,11 +258,12 @@ async def test_a_tab_has_its_size_and_passes_both_ways(query: str, size: str) ->
         await read_until(tab, "25 90")
 
 
-async def test_the_end_of_the_screen_ends_the_tab() -> None:
+async def test_the_end_of_the_screen_ends_the_tab(caplog: pytest.LogCaptureFixture) -> None:
     async with served("sh", "-c", "echo bye") as server:
         tab = await server.tab()
         await read_until(tab, "bye")
         assert await end_of(tab) == 1000
+    assert caplog.records == []
 
 
 @pytest.mark.parametrize("how", ["close", "abort"])
