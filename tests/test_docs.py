@@ -145,7 +145,6 @@ LONG_PROSE = (
     "CHANGELOG.md",
     "CONTRIBUTING.md",
     "SECURITY.md",
-    "docs/architecture.md",
     "docs/commands.md",
     "docs/decisions.md",
     "docs/dialect.md",
