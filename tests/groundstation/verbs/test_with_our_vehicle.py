@@ -14,7 +14,7 @@ import pytest
 
 from groundstation.verbs.common.exit_codes import ExitCode
 from tests.e2e.programs import Vehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_demanding, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_demanding, run_verb, start_demanding
 from tests.ports import free_port
 from tests.waits import Waits, wait_until
 
@@ -115,7 +115,7 @@ def test_control_is_given_to_who_asks(verb: Verb) -> None:
     assert verb("control", "release", *OTHER).code == 0
 
 
-def kill_and_see_it_stop(process: subprocess.Popen[bytes], vehicle: Vehicle) -> None:
+def kill_and_see_it_stop(process: subprocess.Popen[str], vehicle: Vehicle) -> None:
     """Kill a verb that drives. The wheels are neutral within 1 s (docs/safety.md) and the delays of the machine."""
     waits = Waits(process.pid, vehicle.process.pid)
     process.send_signal(signal.SIGKILL)
@@ -126,19 +126,24 @@ def kill_and_see_it_stop(process: subprocess.Popen[bytes], vehicle: Vehicle) -> 
 
 
 def test_a_killed_process_leaves_no_demand(verb: Verb, vehicle: Vehicle) -> None:
-    assert verb("arm", "--wait", "20").code == 0
+
+    def prepare() -> None:
+        assert verb("arm", "--wait", "20").code == 0
+        assert verb("mode", "MANUAL").code == 0
+
     words = ["send", "MANUAL_CONTROL", "x=500", "--rate", "20", "--for", "30", "--yes", "-e", verb.endpoint, "-v", "1"]
-    with subprocess.Popen([sys.executable, "-m", "groundstation", *words]) as process:
-        wait_until(vehicle.turning, "the wheels do not turn")
+    with start_demanding(words, vehicle.turning, prepare) as process:
         kill_and_see_it_stop(process, vehicle)
 
 
 def test_it_is_driven_by_a_process_that_is_killed(verb: Verb, vehicle: Vehicle) -> None:
-    assert verb("arm", "--wait", "20").code == 0
-    assert verb("stop").code == 0  # drive changes to MANUAL
+
+    def prepare() -> None:
+        assert verb("arm", "--wait", "20").code == 0
+        assert verb("stop").code == 0  # drive changes to MANUAL
+
     words = ["drive", "--throttle", "50", "--for", "9", "-e", verb.endpoint, "-v", "1"]
-    with subprocess.Popen([sys.executable, "-m", "groundstation", *words]) as process:
-        wait_until(lambda: vehicle.at_full(0.3), "the wheels do not turn")
+    with start_demanding(words, lambda: vehicle.at_full(0.3), prepare) as process:
         refused = verb("drive", "--arm", "--throttle", "50", "--for", "1", *OTHER)
         assert refused.code == ExitCode.NOT_IN_CONTROL
         wait_until(vehicle.turning, "the refused verb stops the wheels")

@@ -6,6 +6,8 @@ import json
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +15,10 @@ import pytest
 
 from groundstation.cli.main import main
 from groundstation.verbs.common.exit_codes import ExitCode
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, wait_until
 
+START = 20.0
+"""s for a program to start and drive; then it is started again."""
 _AGAIN = (ExitCode.NO_ANSWER, ExitCode.NO_VEHICLE)
 
 
@@ -53,6 +57,30 @@ def run_demanding(*arguments: str) -> VerbRun:
         assert "Traceback" not in ended.stderr
         if "this program stood still" not in ended.stderr or time.monotonic() > deadline:
             return VerbRun(ended.returncode, ended.stdout, ended.stderr)
+
+
+def start_demanding(
+    words: Sequence[str], turning: Callable[[], bool], prepare: Callable[[], object]
+) -> subprocess.Popen[str]:
+    """Start a verb that drives; again if it, or a failsafe, has ended the demand of a late machine before wheels turn.
+
+    `prepare` arms the vehicle and chooses its mode, each time.
+    """
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        prepare()
+        process = subprocess.Popen([sys.executable, "-m", "groundstation", *words], stderr=subprocess.PIPE, text=True)
+        if _soon_turns(turning, process):
+            return process
+        process.kill()
+        said = process.communicate()[1]
+        assert time.monotonic() < deadline, f"the wheels do not turn: {said}"
+
+
+def _soon_turns(turning: Callable[[], bool], process: subprocess.Popen[str]) -> bool:
+    with suppress(AssertionError):
+        wait_until(lambda: turning() or process.poll() is not None, within=START)
+    return turning()
 
 
 def run_until_answered(capsys: pytest.CaptureFixture[str], *arguments: str) -> VerbRun:

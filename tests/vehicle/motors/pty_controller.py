@@ -68,13 +68,15 @@ class OnPty:
             if self._stop in ready:
                 return
             with self._changed:
-                self._take(self._master in ready)
+                self._take(hears=self._master in listening)
                 self._changed.notify_all()
 
-    def _take(self, ready: bool) -> None:
-        now = time.monotonic()
-        if ready:
-            data = os.read(self._master, 4096)
+    def _take(self, *, hears: bool) -> None:
+        """Read what has come by now, also while this thread was late, and only then look at the timeout."""
+        now, data = time.monotonic(), b""
+        with contextlib.suppress(BlockingIOError):
+            data = os.read(self._master, 4096) if hears else b""
+        if data:
             self.tail = (self.tail + data)[-64:]
             reply = self.controller.feed(data, now)
             with contextlib.suppress(BlockingIOError):  # nobody reads the replies

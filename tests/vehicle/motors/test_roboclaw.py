@@ -11,6 +11,7 @@ from tests.vehicle.motors.contract import Bench
 from tests.vehicle.motors.pty_controller import OnPty, recorded
 from tests.vehicle.motors.serial_contract import (
     MARGIN,
+    PATIENT_TRIES,
     SerialContract,
     fault_of,
 )
@@ -54,7 +55,7 @@ class TestRoboClaw(SerialContract):
         line.controller.garbled = 2
         motors.enable()
         motors.disable()
-        line.controller.garbled = 3
+        line.controller.garbled = PATIENT_TRIES
         with pytest.raises(MotorError, match="invalid reply"):
             motors.enable()
 

@@ -96,6 +96,18 @@ def test_a_verb_takes_the_second_autopilot_if_there_is_no_first() -> None:
     assert core.chosen.state.component == 2
 
 
+def test_what_came_before_a_heartbeat_counts_as_not_heard() -> None:
+    """Its contact has not taken it: `status` would not request it, and print that nobody is in control."""
+    core, system = VerbCore((254, 25), None, 1), 1
+    control = Received(m.ControlStatus(0, 254, [0] * 10), system, 1, 0, PEER, introduced=True)
+    core.receive(control, 1.0)
+    core.receive(autopilot(), 1.1)
+    assert (system, m.ControlStatus) not in core.heard
+    core.receive(control, 1.2)
+    assert core.heard[system, m.ControlStatus] == 1.2
+    assert core.contacts[system].state.driver == 254
+
+
 def test_the_list_of_what_is_heard_shows_the_autopilot() -> None:
     heard = HeardVehicles()
     heard.receive("udpin:x", [beat(CAMERA, 0), beat(ROVER), autopilot(), beat(ROVER)], 40, 1.0)

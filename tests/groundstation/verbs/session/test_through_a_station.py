@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -20,7 +19,7 @@ from link.tlog.tlog import read_records
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen
 from tests.groundstation.verbs.shell import complete
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, start_demanding
 from tests.ports import free_port
 from tests.waits import PATIENCE, Waits, wait_until
 
@@ -29,8 +28,6 @@ Capture = pytest.CaptureFixture[str]
 NOISE = 0.4
 """s of a busy machine that the kernel does not count as waiting."""
 DEMAND = ("send", "MANUAL_CONTROL", "x=400", "--rate", "20", "--for", "60", "--yes")
-START = 20.0
-"""s for a program to start and drive; then it is started again."""
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +44,7 @@ def station() -> Iterator[int]:
 @pytest.fixture(scope="module")
 def vehicle(station: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Vehicle]:
     process = Vehicle(tmp_path_factory.mktemp("vehicle"), PORT, "--param", "FS_TIMEOUT=10")
+    wait_until(lambda: "ready" in process.errors.read_text(), "the vehicle does not start")
     yield process
     process.end()
 
@@ -105,18 +103,13 @@ def test_the_vehicle_refuses(verb: Run) -> None:
 
 
 def start_driving(verb: Run, vehicle: Vehicle) -> subprocess.Popen[str]:
-    """Start a verb that drives; again if the vehicle has held or disarmed by its failsafes while a program started."""
-    deadline = time.monotonic() + PATIENCE
-    while True:
+    """Start a verb that drives."""
+
+    def prepare() -> None:
         assert verb("arm", "--wait", "20").code == 0
         assert verb("mode", "MANUAL").code == 0
-        process = subprocess.Popen([sys.executable, "-m", "groundstation", *DEMAND], stderr=subprocess.PIPE, text=True)
-        with suppress(AssertionError):
-            wait_until(vehicle.turning, within=START)
-            return process
-        process.kill()
-        said = process.communicate()[1]
-        assert time.monotonic() < deadline, f"the wheels do not turn: {said}"
+
+    return start_demanding(DEMAND, vehicle.turning, prepare)
 
 
 def test_a_demand_drives_and_a_killed_or_stopped_verb_is_neutral(verb: Run, vehicle: Vehicle, station: int) -> None:
