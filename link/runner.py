@@ -40,6 +40,8 @@ log = logging.getLogger(__name__)
 
 REPORT_PERIOD = 1.0
 """s between two calls of core.observe()."""
+LONG_ANSWER = 0.05
+"""s for `may_send` after which this process has stood still, and the answer may be wrong by now."""
 
 SentCallback = Callable[[Link, Hashable, Message, int, float], None]
 """Takes what was sent: link, address on it, message, packet sequence, time."""
@@ -367,9 +369,9 @@ class Runner:
                 continue
             now = asyncio.get_running_loop().time()
             for data, address, sequence in link.channel.send(outgoing, payload, now):
-                now = asyncio.get_running_loop().time()
-                if self._may_send and not self._may_send(outgoing.message, now):
+                if not self._is_allowed(outgoing.message):
                     return
+                now = asyncio.get_running_loop().time()
                 why = link.send(data, address)
                 taken, refusal = taken or why is None, refusal or why
                 if self._sent:
@@ -377,6 +379,16 @@ class Runner:
                 if self._on_sent:
                     self._on_sent(link, address, outgoing.message, sequence, now)
         self._note_sent(outgoing.message, payload, None if taken else refusal, taken=taken)
+
+    def _is_allowed(self, message: Message) -> bool:
+        """Ask the core whether a message may be sent now, again if this process stood still during the answer."""
+        if self._may_send is None:
+            return True
+        time = asyncio.get_running_loop().time
+        while self._may_send(message, now := time()):
+            if time() - now < LONG_ANSWER:
+                return True
+        return False
 
     def _note_sent(self, message: Message, payload: bytes, refusal: str | None, *, taken: bool) -> None:
         """Record what was sent, and tell the core of what its role does not allow."""

@@ -278,6 +278,38 @@ async def test_a_withdrawn_message_is_not_sent_and_frames_are_reported(ground: s
     assert [type(message) for message, _ in core.numbers] == [Heartbeat]
 
 
+STOOD = 0.5
+"""s."""
+
+
+class StoppedWhileAsked(Recorder):
+    """A core whose process stands still for STOOD during its first answer, and that withdraws what is older."""
+
+    def __init__(self, runner: list[Runner], loop: asyncio.AbstractEventLoop, monkeypatch: pytest.MonkeyPatch) -> None:
+        super().__init__(lambda core: len(core.ticks) > 3, runner)
+        self.asked: list[float] = []
+        self._late, real = 0.0, loop.time
+        monkeypatch.setattr(loop, "time", lambda: real() + self._late)
+
+    def may_send(self, message: Message, now: float) -> bool:
+        self.asked.append(now)
+        self._late = STOOD
+        return now - self.asked[0] < STOOD
+
+
+async def test_a_process_stopped_during_the_last_check_sends_nothing(
+    ground: socket.socket, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runners: list[Runner] = []
+    core = StoppedWhileAsked(runners, asyncio.get_running_loop(), monkeypatch)
+    core.outbox = [Outgoing(ManualControl(1, 600, 0, 0, 0, 0))]
+    links = open_links([f"udpout:127.0.0.1:{ground.getsockname()[1]}"], system=255, component=190)
+    runners.append(Runner(core, links, period=0.01))
+    await runners[0].run()
+    assert len(core.asked) == 2
+    assert core.numbers == []
+
+
 async def test_frames_returned_by_a_program_with_two_links_are_our_own() -> None:
     """A ground station forwards what arrives on one link to the other, until it has seen the vehicle there as well."""
     ports = free_port(), free_port()
