@@ -18,12 +18,15 @@ from dialects import codec, rover
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Autopilot, Command, ModeFlag, VehicleType
 from dialects.messages import CommandLong, Heartbeat, Message, StatusText, decode_text
+from dialects.modes import Mode
 from tests.waits import PATIENCE
 
 PATIENT_LOOP = "FS_LOOP_TIMEOUT=2"
 """A control cycle later than this disarms: the longest that can be set, because the machine is shared."""
 DEMAND_PERIOD = 0.05
 """s; the 20 Hz of a ground station that drives."""
+TRY = 5.0
+"""s for a demand to turn the wheels."""
 
 
 class Ground:
@@ -152,7 +155,16 @@ def running(folder: Path, *words: str) -> Iterator[Vehicle]:
 
 
 def drive(ground: Ground, vehicle: Vehicle) -> None:
-    """Arm and go ahead until the wheels turn: every stop test starts from here."""
-    ground.arm()
-    ground.demand = Axes(throttle=0.5)
-    ground.wait(vehicle.turning, "the wheels turn")
+    """Arm and go ahead until the wheels turn: every stop test starts from here.
+
+    What a failsafe has ended meanwhile on a late machine is begun anew, as a driver does.
+    """
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        ground.arm()
+        ground.demand = Axes(throttle=0.5)
+        with contextlib.suppress(AssertionError):
+            ground.wait(vehicle.turning, "the wheels turn", TRY)
+            return
+        assert time.monotonic() < deadline, f"the wheels do not turn; the vehicle said {ground.texts()}"
+        ground.say(CommandLong(1, 1, Command.DO_SET_MODE, 0, ModeFlag.CUSTOM, Mode.MANUAL, 0, 0, 0, 0, 0))

@@ -28,9 +28,9 @@ from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.manual.test_examples import prepare
 from tests.groundstation.verbs.setup.test_doctor import INTERVAL, MAG_CAL_START, channels, progress, report, send_all
-from tests.groundstation.verbs.verb_runs import run_verb
+from tests.groundstation.verbs.verb_runs import LONG_PATIENCE, run_verb
 from tests.ports import free_port
-from tests.waits import PATIENCE, wait_until
+from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
 LOSS = 0.2
@@ -221,7 +221,7 @@ def run_all(
         armed = each.armed and each.words not in UNARMED_BY
         wait = (5 if lossy else 1.5) if each.words.startswith("control give") else 60
         words = (*shlex.split(each.words), *options, "-v", "1", "--wait", f"{wait}")
-        ended, deadline = run_verb(capsys, *words), time.monotonic() + PATIENCE
+        ended, deadline = run_verb(capsys, *words), time.monotonic() + LONG_PATIENCE
         while STOOD_STILL in ended.err and time.monotonic() < deadline:  # as a person would
             ended = run_verb(capsys, *words)
         for _ in range(2):
