@@ -56,7 +56,7 @@ def run(
         signing=started.signing,
         simulators=started.simulators,
     )
-    LineLoader(station, ids, host.flush)
+    LineLoader(station, host.flush)
     for note in started.notes:
         host.add_to_log(now, note.text, note.severity)
     for problem in texts.problems:

@@ -32,10 +32,10 @@ KEPT = 16
 
 
 class LineDesk:
-    """The lines for `station`, whose ids are `ids`. `flush` sends what the station has queued."""
+    """The lines for `station`. `flush` sends what the station has queued."""
 
-    def __init__(self, station: Station, ids: tuple[int, int], flush: Callable[[], None]) -> None:
-        self._station, self._ids, self._flush = station, ids, flush
+    def __init__(self, station: Station, flush: Callable[[], None]) -> None:
+        self._station, self._flush = station, flush
         self._views: deque[LineView] = deque(maxlen=KEPT)
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -98,7 +98,8 @@ class LineDesk:
         return contact
 
     async def _perform(self, intent: RunLine, parsed: ParsedLine, contact: Contact) -> None:
-        session, output = LineSession(self._station, contact, self._ids, self._flush), LineOutput()
+        session, output = LineSession(self._station, contact, self._flush), LineOutput()
+        session.core.join()
         run: Any = parsed.rule.own or parsed.action.run
         try:
             async with asyncio.timeout(parsed.options.timeout):
@@ -109,6 +110,8 @@ class LineDesk:
         except VerbError as error:
             code = error.code
             output.error(str(error))
+        finally:
+            session.core.leave()
         state = DONE if code == ExitCode.DONE else FAILED
         note = " · ".join(output.notes) or _summary(parsed.name, output, session.told)
         self._end(intent, state, output.lines, note, logged=note in (*session.told, *output.lines))

@@ -20,10 +20,10 @@ PERIOD = 0.1
 
 
 class LineLoader:
-    """Takes the lines for `station`, whose ids are `ids`. `flush` sends what the station has queued."""
+    """Takes the lines for `station`. `flush` sends what the station has queued."""
 
-    def __init__(self, station: Station, ids: tuple[int, int], flush: Callable[[], None]) -> None:
-        self._station, self._ids, self._flush = station, ids, flush
+    def __init__(self, station: Station, flush: Callable[[], None]) -> None:
+        self._station, self._flush = station, flush
         self._desk: LineDesk | None = None
         self._loading: asyncio.Task[None] | None = None
         self._waiting: list[RunLine] = []
@@ -55,5 +55,5 @@ class LineLoader:
 
     async def _import(self) -> None:
         module = await asyncio.to_thread(import_module, "groundstation.verbs.line.desk")
-        self._desk = module.LineDesk(self._station, self._ids, self._flush)
+        self._desk = module.LineDesk(self._station, self._flush)
         self._run_waiting(asyncio.get_running_loop().time())

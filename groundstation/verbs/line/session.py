@@ -1,90 +1,41 @@
-"""LineSession: what a verb does with a vehicle of the running station, in place of a VerbSession with its own links."""
+"""LineSession: the session of a verb that runs in a station (station_core.py), for a line of the screens."""
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
-from itertools import count
-
-import msgspec
 
 from groundstation.intents.base import Intent
-from groundstation.station.station import Station
+from groundstation.station.operator_core import OperatorCore
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestReport
-from groundstation.vehicles.services import VehicleServices
-from groundstation.vehicles.state.vehicle_details import VehicleDetails
-from groundstation.vehicles.state.vehicle_state import VehicleState
-from groundstation.verbs.session.in_control import is_in_control, other_driver
+from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.session import RequestStart
-
-LOOK_PERIOD = 0.05
-"""s between two looks whether what a verb waits for is so."""
-NUMBERS = count(1 << 40)
-"""Numbers of requests, far from those that screens take."""
+from groundstation.verbs.session.station_core import StationContact, StationCore, StationVerbSession
 
 
-class LineContact(msgspec.Struct, frozen=True):
-    """The vehicle, as verbs see it."""
+class LineSession(StationVerbSession):
+    """For the vehicle that the operator has chosen. The station proves its session, and goes on behind the verb."""
 
-    contact: Contact
-    ids: tuple[int, int]
-    session: int
-
-    @property
-    def state(self) -> VehicleState:
-        """What it reports."""
-        return self.contact.state
-
-    @property
-    def details(self) -> VehicleDetails:
-        """What else it reports."""
-        return self.contact.details
-
-    @property
-    def in_control(self) -> bool:
-        """This station is in control, as the vehicle reports it."""
-        return is_in_control(self.state, self.ids, self.session)
-
-    @property
-    def other_driver(self) -> int | None:
-        """System id of another program in control; None if there is none, or the vehicle does not tell."""
-        return other_driver(self.state, self.ids, self.session)
-
-
-class LineSession:
-    """Has the parts of VerbSession that the verbs of line/rules.py use."""
-
-    def __init__(self, station: Station, contact: Contact, ids: tuple[int, int], flush: Callable[[], None]) -> None:
-        self._station = station
-        self.flush = flush
-        self.contact = LineContact(contact, ids, station.operator.session)
-        self.services: VehicleServices = station.services.services_of(contact)
+    def __init__(self, station: OperatorCore, contact: Contact, flush: Callable[[], None]) -> None:
+        core = StationCore(station, contact.state.system, "a line", flush)
+        chosen: VehicleContact = StationContact(station, contact, 0.0)
+        super().__init__(core, core.flush, lambda report: None, chosen)
+        self.selects = contact
         self.told: list[str] = []
         """How its requests have ended; the log has these lines already."""
         self.afterwards = ""
         """Nothing: the station goes on."""
 
     @property
-    def now(self) -> float:
-        """The time of the loop's clock, s."""
-        return asyncio.get_running_loop().time()
-
-    @property
-    def vehicle(self) -> VehicleState:
-        """The vehicle."""
-        return self.contact.state
-
-    @property
     def is_selected(self) -> bool:
         """Whether it is the vehicle that the operator has selected."""
-        return self._station.fleet.selected is self.contact.contact
+        return self.core.station.fleet.selected is self.selects
 
     def do(self, *intents: Intent) -> None:
         """Carry out intents, which go to the selected vehicle."""
         for intent in intents:
-            self._station.handle_intent(intent, self.now)
+            self.core.station.handle_intent(intent, self.now)
         self.flush()
 
     def stop(self, kind: StopKind, *intents: Intent) -> None:
@@ -92,7 +43,7 @@ class LineSession:
         if self.is_selected:
             self.do(*intents)
             return
-        self._station.stop(kind, self.contact.contact, self.now)
+        self.core.station.stop(kind, self.selects, self.now)
         self.flush()
 
     async def need_only_vehicle(self, wanted: int | str | None) -> None:
@@ -105,33 +56,11 @@ class LineSession:
     async def take_part(self) -> None:
         """Do nothing: the station proves its session."""
 
-    async def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Wait until `condition` holds; return whether it does."""
-        until = self.now + seconds
-        while not condition() and self.now < until:  # noqa: ASYNC110 - what it waits for has no event
-            await asyncio.sleep(LOOK_PERIOD)
-        return condition()
-
     async def request(self, start: RequestStart) -> RequestReport:
         """Make a request and return how it ended."""
-        ended: asyncio.Future[RequestReport] = asyncio.get_running_loop().create_future()
-        number = next(NUMBERS)
-        self._station.services.follow(number, lambda report: _end(ended, report))
-        start(number, self.now)
-        self._station.services.collect(self.now)
-        self.flush()
-        try:
-            report = await ended
-        except asyncio.CancelledError:
-            self._station.services.cancel(number, self.now)
-            raise
+        report = await super().request(start)
         self.told.append(f"{self.vehicle.name}: {report.text}")
         return report
-
-
-def _end(ended: asyncio.Future[RequestReport], report: RequestReport) -> None:
-    if report.state.ended and not ended.done():
-        ended.set_result(report)
 
 
 class LineOutput:

@@ -86,7 +86,7 @@ def with_station(vehicle: ForeignVehicle, use: Callable[[Lines], Awaitable[None]
                 await asyncio.sleep(0.1)
 
         lease = asyncio.ensure_future(renew())
-        LineLoader(station, (255, COMPONENT), runner.flush)
+        LineLoader(station, runner.flush)
         lines = Lines(station)
         try:
             async with asyncio.timeout(2 * PATIENCE):
