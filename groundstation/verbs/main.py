@@ -101,17 +101,25 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def choose_action(verb: str, options: argparse.Namespace) -> VerbAction:
-    """Return the action that the options name, and check them. Raises VerbError, FileFormatError, ConfigError."""
+    """Return the action that the options name."""
     action = VERBS[verb][options.action]
-    if action.check is not None:
-        action.check(options)
     if action.only_reads(options):
         action = replace(action, watches=True, takes_part=False, shows_neutral=False)
     return action
 
 
+def check_options(action: VerbAction, options: argparse.Namespace) -> None:
+    """Check what argparse cannot. Raises VerbError, FileFormatError, ConfigError.
+
+    It is done where the verb runs, because it imports the module of the verb.
+    """
+    if action.check is not None:
+        action.check(options)
+
+
 async def _run_offline(action: VerbAction, options: argparse.Namespace, output: Output, caught: list[int]) -> int:
     """Run an action that needs no vehicle."""
+    check_options(action, options)
     _cancel_on_signals(caught)
     return await action.run(None, options, output)
 
@@ -235,6 +243,8 @@ def _find_way(
         runs_here=_runs_in_station(action, options),
     )
     station = find_station(through, endpoints, hello, output.note, within)
+    if station is None or not _runs_in_station(action, options):
+        check_options(action, options)
     if station is not None:
         return station, station.ready.endpoints
     return None, endpoints or choose()

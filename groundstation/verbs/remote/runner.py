@@ -18,7 +18,7 @@ from groundstation.verbs.action import VerbAction
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.later import LaterName, LaterResult
 from groundstation.verbs.line.parser import LineParser
-from groundstation.verbs.main import build_parser, choose_action
+from groundstation.verbs.main import build_parser, check_options, choose_action
 from groundstation.verbs.performing import perform
 from groundstation.verbs.remote.sent_output import SentOutput
 from groundstation.verbs.session.kept_session import KeptSession
@@ -114,6 +114,7 @@ def _parse(words: tuple[str, ...]) -> tuple[VerbAction, argparse.Namespace]:
     """Parse a command line that the shell has parsed before, and load the verb. Raises VerbError."""
     options = build_parser(words[0], LineParser).parse_args(words[1:])
     action = choose_action(words[0], options)
+    check_options(action, options)
     if isinstance(action.run, LaterName | LaterResult):
         action = replace(action, run=action.run.resolve())
     return action, options
