@@ -305,7 +305,7 @@ def test_the_document_names_every_endpoint_option_and_number() -> None:
         f"fed {MAX_DRIVER_BACKLOG * 1000:g} ms of wire time",
         f"has waited {STALE:g} s",
         f"at most {DATAGRAM} bytes",
-        f"within {REDUNDANCY_WINDOW:g} s goes on once",
+        f"within {REDUNDANCY_WINDOW:g} s is forwarded once",
     )
     for number in numbers:
         assert number in text.replace("\n", " "), number
