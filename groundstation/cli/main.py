@@ -17,8 +17,7 @@ WITHOUT_STATION = frozenset({"-h", "--help", "--version"})
 """Options that only print."""
 
 PLAIN = "--plain"
-"""In place of a screen: lines, as PLAIN_VERB prints them."""
-PLAIN_VERB = ("status", "--watch", "--changes")
+"""In place of a screen: lines (groundstation/cli/plain.py)."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str]) -> int:
-    arguments = _verb_first(_plain_verb(arguments))
+    arguments = _verb_first(arguments)
     verb = arguments[0] if arguments else ""
     if hint := describe_action(arguments):
         print(f"groundstation: {hint}", file=sys.stderr)
@@ -43,6 +42,10 @@ def _run(arguments: Sequence[str]) -> int:
         return run_verb(arguments)
     if verb in LOCAL_HELP:
         return _run_local(verb, arguments[1:])
+    if PLAIN in arguments:
+        from groundstation.cli.plain import run as run_plain
+
+        return run_plain(arguments)
     return _run_screen(arguments)
 
 
@@ -63,15 +66,6 @@ def _run_screen(arguments: Sequence[str]) -> int:
     finally:
         if process is not None:
             process.end()
-
-
-def _plain_verb(arguments: Sequence[str]) -> Sequence[str]:
-    """Return the verb that stands for --plain, with endpoints as its option -e; other arguments as they are."""
-    if PLAIN not in arguments or arguments[0] in {**VERB_HELP, **LOCAL_HELP}:
-        return arguments
-    rest = [each for each in arguments if each != PLAIN]
-    bare = [each for each in rest if each.startswith("-") or ":" not in each]
-    return [*PLAIN_VERB, *bare, *(word for each in rest if each not in bare for word in ("-e", each))]
 
 
 def _verb_first(arguments: Sequence[str]) -> Sequence[str]:

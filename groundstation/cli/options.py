@@ -89,8 +89,8 @@ def build_parser() -> tuple[CommandLineParser, list[str]]:
             help=f"where vehicles are, or a name of the config file (default: {DEFAULT_ENDPOINT})"),
         add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station"),
         add("--plain", action="store_true",
-            help="print lines in place of a screen: what changes, and the vehicle's texts; as "
-            "`groundstation status --watch --changes`, whose options it takes"),
+            help="print lines in place of a screen: what changes, and the vehicle's texts, beside a station that verbs "
+            "in other shells go through; takes the options of `groundstation status --watch`"),
         *add_settings(parser),
         add_config(parser),
         add("--version", action=_Version, nargs=0, help="show the version and exit"),

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import signal
 import socket
 import subprocess
-import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from groundstation.sitl.simulators import find_simulator, find_system
 from link.endpoint import Endpoint
-from link.runtime.child_process import end_process, start_module
-
-PR_SET_PDEATHSIG = 1
-"""prctl(2): the kernel sends a signal when the parent dies, even by kill -9."""
+from link.runtime.child_process import end_process, end_with_parent, start_module
 
 END_TIMEOUT = 1.0
 """s for the simulator to stop its motors and exit before it is killed."""
@@ -51,7 +46,7 @@ class Simulator:
             ["--sim", f"udpout:{host}:{port}", "--tlog", self._logs.name, *options],
             output=self._output,
             new_session=True,  # Ctrl-C in the terminal is for the screen only
-            prepare=_die_with_parent(),
+            prepare=end_with_parent(),
         )
 
     @property
@@ -139,15 +134,3 @@ class SimulatorControl:
         for each in self._simulators:
             each.close()
         self._simulators, self._reported = [], []
-
-
-def _die_with_parent() -> Callable[[], None] | None:
-    """Return a function for the child that makes the kernel terminate it when we die; None except on Linux."""
-    if not sys.platform.startswith("linux"):
-        return None
-    prctl = ctypes.CDLL(None).prctl  # looked up before the fork: as little as possible may run after it
-
-    def prepare() -> None:
-        prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-
-    return prepare
