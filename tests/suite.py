@@ -92,7 +92,7 @@ MAIN_JOB = (
 """Tests that are in it all the same: starting, driving, every way to die, serial lines, the bridge, and the verbs that
 arm and stop."""
 
-ROWS = 4
+ROWS = 2
 """Rows of one parametrised test in the short suite at most, evenly from its table; the others are in the rest."""
 
 APPS = "groundstation/ui"
