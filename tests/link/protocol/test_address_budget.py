@@ -39,8 +39,8 @@ def asked(channel: Channel, now: float) -> list[m.Message]:
 def test_one_heartbeat_brings_a_hundred_times_its_size() -> None:
     channel = vehicle()
     channel.receive(heartbeat(0), VICTIM, 0.0)
-    assert len(heartbeat(0)) == 21
-    assert 1900 < told(channel) < 2200
+    assert (len(heartbeat(0)), len(frame(STATUS))) == (21, 43)
+    assert told(channel) == 2100 // 43 * 43
     channel.receive(heartbeat(1), VICTIM, 1.0)
     assert 1900 < told(channel) < 2200, "default telemetry to who sends a HEARTBEAT a second is half of that"
 
@@ -115,10 +115,16 @@ def test_who_has_sent_no_heartbeat_is_not_asked() -> None:
 def test_a_signature_lifts_the_limit_for_good() -> None:
     channel = signing.vehicle(signing.keep(signing.DRIVER), OPEN, bounded=True)
     channel.receive(heartbeat(0, system=100), VICTIM, 0.0)
-    assert 1900 < told(channel) < 2200
+    assert told(channel) == 2100 // 56 * 56, "signatures count"
     channel.receive(signing.signed(), VICTIM, 0.1)
     channel.receive(heartbeat(1, system=100), VICTIM, 0.2)
     assert told(channel) > 100_000
+
+
+def test_a_link_without_keys_counts_no_signatures() -> None:
+    channel = signing.vehicle(signing.keep(), OPEN, bounded=True)
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    assert told(channel) == 2100 // 43 * 43
 
 
 def test_frames_in_both_versions_count_twice() -> None:
