@@ -24,7 +24,7 @@ How a run works:
    case.
 
 Tests that start programs (`DESELECTED`) run unchanged code in them and notice no mutant. What only they test is not run
-here: the entry and files of keys (`NOT_RUN`).
+here: the entry and files of keys, and the words for stations (`NOT_RUN`).
 
 With --results, a mutant that was killed is not run again while its module is the same, and a survivor not while the
 tests are the same, too (results.py).
