@@ -26,6 +26,11 @@ DOCS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
 FOLDERS = ("dialects", "link", "vehicle", "groundstation", "tests", "docs", ".ci")
 
 
+def path_of(doc: Path) -> str:
+    """Return the path of a document in the project."""
+    return doc.relative_to(ROOT).as_posix()
+
+
 def quoted(text: str) -> list[str]:
     """Return the texts between backticks, outside code blocks."""
     return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
@@ -58,6 +63,18 @@ def test_files_and_tests_that_a_document_names_exist(doc: Path) -> None:
 def test_links_between_documents_lead_somewhere(doc: Path) -> None:
     for target in re.findall(r"\]\(([^)#:]+)\)", doc.read_text()):
         assert (doc.parent / target).exists(), f"{doc.name} links to {target}"
+
+
+def anchors(doc: Path) -> set[str]:
+    """Return the anchors of the headings of a document, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", re.sub(r"```.*?```", "", doc.read_text(), flags=re.DOTALL), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("doc", DOCS, ids=path_of)
+def test_links_to_headings_lead_to_one(doc: Path) -> None:
+    for name, anchor in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", doc.read_text()):
+        assert anchor in anchors(doc.parent / name if name else doc), f"{doc.name} links to {name}#{anchor}"
 
 
 def test_parameters_in_the_safety_document_have_their_defaults() -> None:
@@ -156,11 +173,6 @@ LONG_PROSE = (
     "docs/security.md",
 )
 """Documents that are still above the limits of tests/prose.py. No new one joins them."""
-
-
-def path_of(doc: Path) -> str:
-    """Return the path of a document in the project."""
-    return doc.relative_to(ROOT).as_posix()
 
 
 @pytest.mark.parametrize("doc", [doc for doc in DOCS if path_of(doc) not in LONG_PROSE], ids=path_of)
