@@ -27,6 +27,8 @@ pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("verbs through a station"
 Capture = pytest.CaptureFixture[str]
 NOISE = 0.4
 """s of a busy machine that the kernel does not count as waiting."""
+VERBS = 20
+"""In a row: what each of them leaks counts so often."""
 DEMAND = ("send", "MANUAL_CONTROL", "x=400", "--rate", "20", "--for", "60", "--yes")
 
 
@@ -175,7 +177,7 @@ def test_doctor_and_motor_go_through_the_station(verb: Run, vehicle: Vehicle) ->
 
 
 def test_verbs_in_a_row_leak_nothing(verb: Run, station: int) -> None:
-    """A thousand, tried by hand, leak nothing either."""
+    """A thousand, tried by hand, leak nothing either. A thread for work beside the links may start meanwhile."""
 
     def held() -> tuple[int, int]:
         status = Path(f"/proc/{station}/status").read_text()
@@ -184,6 +186,7 @@ def test_verbs_in_a_row_leak_nothing(verb: Run, station: int) -> None:
 
     assert verb("param", "set", "WP_RADIUS", "1").code == 0
     before = held()
-    for number in range(20):
+    most = [each + VERBS // 2 for each in before]
+    for number in range(VERBS):
         assert verb("param", "set", "WP_RADIUS", str(1 + number / 10)).code == 0
-    wait_until(lambda: all(map(operator.le, held(), before)), f"{held()} descriptors and threads after {before}")
+    wait_until(lambda: all(map(operator.lt, held(), most)), lambda: f"{held()} descriptors and threads after {before}")
