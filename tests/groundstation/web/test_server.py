@@ -371,8 +371,9 @@ async def test_the_end_of_the_program_that_wants_it_ends_all() -> None:
             await server.connect()
 
 
-async def test_a_screen_that_ignores_the_end_is_killed() -> None:
-    async with served("sh", "-c", "trap '' HUP; echo pid=$$.; exec sleep 600", apart=True) as server:
+@pytest.mark.parametrize("apart", [True, False])
+async def test_a_screen_that_ignores_the_end_is_killed(apart: bool) -> None:
+    async with served("sh", "-c", "trap '' HUP; echo pid=$$.; exec sleep 600", apart=apart) as server:
         tab = await server.tab()
         pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
         server.end_parent()
