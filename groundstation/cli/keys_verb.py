@@ -60,6 +60,10 @@ class KeyPrinter:
         """Return False: all keys are shown."""
         return False
 
+    def takes_text(self) -> bool:
+        """Return False: Alt is shown as such."""
+        return False
+
     def cancel_hold(self) -> None:
         """Note a report of the mouse."""
         self.names.append("mouse")

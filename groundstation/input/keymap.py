@@ -30,6 +30,9 @@ class KeyEvent(msgspec.Struct, frozen=True):
 SPLIT = KeyEvent("split_sequence")
 """A key whose escape sequence arrived in pieces. Not bound to any action, and so a stop key while driving."""
 
+BURST = KeyEvent("several_keys")
+"""Stands for different characters of one read, which no hand types. Not bound, and so a stop key while driving."""
+
 _COMMON = {key: action.id for action in ACTIONS.values() for key in action.keys}
 
 KEYMAPS: dict[str, dict[str, str]] = {

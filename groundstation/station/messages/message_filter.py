@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 
+from groundstation.natural_order import natural_key
 from groundstation.station.messages.fuzzy import is_match
 from groundstation.views.messages import MessageRow
 
@@ -13,11 +14,11 @@ _NUMBER = re.compile(r"(?P<what>|age)(?P<sign>[<>])(?P<limit>\d+(?:\.\d+)?)(?:hz
 Matches = Callable[[MessageRow, Sequence[str]], bool]
 """Tells whether a row with these field names is shown."""
 
-SORT_KEYS: dict[str, Callable[[MessageRow], tuple[float, str]]] = {
-    "name": lambda row: (0.0, row.name),
-    "rate": lambda row: (-row.rate, row.name),
-    "bytes": lambda row: (-row.bytes, row.name),
-    "age": lambda row: (row.age, row.name),
+SORT_KEYS: dict[str, Callable[[MessageRow], tuple[float, tuple[str | int, ...]]]] = {
+    "name": lambda row: (0.0, natural_key(row.name)),
+    "rate": lambda row: (-row.rate, natural_key(row.name)),
+    "bytes": lambda row: (-row.bytes, natural_key(row.name)),
+    "age": lambda row: (row.age, natural_key(row.name)),
 }
 """Order -> sort key; "source" is the order of the table itself."""
 

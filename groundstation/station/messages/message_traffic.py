@@ -9,6 +9,7 @@ import msgspec
 
 from dialects.enum_names import enum_names
 from dialects.messages import Message, hide_key
+from groundstation.natural_order import natural_key
 from groundstation.station.messages.message_filter import parse_filter, sorted_rows
 from groundstation.station.messages.message_kind import BUCKET, BUCKETS, WINDOW, MessageKind, Tap
 from groundstation.station.messages.unknown_messages import UnknownMessages
@@ -141,7 +142,9 @@ class MessageTraffic:
 
     def _message_rows(self, source: Source, now: float) -> list[MessageRow]:
         rows: list[MessageRow] = []
-        for name, kind in sorted(self._kinds.get(source, {}).items()):
+        kinds = self._kinds.get(source, {})
+        for name in sorted(kinds, key=natural_key):
+            kind = kinds[name]
             rate = kind.rate
             rows.append(_row(source, name, rate, rate * kind.length if rate else 0.0, kind.count, now - kind.at))
         if not source[0]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from groundstation.formats.param_compare import IDENTITY
 from groundstation.formats.param_docs import ParamDocs
+from groundstation.natural_order import natural_key
 from groundstation.views.params import ParamGroup, ParamPageRequest
 from link.services.param.client import Param
 from link.services.param.values import NAME_SIZE
@@ -40,7 +41,7 @@ def count_groups(params: Mapping[str, Param], groups: Mapping[str, str]) -> tupl
         count = counts.setdefault(groups[name], [0, 0])
         count[0] += 1
         count[1] += is_changed(param)
-    return tuple(ParamGroup(name, *counts[name]) for name in sorted(counts))
+    return tuple(ParamGroup(name, *counts[name]) for name in sorted(counts, key=natural_key))
 
 
 class ParamRanks:
@@ -75,7 +76,8 @@ def choose(
     ranks.set_filter(request.filter, docs)
     wanted = None if request.names is None else set(request.names)
     found: tuple[list[Param], ...] = ([], [], [])
-    for name, param in sorted(params.items()):
+    for name in sorted(params, key=natural_key):
+        param = params[name]
         if request.group and groups[name] != request.group:
             continue
         if (wanted is not None and name not in wanted) or (request.changed_only and not is_changed(param)):

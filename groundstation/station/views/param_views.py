@@ -12,6 +12,7 @@ from groundstation.formats.param_compare import compare
 from groundstation.formats.param_docs import ParamDocs
 from groundstation.formats.param_file import format_params, split_unset, unset_text
 from groundstation.formats.param_form import ParamForm
+from groundstation.natural_order import natural_key
 from groundstation.station.services.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewSource
 from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of, is_changed
@@ -194,7 +195,9 @@ class ParamViews:
         docs = self._docs(contact)
         fixed = {name for name, _, _ in found.loadable if docs.get(name).read_only}
         different = tuple(
-            sorted((name, param.value, wanted) for name, wanted, param in found.loadable if name not in fixed)
+            (name, param.value, wanted)
+            for name, wanted, param in sorted(found.loadable, key=lambda each: natural_key(each[0]))
+            if name not in fixed
         )
         return ParamDiff(
             contact.state.system,
@@ -203,7 +206,7 @@ class ParamViews:
             different[:MAX_CHANGES],
             len(found.only_vehicle),
             found.only_file[:MAX_CHANGES],
-            tuple(sorted((*found.own, *fixed)))[:MAX_CHANGES],
+            tuple(sorted((*found.own, *fixed), key=natural_key))[:MAX_CHANGES],
         )
 
     def _build_export(self, request: ParamExportRequest, now: float, wall: float) -> ParamExport | None:

@@ -237,6 +237,7 @@ class ConsoleApp(App[int]):
     def _show(self) -> None:
         self._shown_at = self._clock()
         self._key_hint.note_split(self.gate.split_keys, self._shown_at)
+        self._key_hint.note_burst(self.gate.bursts, self._shown_at)
         now = self._shown_state = self._display_state()
         shown = self._navigator.shown
         if shown is not self.drive:
@@ -371,6 +372,8 @@ class ConsoleApp(App[int]):
         self._light(event.key)
         if name == "app.goto":
             return self._navigator.open_menu_at_once()
+        if name == "app.command":
+            return self._navigator.open_command_at_once(event.key)
         sent = action is not None and action.intent is not None and self.gate.closure is None
         return sent and self.screen is self.drive and self.app_focus and self.drive.question is None
 

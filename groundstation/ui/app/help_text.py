@@ -41,8 +41,9 @@ STATUS_LINE = (
 
 LIST_KEYS = (
     ("↑ ↓", "Move in the list or panel with the blue frame"),
-    ("PgUp  PgDn", "Move by a page"),
-    ("HOME  END", "First and last row"),
+    ("PgUp  PgDn", "Move by a page; also ^b ^f, half a page ^u ^d, a row ^y ^e"),
+    ("HOME  END", "First and last row; also g and G, but for Map and Links, where they are commands"),
+    ("y", "Copy what is under the cursor"),
     ("TAB", "Next panel, where a screen has several"),
     ("ESC", "Close what is open, then go back to Drive"),
 )

@@ -145,6 +145,17 @@ class ScreenNavigator:
         self.open_menu()
         return True
 
+    def open_command_at_once(self, key: str) -> bool:
+        """Open the command line before a widget sees its key, so that the text behind it in one read is the line's.
+
+        Return False where the key belongs to what is on top, as for open_menu_at_once, or the screen has a use for it.
+        """
+        top = self._app.screen
+        if not isinstance(top, ConsoleScreen) or top.takes_text or top.question is not None or top.uses(key):
+            return False
+        self.open_command()
+        return True
+
     def _follow(self, choice: str | None) -> None:
         if choice == BEFORE:
             self.open_before()

@@ -138,6 +138,15 @@ class ConsoleScreen(Screen[None]):
         """Handle a key of this screen; return False for any other, which goes on to the app."""
         return False
 
+    def uses(self, key: str) -> bool:
+        """Return whether a key is one of this screen."""
+        return any(each.key == key for each in self.KEYS)
+
+    @property
+    def marked_text(self) -> str:
+        """The text of what is under the cursor, which `y` copies; "" for nothing."""
+        return ""
+
     def release_key(self, key: str) -> None:
         """Handle the release of a key, on terminals that report it; also while something else has the keys."""
 
@@ -215,7 +224,8 @@ class ConsoleScreen(Screen[None]):
         if self.field.is_attached and self.field.is_open:
             self.field.take_key(event)
             return
-        if not self._answer(event) and not self._clear_filter(event) and not self.perform_key(event):
+        takers = (self._answer, self._clear_filter, self.perform_key, self._copy_marked)
+        if not any(take(event) for take in takers):
             return
         event.stop()
         if self.is_current:
@@ -258,6 +268,12 @@ class ConsoleScreen(Screen[None]):
         """Give pasted text to the field; nothing else takes any."""
         if self.field.is_attached and self.field.is_open:
             self.field.take_paste(event)
+
+    def _copy_marked(self, event: events.Key) -> bool:
+        if event.key != "y" or not self.marked_text:
+            return False
+        self.copy(self.marked_text)
+        return True
 
     def _clear_filter(self, event: events.Key) -> bool:
         return event.key == "escape" and bool(self.kept_filter) and self.filter_by("")

@@ -136,6 +136,12 @@ class ChartsScreen(ConsoleScreen):
         self._show()
         return True
 
+    @property
+    def marked_text(self) -> str:
+        """The name of the chosen field, with what the cursors measure."""
+        spec = self._model.charts.chosen_spec
+        return "" if spec is None else " · ".join(part for part in (spec.label, self._model.measure()) if part)
+
     def _next_view(self) -> None:
         self.say(self._model.next_view())
 

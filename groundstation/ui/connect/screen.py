@@ -132,6 +132,12 @@ class ConnectScreen(ConsoleScreen):
         self._show()
         return True
 
+    @property
+    def marked_text(self) -> str:
+        """The endpoint that is marked, or the name of the log."""
+        choice = self._model.choice
+        return choice.endpoint or choice.file
+
     def _enter(self, *, watch_only: bool = False) -> None:
         choice = self._model.choice
         if choice.endpoint:

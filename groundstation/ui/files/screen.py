@@ -135,6 +135,17 @@ class FilesScreen(ConsoleScreen):
         self._show()
         return True
 
+    @property
+    def marked_text(self) -> str:
+        """The path of the file under the cursor, or what the task is."""
+        model = self._model
+        if model.chosen is Panel.HERE:
+            return str(model.disk.folder / model.local.name) if model.local is not None else ""
+        if model.chosen is Panel.TASKS:
+            lines = model.tasks.lines
+            return lines[model.cursor(Panel.TASKS)].what if lines else ""
+        return model.download_name if model.node is None else model.node.path
+
     def _toggle(self) -> None:
         self._send(self._model.toggle())
 

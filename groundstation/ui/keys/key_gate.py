@@ -11,7 +11,7 @@ from typing import Protocol
 import msgspec
 
 from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
-from groundstation.input.keymap import SPLIT, KeyEvent, Keymap
+from groundstation.input.keymap import BURST, SPLIT, KeyEvent, Keymap
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
@@ -94,6 +94,10 @@ SHOW_PERIOD = 0.1
 """s between two presses of a held drive key that the event loop gets to see: its cap stays lit for 0.15 s after one
 (pressed_keys.py), and nothing else follows from a repeat there."""
 
+BURST_KEYS = 3
+"""Different characters in one read from which on they are a text, which a line has gathered or a program types: two may
+be a chord, or a change of keys on a slow line."""
+
 PALETTE_KEY = "ctrl+p"
 """Opens Textual's command palette, which is a text field."""
 
@@ -130,6 +134,8 @@ class KeyGate:
         self.ping = TerminalPing()
         self.split_keys = 0
         """Keys that arrived in pieces and did nothing, so far."""
+        self.bursts = 0
+        """Reads of several different characters that did nothing, so far."""
 
     @property
     def closure(self) -> GateClosure | None:
@@ -150,6 +156,9 @@ class KeyGate:
             if self._opens_screen(batch):
                 self._opening_until = self._clock() + OPENING_TIMEOUT
                 self._set_closure(OTHER_SCREEN)
+            elif self._is_burst(batch):
+                self.bursts += 1
+                read = msgspec.structs.replace(read, passing=[*self._stops_of(read.passing), BURST])
             counting = [press for press in read.passing if self._counts(press)]
             intents = self.keymap.build_intents(counting, armed=self._armed, driving=self._driving)
             passing = [self.allow(intent) for intent in intents if self._passes(intent)]
@@ -166,10 +175,25 @@ class KeyGate:
 
     def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Handle the stop keys among the keys of a split escape sequence, and no others."""
-        actions = [(press, self.keymap.get_action(press.key)) for press in batch]
-        stops = [press for press, action in actions if action and isinstance(action.intent, (Stop, EmergencyStop))]
+        stops = [press for press in self._stops_of(batch) if not press.release]
         if stops:
             self.handle_keys(stops)
+
+    def _stops_of(self, batch: Sequence[KeyEvent]) -> list[KeyEvent]:
+        """Return the stop keys and the releases of a read."""
+        actions = [(press, self.keymap.get_action(press.key)) for press in batch]
+        return [
+            press
+            for press, action in actions
+            if press.release or (action is not None and isinstance(action.intent, (Stop, EmergencyStop)))
+        ]
+
+    def _is_burst(self, batch: Sequence[KeyEvent]) -> bool:
+        """Return whether a read has so many characters that none of them drives or commands; on Drive only."""
+        if self._closure is not None and self._closure.level is not GateLevel.COMMANDS:
+            return False
+        pressed = {press.key for press in batch if not (press.release or press.repeat) and is_character(press.key)}
+        return len(pressed) >= BURST_KEYS
 
     def is_repeat(self, key: str) -> bool:
         """Return whether the event loop need not see a key, which has been handled: it saw this drive key just now."""
@@ -185,6 +209,11 @@ class KeyGate:
         """End the hold of a key that confirms an action; it must be released before it counts again."""
         with self._lock:
             self._hold.cancel()
+
+    def takes_text(self) -> bool:
+        """Return whether a text field has the keys."""
+        closure = self._closure
+        return closure is not None and closure.level is GateLevel.TEXT
 
     @property
     def hold(self) -> HoldProgress | None:

@@ -10,6 +10,11 @@ from groundstation.ui.keys.mode_keys import MODE_KEYS
 
 SPLIT_HINT = "a key arrived in pieces (slow line) and did nothing; stop keys work. ^g opens screens"
 
+BURST_HINT = "several keys at once: ignored"
+
+NOTED_FOR = 0.5
+"""s for which the keys of such a read may follow it here."""
+
 SHOWN_FOR = 5.0
 """s, as long as it takes to read."""
 
@@ -21,10 +26,13 @@ class KeyHint:
         self._keymap = keymap
         self._text: str | None = None
         self._until = -math.inf
-        self._split = 0
+        self._split = self._bursts = 0
+        self._noted_at = -math.inf
 
     def press(self, key: str, now: float) -> None:
         """Handle a key, by Textual's name."""
+        if now - self._noted_at < NOTED_FOR:
+            return
         self._text = None if self._keymap.get_action(key) else self._explain(key)
         self._until = now + SHOWN_FOR
 
@@ -32,6 +40,11 @@ class KeyHint:
         """Handle the number of keys that arrived in pieces so far."""
         if count != self._split:
             self._split, self._text, self._until = count, SPLIT_HINT, now + SHOWN_FOR
+
+    def note_burst(self, count: int, now: float) -> None:
+        """Handle the number of reads so far whose characters were too many to be keys."""
+        if count != self._bursts:
+            self._bursts, self._text, self._until, self._noted_at = count, BURST_HINT, now + SHOWN_FOR, now
 
     def text(self, now: float) -> str | None:
         """Return the hint while it is shown."""

@@ -173,7 +173,7 @@ class LinksScreen(ConsoleScreen):
         """Handle the keys of this screen."""
         action = self.context.keymap.get_action(event.key)
         repeated = isinstance(event, KeyRepeat)
-        if rows := rows_to_move(event.key, PAGE):
+        if rows := rows_to_move(event.key, PAGE, letters=False):
             self._step(rows)
         elif event.key.isdecimal():
             self._type(event.key)
@@ -191,6 +191,15 @@ class LinksScreen(ConsoleScreen):
             return False
         self._lay_out()
         return True
+
+    @property
+    def marked_text(self) -> str:
+        """The name and system id of the vehicle under the cursor, or the endpoint of the link."""
+        if self._chosen == LINKS_PANEL:
+            view = self._links.value.view
+            return next((each.name for each in view.rows if each.index == self._link), "") if view else ""
+        under = self._vehicles.value.under_cursor
+        return f"{under.name}, system id {under.system}" if under is not None and not self._chosen else ""
 
     def _step(self, rows: int) -> None:
         if self._chosen:

@@ -144,7 +144,7 @@ class MapScreen(ConsoleScreen):
             up, right = STEPS.get(key, (0, 0))
             self._model.ground.move(up, right)
             return bool(up or right)
-        rows = rows_to_move(key, self._panels[self._chosen].size.height)
+        rows = rows_to_move(key, self._panels[self._chosen].size.height, letters=False)
         if rows and self._chosen == 1:
             self._model.select(rows)
         elif rows:

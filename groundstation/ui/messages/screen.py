@@ -152,6 +152,17 @@ class MessagesScreen(ConsoleScreen):
         self._model.set_filter(text)
         return True
 
+    @property
+    def marked_text(self) -> str:
+        """The value of the field under the cursor; in the table the name of the message."""
+        view = self._view
+        if view is None:
+            return ""
+        field = next((each for each in view.fields if each.name == self._field.field), None)
+        if not self._in_detail or field is None:
+            return view.name
+        return " ".join(part for part in (f"{view.name}.{field.name}", field.value, field.unit, field.meaning) if part)
+
     def _open_filter(self) -> None:
         self._frozen = False
         use = FieldUse(self._model.set_filter, self._model.set_filter, cancel=lambda: self._model.set_filter(""))

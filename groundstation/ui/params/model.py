@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
 from groundstation.intents.union import AnyIntent
+from groundstation.natural_order import natural_key
 from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.display.tab_marks import TabMark
 from groundstation.ui.look.colours import BLUE
@@ -95,8 +96,8 @@ class ParamModel:
     @property
     def _names_of_scope(self) -> tuple[str, ...] | None:
         if self.scope.kind is ScopeKind.PENDING:
-            return tuple(sorted(self.pending))[:MAX_NAMES]
-        return tuple(sorted(self.favourites)) if self.scope.kind is ScopeKind.FAVOURITES else None
+            return tuple(sorted(self.pending, key=natural_key))[:MAX_NAMES]
+        return tuple(sorted(self.favourites, key=natural_key)) if self.scope.kind is ScopeKind.FAVOURITES else None
 
     def show_page(self, page: ParamPage) -> tuple[AnyIntent, ...]:
         """Take a page; return the intents that follow: parameters that are not known are fetched once."""
@@ -282,7 +283,8 @@ class ParamModel:
         """Write the pending changes in the order in which they are listed."""
         if not self.may_write or self.page is None:
             return ()
-        changes, number = tuple(self.pending[name] for name in sorted(self.pending)), self._numbers.take()
+        number = self._numbers.take()
+        changes = tuple(self.pending[name] for name in sorted(self.pending, key=natural_key))
         self._writing = number, changes
         return (WriteParams(number, self.page.system, tuple((each.name, each.value) for each in changes)),)
 

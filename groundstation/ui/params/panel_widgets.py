@@ -6,6 +6,7 @@ from typing import Any
 
 from textual.widget import Widget
 
+from groundstation.natural_order import natural_key
 from groundstation.ui.base.panels import BORDERS
 from groundstation.ui.display.wrap import clean, plain
 from groundstation.ui.params.compare import CompareList, CompareValue
@@ -109,7 +110,7 @@ class ParamWidgets:
         self.compare.border_subtitle = "ENTER takes one · a takes all"
 
     def _show_pending(self, model: ParamModel, *, armed: bool, room: int) -> None:
-        changes = tuple(model.pending[name] for name in sorted(model.pending))
+        changes = tuple(model.pending[name] for name in sorted(model.pending, key=natural_key))
         self.pending.show(PendingValue(changes, model.infos, armed, model.last_write))
         self.pending.styles.display = "block" if changes or not room else "none"
         self.pending.styles.height = BORDERS + min(room, len(changes) + (room > MAX_PENDING)) if room else "1fr"

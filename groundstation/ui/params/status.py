@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from groundstation.natural_order import natural_key
 from groundstation.ui.params.edit.checks import needs_care
 from groundstation.ui.params.edit.pending import PendingChange
 from groundstation.views.params import ParamInfo, ParamPage
@@ -67,5 +68,5 @@ def question_text(pending: Mapping[str, PendingChange], infos: Mapping[str, Para
     text = f"write {len(pending)} {'change' if len(pending) == 1 else 'changes'} to the vehicle"
     if not armed:
         return text
-    care = [name for name in sorted(pending) if needs_care(infos.get(name), name)]
+    care = [name for name in sorted(pending, key=natural_key) if needs_care(infos.get(name), name)]
     return f"{text}, which is ARMED" + (f" (care: {_listed(care)})" if care else "")

@@ -44,6 +44,13 @@ class ReplayModel:
         return self.view.current if self.cursor is None else self.cursor
 
     @property
+    def marked(self) -> ReplayEvent | None:
+        """That event, if it is among those of the view."""
+        view, chosen = self.view, self.chosen
+        at = -1 if view is None or chosen is None else chosen - view.top
+        return view.events[at] if view is not None and 0 <= at < len(view.events) else None
+
+    @property
     def advice(self) -> str:
         """Return what stands at this moment."""
         view = self.view

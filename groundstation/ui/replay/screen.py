@@ -12,7 +12,7 @@ from textual.widget import Widget
 from groundstation.intents import replay as r
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.base.list_keys import rows_to_move
-from groundstation.ui.base.local_files import LocalFile
+from groundstation.ui.base.local_files import LocalFile, short_path
 from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.wrap import plain
@@ -23,7 +23,7 @@ from groundstation.ui.files.export import ChosenLog, FileExport
 from groundstation.ui.files.exports import Exports
 from groundstation.ui.files.here import FilesHere
 from groundstation.ui.replay.events import events_value, logs_value
-from groundstation.ui.replay.model import ReplayModel, part_text, short_summary, summary
+from groundstation.ui.replay.model import ReplayModel, event_time, part_text, short_summary, summary
 from groundstation.ui.replay.timeline import AXIS, ReplayTimeline, TimelineValue
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.chart import ChartValue
@@ -134,6 +134,8 @@ class ReplayScreen(ConsoleScreen):
             self._export.progress or self._model.advice
             if self._open
             else "ENTER shows a log in all screens, until Ctrl-Q; nothing is sent meanwhile"
+            if self._files
+            else f"no telemetry log in {short_path(self.context.folder)} yet: each drive is recorded there"
         )
 
     # ---- keys ----
@@ -161,6 +163,14 @@ class ReplayScreen(ConsoleScreen):
         if widget is self._timeline and self._open:
             return "left", "right"
         return LIST_ARROWS if widget is (self._events if self._open else self._logs) else None
+
+    @property
+    def marked_text(self) -> str:
+        """The event under the cursor with its time; the path of the log while none is open."""
+        if self._open:
+            event = self._model.marked
+            return f"{event_time(event)} {event.text}" if event is not None else ""
+        return str(self.context.folder / self._files[self._cursor].name) if self._files else ""
 
     def _choose_log(self, event: events.Key) -> bool:
         if rows := rows_to_move(event.key, self._logs.size.height):

@@ -142,6 +142,12 @@ class SetupScreen(ConsoleScreen):
         self._show()
         return True
 
+    @property
+    def marked_text(self) -> str:
+        """The row of the chain under the cursor, with its advice."""
+        row = self._model.selected
+        return " · ".join(part for part in (f"{row.title}: {row.evidence}", row.advice) if part) if row else ""
+
     def release_key(self, key: str) -> None:
         """Stop the motor whose key was released."""
         if key in MOTOR_KEYS:

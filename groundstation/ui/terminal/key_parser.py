@@ -92,6 +92,9 @@ class KeySink(Protocol):
     def handle_pong(self) -> None:
         """Note the answer to a ping."""
 
+    def takes_text(self) -> bool:
+        """Return whether a text field has the keys."""
+
     def cancel_hold(self) -> None:
         """End the hold of a key that confirms an action: the mouse was used."""
 
@@ -178,6 +181,9 @@ class KeyEventParser(XTermParser):
             return []
         if len(sequence) > LONGEST:
             return list(self._unknown(sequence))
+        if len(sequence) == 2 and sequence[1].isprintable() and self._sink.takes_text():
+            # Alt types nothing into a text: it is ESC and the next key, which tmux holds back for its escape-time.
+            return [events.Key("escape", ESC), *super().feed(sequence[1])]
         if len(sequence) == 2 and not self._parse_stock(sequence, alt=False):
             return [_with_alt(key) for key in self._parse_stock(sequence[1], alt=True)]
         return None

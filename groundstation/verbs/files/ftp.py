@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import PurePosixPath
 
+from groundstation.natural_order import natural_key
 from groundstation.vehicles.requests.disk_jobs import name_problem
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
@@ -23,7 +24,7 @@ async def ls(session: VerbSession, options: argparse.Namespace, output: Output) 
     files = session.services.files
     report, outcome = await _ask(session, lambda number, now: files.list_folder(number, options.path, now))
     if outcome is not None and outcome.done:
-        for entry in sorted(outcome.entries, key=lambda entry: (entry.size is not None, entry.name)):
+        for entry in sorted(outcome.entries, key=lambda entry: (entry.size is not None, natural_key(entry.name))):
             size = "" if entry.size is None else str(entry.size)
             output.line(f"{size:>10}  {entry.name}{'/' if entry.size is None else ''}")
             output.record(name=entry.name, size=entry.size, folder=entry.size is None)

@@ -7,6 +7,7 @@ import asyncio
 import fnmatch
 from collections.abc import Iterable, Sequence
 
+from groundstation.natural_order import natural_key
 from groundstation.vehicles.requests.param_requests import param_type_name
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
@@ -131,7 +132,7 @@ def matching(params: Iterable[Param], patterns: Sequence[str]) -> list[Param]:
     """Return the parameters whose name matches one of the patterns, by name; without patterns all."""
     upper = [pattern.upper() for pattern in patterns] or ["*"]
     chosen = [param for param in params if any(fnmatch.fnmatchcase(param.name.upper(), each) for each in upper)]
-    return sorted(chosen, key=lambda param: param.name)
+    return sorted(chosen, key=lambda param: natural_key(param.name))
 
 
 def _print(param: Param, output: Output) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from groundstation.natural_order import natural_key
 from groundstation.station_socket.names import MODES, plain_names
 from groundstation.vehicles.services import VehicleServices
 from groundstation.verbs.action import ONLY, VerbAction
@@ -59,5 +60,5 @@ def _names(kind: str, services: VehicleServices | None) -> list[str]:
     if kind == "MODE":
         return list(USUAL[MODES]) if services is None else plain_names(mode.name for mode in services.modes.modes)
     if services is not None and kind in ("NAME", "PATTERN"):
-        return plain_names(sorted(services.params.client.params))
+        return plain_names(sorted(services.params.client.params, key=natural_key))
     return list(NAMES.get(kind, ()))

@@ -13,6 +13,7 @@ import msgspec
 from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
 from dialects.messages import Message, field_value
 from groundstation.formats.csv_row import csv_row
+from groundstation.natural_order import natural_key
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.common.tables import format_table
@@ -51,7 +52,7 @@ async def messages(session: VerbSession, options: argparse.Namespace, output: Ou
     began = session.now
     await asyncio.sleep(options.seconds)
     over = session.now - began
-    rows = sorted(counts.items())
+    rows = sorted(counts.items(), key=lambda each: (*each[0][:2], natural_key(each[0][2])))
     cells = [
         (f"{system}/{component}", name, str(each.count), f"{each.count / over:.1f}", f"{each.bytes / over:.0f}")
         for (system, component, name), each in rows

@@ -16,6 +16,8 @@ class Sink:
         """Keys in the rest of split sequences."""
         self.told: list[str] = []
         self.cancelled = 0
+        self.text = False
+        """A text field has the keys."""
 
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         self.batches.append(list(batch))
@@ -25,6 +27,9 @@ class Sink:
 
     def is_repeat(self, key: str) -> bool:
         return False
+
+    def takes_text(self) -> bool:
+        return self.text
 
     def handle_release_support(self) -> None:
         self.told.append("exact")

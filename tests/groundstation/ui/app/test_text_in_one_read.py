@@ -10,8 +10,10 @@ from groundstation.screens import SCREENS
 from groundstation.ui.app.command_line import CommandLine
 from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.drive.screen import DriveScreen
+from groundstation.ui.keys.key_gate import TEXT_FIELD
 from groundstation.ui.log.screen import LogScreen
 from groundstation.ui.messages.screen import MessagesScreen
+from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.files.test_log_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.waits import until
@@ -79,6 +81,36 @@ async def test_lines_that_follow_each_other_on_the_command_line() -> None:
         await until(lambda: isinstance(screen.app.screen, CommandLine))
         type_in(screen, f"mapp{BACKSPACE}\r")
         await until(lambda: "map" in type(screen.app.screen).__name__.lower())
+
+
+@pytest.mark.parametrize("digit", ["1", "6"], ids=["Drive", "Log"])
+async def test_a_line_in_one_read_with_its_colon_runs(digit: str) -> None:
+    async with console() as screen:
+        if digit != "1":
+            await open_screen(screen, digit)
+        type_in(screen, ":speed")
+        await until(lambda: isinstance(screen.app.screen, CommandLine) and screen.app.screen.field.value == "speed")
+        await screen.press("escape")
+        type_in(screen, ":map\r")
+        await until(lambda: "map" in type(screen.app.screen).__name__.lower())
+
+
+async def test_escape_and_a_key_in_one_read_close_a_field(tmp_path: Path) -> None:
+    async with console() as screen:
+        page = await open_screen(screen, "6")
+        await screen.press("slash", "x")
+        screen.app.gate.set_closure(TEXT_FIELD)  # as each tick does
+        type_in(screen, "\x1bw")
+        await screen.pilot.pause()
+        assert not page.field.is_open
+        assert "warnings and worse" in page.hint
+
+
+async def test_a_burst_on_drive_is_named() -> None:
+    async with console() as screen:
+        await screen.show(snapshot())
+        type_in(screen, "speed")
+        await until(lambda: "several keys at once: ignored" in screen.text)
 
 
 @pytest.mark.parametrize(

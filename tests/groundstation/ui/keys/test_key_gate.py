@@ -261,3 +261,41 @@ def test_each_repeat_still_reaches_the_station(gate: KeyGate, station: Recorder)
     shown = [len(list(parser.feed("i"))) for _ in range(3)]
     assert shown == [1, 0, 0]
     assert len(station.of(DriveKeyDown)) == 3
+
+
+@pytest.mark.parametrize("text", ["oil", "speed", "1gr", "GY1", "mjlu"])
+@pytest.mark.parametrize("driving", [False, True])
+def test_a_burst_of_characters_never_drives(gate: KeyGate, station: Recorder, text: str, driving: bool) -> None:
+    gate.handle_keys([press("i")])
+    assert len(station.of(DriveKeyDown)) == 1, "a key alone drives"
+    gate.update(armed=True, driving=driving)
+    station.intents.clear()
+    gate.handle_keys([press(character) for character in text])
+    assert station.intents == ([Stop()] if driving else [])
+    assert gate.bursts == 1
+
+
+def test_stops_and_releases_in_a_burst_count(gate: KeyGate, station: Recorder) -> None:
+    gate.handle_keys([press("a"), press("b"), press("exclamation_mark"), KeyEvent("i", release=True)])
+    assert station.intents == [EmergencyStop(), Stop(), DriveKeyUp(key="i")]
+
+
+def test_a_chord_and_a_key_that_repeats_are_no_burst(gate: KeyGate, station: Recorder) -> None:
+    gate.handle_keys([press("u"), press("i"), press("u"), press("i")])
+    assert len(station.of(DriveKeyDown)) == 4
+    gate.handle_keys([press("up"), press("left"), press("i"), press("up")])
+    assert len(station.of(DriveKeyDown)) == 8
+    assert gate.bursts == 0
+
+
+def test_a_text_behind_the_key_of_a_screen_is_no_burst(gate: KeyGate) -> None:
+    gate.handle_keys([press(key) for key in ("colon", "m", "a", "p")])
+    assert (gate.bursts, gate.closure) == (0, OTHER_SCREEN)
+
+
+def test_a_text_field_is_told_to_the_parser(gate: KeyGate) -> None:
+    assert not gate.takes_text()
+    gate.set_closure(OTHER_SCREEN)
+    assert not gate.takes_text()
+    gate.set_closure(TEXT_FIELD)
+    assert gate.takes_text()

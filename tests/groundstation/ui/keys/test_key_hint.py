@@ -23,3 +23,13 @@ def test_a_bound_key_needs_no_hint(key: str) -> None:
     hint = KeyHint(STANDARD)
     hint.press(key, 1.0)
     assert hint.text(1.0) is None
+
+
+def test_several_keys_at_once_are_named_until_a_later_key() -> None:
+    hint = KeyHint(STANDARD)
+    hint.note_burst(1, 1.0)
+    hint.press("p", 1.1)
+    assert hint.text(1.2) == "several keys at once: ignored"
+    hint.note_burst(1, 1.2)
+    hint.press("i", 2.0)
+    assert hint.text(2.0) is None

@@ -177,3 +177,19 @@ def test_widgets_get_repeats_as_keys_and_releases_apart() -> None:
 def test_noise_does_not_raise(noise: str) -> None:
     sink, _ = feed(noise, "i" * 40)  # more than the longest sequence: what was begun is given up
     assert KeyEvent("i") in sink.batches[-1]
+
+
+@pytest.mark.parametrize(("text", "keys"), [(True, ["escape", "w"]), (False, ["alt+w"])])
+def test_escape_and_a_character_are_two_keys_of_a_text(text: bool, keys: list[str]) -> None:
+    sink = Sink()
+    sink.text = text
+    found = list(KeyEventParser(sink).feed("\x1bw"))
+    assert [press.key for batch in sink.batches for press in batch] == keys
+    assert [event.key for event in found if isinstance(event, events.Key)] == keys
+
+
+def test_an_emergency_stop_behind_escape_counts_in_a_text() -> None:
+    sink = Sink()
+    sink.text = True
+    list(KeyEventParser(sink).feed("\x1b!"))
+    assert [press.key for press in sink.batches[-1]] == ["escape", "exclamation_mark"]
