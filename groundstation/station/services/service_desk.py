@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from dialects.enums import Command, Severity
 from groundstation.intents.services import ServiceIntent
+from groundstation.natural_order import natural_key
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import OperatorSession
@@ -288,7 +289,8 @@ def _folders(paths: tuple[str, ...], listed: dict[str, ListedFolder]) -> list[Fo
     for path in paths:
         folder = listed.get(path)
         if folder is not None:
-            entries = tuple(FileRow(entry.name, entry.size) for entry in folder.entries[:room])
+            found = sorted(folder.entries, key=lambda entry: (entry.size is not None, natural_key(entry.name)))
+            entries = tuple(FileRow(entry.name, entry.size) for entry in found[:room])
             rows.append(FolderRow(path, entries, folder.problem))
             room -= len(entries)
     return rows

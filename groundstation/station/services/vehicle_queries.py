@@ -1,6 +1,6 @@
 """Queries that the station sends on its own: the vehicle's dialect, its telemetry streams, its dangerous settings.
 
-Nothing here moves a vehicle. Only bad news is logged.
+Nothing here moves a vehicle. Only restarts and bad news are logged.
 """
 
 from __future__ import annotations
@@ -51,6 +51,9 @@ class VehicleQueries:
             self._log.add(now, "station", f"{contact.state.name} has restarted", Severity.WARNING, origin=origin)
             contact.check_settings_again()
             contact.state.restart()
+            origin = LogOrigin(contact.state.system)
+            text = f"{contact.state.name} has restarted: its settings are read again"
+            self._log.add(now, "station", text, Severity.NOTICE, origin=origin)
             contact.details.home = None
             self._homes.pop((received.system, received.component), None)
         if contact.settings_check is not None:

@@ -12,6 +12,9 @@ from groundstation.ui.charts.series import SeriesSpec
 from groundstation.ui.charts.stats import StatsRow
 from groundstation.ui.charts.timeline import ChartTimelineValue, TimelineMark, TimelineMode
 
+TIMES = 4
+"""Times under the charts."""
+
 CANDIDATES = 12
 """Fields that are listed while a name is typed."""
 
@@ -151,7 +154,14 @@ class Pictures:
         return ChartTimelineValue(
             axis.dots, bars, marks, self.clock(axis.begin), self.clock(axis.end), cursor,
             "" if cursor is None or axis.cursor is None else self.clock(axis.cursor),
+            self._between,
         )  # fmt: skip
+
+    @property
+    def _between(self) -> tuple[str, ...]:
+        axis = self._model.axis
+        thirds = (axis.begin + (axis.end - axis.begin) * number / (TIMES - 1) for number in range(1, TIMES - 1))
+        return tuple(map(self.clock, thirds))
 
     def clock(self, at: float) -> str:
         """Return the time of day of a time of the station's clock."""

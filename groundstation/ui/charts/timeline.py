@@ -32,6 +32,9 @@ KEY_NAMES = {
 }
 """Keys with names -> what is printed."""
 
+TIME_GAP = 6
+"""Cells between two times, at least."""
+
 HEADER, ROWS = 4, 3
 """Rows from which on there is a header, and rows without it."""
 
@@ -63,6 +66,8 @@ class ChartTimelineValue(msgspec.Struct, frozen=True):
     """Time of day at the edges."""
     cursor: int | None = None
     cursor_time: str = ""
+    between: tuple[str, ...] = ()
+    """Times at equal steps between those at the edges."""
 
 
 class ChartTimeline(Instrument[ChartTimelineValue]):
@@ -126,6 +131,11 @@ def _draw_times(canvas: Canvas, value: ChartTimelineValue, width: int) -> None:
     at = max(AXIS, min(at, width - size))
     if value.cursor is not None:
         canvas.write(at, 2, value.cursor_time, style(WHITE, bold=True))
-    for edge, text in ((AXIS, value.begin), (width - len(value.end), value.end)):
+    steps = len(value.between) + 1
+    last = width - len(value.end)
+    for number, text in enumerate((value.begin, *value.between, value.end)):
+        edge = AXIS + round((last - AXIS) * number / steps)
+        if last - AXIS < steps * (len(text) + TIME_GAP) and 0 < number < steps:
+            continue
         if value.cursor is None or edge + len(text) < at or edge > at + size:
             canvas.write(edge, 2, text, style(DIM))

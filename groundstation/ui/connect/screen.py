@@ -63,6 +63,7 @@ class ConnectScreen(ConsoleScreen):
         self._simulators = RowTable(simulators_value(None, None), id="simulators")
         self._logs = RowTable(logs_value((), None), id="logs")
         self._typed = ""
+        self._disk = context.keep(FilesModel, context.numbers.take, context.folder).disk
 
     # ---- what all screens define ----
 
@@ -76,6 +77,16 @@ class ConnectScreen(ConsoleScreen):
             self.build_panel(self._ports, "serial ports"), self.build_panel(self._simulators, "simulators"), id="right"
         )
         yield Vertical(Vertical(recent, logs, id="before"), right, id="lists")
+
+    def on_mount(self) -> None:
+        """Read what is in the logs."""
+        self._disk.scan()
+        if self._disk.unread:
+            self.run_worker(self._read_summaries())
+
+    async def _read_summaries(self) -> None:
+        await self._disk.read_summaries()
+        self._show()
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the request for what can be connected to."""
@@ -236,7 +247,8 @@ class ConnectScreen(ConsoleScreen):
         model.shows_logs = self.size.width >= WIDE
         if model.chosen is Panel.LOGS and not model.shows_logs:
             model.choose_panel(1)
-        self._logs.show(logs_value(model.logs, model.shown_cursor(Panel.LOGS)))
+        known = {each.name: found for each, found in self._disk.summaries.items()}
+        self._logs.show(logs_value(model.logs, model.shown_cursor(Panel.LOGS), known))
         self._logs.border_subtitle = "o replays it · ENTER shows it on the Files screen"
         opened = model.view.endpoints if model.view else ()
         self._heard.show(heard_value(model.view, model.shown_cursor(Panel.HEARD)))

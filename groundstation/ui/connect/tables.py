@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from groundstation.recent.recent import RecentEndpoint
 from groundstation.sitl.simulators import SIMULATORS
 from groundstation.ui.base.local_files import LocalFile
-from groundstation.ui.files.tables import size_text
+from groundstation.ui.files.log_summary import LogSummary
+from groundstation.ui.files.tables import size_text, summary_cells
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, TEXT, WHITE, YELLOW
 from groundstation.ui.widgets.columns import Column
 from groundstation.ui.widgets.row_table import Cell, RowTableValue, dim
@@ -34,11 +35,19 @@ RECENT_COLUMNS = (
 
 PORT_COLUMNS = (Column("port", 12), Column("what", 10, 1, most=40), Column("state", 14, right=True))
 
-LOG_COLUMNS = (Column("log", 22, most=34), Column("size", 8, right=True), Column("used", 12, 1, right=True))
+LOG_COLUMNS = (
+    Column("log", 24, most=34),
+    Column("length", 7, 1, right=True),
+    Column("driven", 7, 1, right=True),
+    Column("size", 9, 3, right=True),
+    Column("changed", 12, 2, right=True),
+)
 
 SIMULATOR_COLUMNS = (Column("key", 1), Column("simulator", 12), Column("what", 16, 1))
 
 DAY = 86400.0
+
+NO_SUMMARIES: Mapping[str, LogSummary | None] = {}
 
 
 def heard_value(view: ConnectView | None, cursor: int | None) -> RowTableValue:
@@ -157,11 +166,24 @@ def _port_notes(each: PortRow) -> list[Cell]:
     return notes
 
 
-def logs_value(logs: Sequence[LocalFile], cursor: int | None) -> RowTableValue:
-    """Return the table of the logs that are here."""
-    rows = tuple((Cell(each.name), dim(size_text(each.size)), dim(used_text(each.changed))) for each in logs)
-    notes = (dim("logs that you download are listed here"),) if not rows else ()
-    return RowTableValue(LOG_COLUMNS, rows, cursor, notes, titled=False)
+def logs_value(
+    logs: Sequence[LocalFile], cursor: int | None, summaries: Mapping[str, LogSummary | None] = NO_SUMMARIES
+) -> RowTableValue:
+    """Return the table of the logs that are here: how long each is, and for how long a vehicle drove in it.
+
+    `summaries` are by the name of the file: one that is being written is another `LocalFile` with each line.
+    """
+    rows = tuple(
+        (
+            Cell(each.name),
+            *summary_cells(summaries.get(each.name))[1:],
+            dim(size_text(each.size)),
+            dim(used_text(each.changed)),
+        )
+        for each in logs
+    )
+    notes = (dim("logs of your sessions, and those that you download, are listed here"),) if not rows else ()
+    return RowTableValue(LOG_COLUMNS, rows, cursor, notes)
 
 
 def simulators_value(cursor: int | None, state: str | None) -> RowTableValue:

@@ -1,4 +1,4 @@
-"""The file tree of a vehicle as lines: each open folder with what is in it, folders first, by name."""
+"""The file tree of a vehicle as lines: each open folder with what is in it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from pathlib import PurePosixPath
 
 import msgspec
 
-from groundstation.natural_order import natural_key
 from groundstation.views.files import FolderRow
 
 ROOT = "/"
@@ -40,8 +39,7 @@ def build_tree(folders: Iterable[FolderRow], opened: Collection[str]) -> tuple[T
         folder, is_open = listed.get(path), path in opened
         count = len(folder.entries) if folder is not None and not folder.problem else None
         rows.append(TreeRow(path, depth, None, is_open, count, folder.problem if folder and is_open else ""))
-        entries = folder.entries if folder is not None and is_open else ()
-        for entry in sorted(entries, key=lambda each: (each.size is not None, natural_key(each.name))):
+        for entry in folder.entries if folder is not None and is_open else ():
             below = f"{path.rstrip(ROOT)}/{entry.name}"
             if entry.size is None:
                 add(below, depth + 1)

@@ -32,8 +32,15 @@ class LogPanel(Instrument[tuple[LogLine, ...]]):
     BORDER_TITLE = "log"
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Draw lines cut at the right edge, never wrapped: the Log screen shows them whole."""
-        return [strip(*_line(line)).crop(0, width) for line in self.value[-height:]]
+        """Draw lines cut at the right edge with an ellipsis, never wrapped: the Log screen shows them whole."""
+        return [_cut(strip(*_line(line)), width) for line in self.value[-height:]]
+
+
+def _cut(line: Strip, width: int) -> Strip:
+    """Return a line that fits; one that is cut ends with an ellipsis."""
+    if line.cell_length <= width:
+        return line
+    return Strip([*line.crop(0, max(0, width - 1)), *strip(("…", style(DIM)))])
 
 
 class LogRows(Instrument[LogWindow]):

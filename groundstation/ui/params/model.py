@@ -124,9 +124,11 @@ class ParamModel:
             if self.editor is not None and self.editor.row.name in self.infos:
                 self.editor.set_info(self.infos[self.editor.row.name])
 
-    def show_diff(self, view: ParamDiff) -> None:
-        """Take the comparison with a file."""
+    def show_diff(self, view: ParamDiff) -> str | None:
+        """Take the comparison with a file; return how it ends, once for each file."""
+        is_new = bool(view.file) and (self.diff is None or self.diff.file != view.file)
         self.diff = view
+        return _diff_note(view) if is_new else None
 
     def _forget_vehicle(self, system: int) -> None:
         """Forget what was for another vehicle."""
@@ -311,3 +313,11 @@ class ParamModel:
     def status(self) -> str:
         """How the requests stand, one line."""
         return status_text(self.page, self.last_write, edited=bool(self.pending))
+
+
+def _diff_note(diff: ParamDiff) -> str:
+    count = len(diff.different)
+    if not count:
+        return f"{diff.file}: nothing differs, {diff.same} are the same"
+    differ = "differs" if count == 1 else "differ"
+    return f"{diff.file}: {count} {differ}, {diff.same} are the same · TAB lists them, a takes all"

@@ -69,7 +69,7 @@ class ParamsScreen(ConsoleScreen):
             case ParamInfos():
                 self._model.show_infos(view)
             case ParamDiff():
-                self._model.show_diff(view)
+                self.say(self._model.show_diff(view))
             case ParamExport():
                 self._transfers.take(view)
         self._show()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 from groundstation.intents.services import CompareParams, ResetParams, StoreParams
@@ -57,11 +58,20 @@ class ParamTransfers:
 
     def open_save(self) -> None:
         """Ask what to save where."""
-        placeholder = "FILE [all|changed|group] [mavproxy|qgc|mp]"
+        placeholder = f"FILE [all|changed|group] [mavproxy|qgc|mp]; ENTER alone: {self._free_name}"
         self._screen.field.open(FieldUse(self._save), placeholder=placeholder)
 
+    @property
+    def _free_name(self) -> str:
+        """A name that no file has, of the vehicle and the day."""
+        system = self._model.page.system if self._model.page is not None else 0
+        stem = time.strftime(f"rover-{system}-%Y%m%d")
+        names = (f"{stem}.param", *(f"{stem}-{number}.param" for number in range(2, 100)))
+        return next((name for name in names if not (self._folder / name).exists()), "")
+
     def _save(self, text: str) -> None:
-        choice, row, page = parse_save(text, self._folder), self._model.selected, self._model.page
+        choice = parse_save(text.strip() or self._free_name, self._folder)
+        row, page = self._model.selected, self._model.page
         if isinstance(choice, str) or page is None or not page.known:
             self._screen.say(choice if isinstance(choice, str) else "there is nothing to save")
             return

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+import msgspec
 from textual import events
 from textual.containers import Horizontal, Vertical
 from textual.widget import Widget
@@ -14,7 +15,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.local_files import LocalFile, short_path
 from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
-from groundstation.ui.display.display_state import DisplayState, ScreenKey
+from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.wrap import plain
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
@@ -34,6 +35,11 @@ from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, Tra
 from groundstation.views.replay import ReplayView
 
 TLOG = ".tlog"
+CLOSED_KEYS = (
+    ScreenKey("enter", "Open", "Show the telemetry log under the cursor in all screens, until Ctrl-Q"),
+    ScreenKey("y", "Copy", "Copy the path of the log"),
+)
+"""Keys while no log is open."""
 WIDE = 120
 
 
@@ -171,6 +177,11 @@ class ReplayScreen(ConsoleScreen):
             event = self._model.marked
             return f"{event_time(event)} {event.text}" if event is not None else ""
         return str(self.context.folder / self._files[self._cursor].name) if self._files else ""
+
+    def describe(self) -> ScreenInfo:
+        """Return the keys that work now: without an open log those that open one."""
+        info = super().describe()
+        return info if self._open else msgspec.structs.replace(info, keys=CLOSED_KEYS)
 
     def _choose_log(self, event: events.Key) -> bool:
         if rows := rows_to_move(event.key, self._logs.size.height):

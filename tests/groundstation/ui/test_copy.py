@@ -78,3 +78,5 @@ async def test_y_with_nothing_under_the_cursor_copies_nothing(tmp_path: Path) ->
         await screen.press("y")
         assert screen.app.clipboard == ""
         assert "no telemetry log in" in top.hint
+        assert "ENTER Open" in screen.text
+        assert "p Play" not in screen.text

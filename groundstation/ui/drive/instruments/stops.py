@@ -15,7 +15,7 @@ from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none
 NAME, DOES, BOUND, NOW = 11, 9, 7, 7
 """Cells of the columns beside the bar."""
 
-LEAST_BAR, LINE_BAR = 3, 4
+LEAST_BAR, LINE_BAR = 3, 3
 SOON, NEAR = 0.5, 0.8
 """Shares of a bound from which on its bar is amber, and red."""
 
@@ -139,9 +139,9 @@ class StopsLine(Instrument[StopsValue]):
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw name, bar and bound of each; what never stops is red."""
-        parts: list[Part] = [(" stops", style(DIM))]
+        parts: list[Part] = [(" stops without", style(DIM))]
         for stop in self._stops():
-            item = _item(stop)
+            item = _item(stop, gap=" " if len(parts) == 1 else "  ")
             if length(parts) + length(item) > width:
                 break
             parts += item
@@ -155,7 +155,7 @@ class StopsLine(Instrument[StopsValue]):
         return [named[name] for name in ("cmd", "no RC", "gcs", "key", "tty", "you") if name in named]
 
 
-def _item(stop: StopBound) -> list[Part]:
+def _item(stop: StopBound, gap: str) -> list[Part]:
     bar = _bar(stop, LINE_BAR) if stop.bound and not stop.never else []
-    gap: list[Part] = [(" ", style())] if bar else []
-    return [(f"  {SHORT[stop.name]} ", style(DIM)), *bar, *gap, (bound_text(stop), _bound_look(stop))]
+    behind: list[Part] = [(" ", style())] if bar else []
+    return [(f"{gap}{SHORT[stop.name]} ", style(DIM)), *bar, *behind, (bound_text(stop), _bound_look(stop))]

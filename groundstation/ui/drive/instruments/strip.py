@@ -11,8 +11,10 @@ from groundstation.snapshot import LogLine, OperatorView
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.display.hints import hint
 from groundstation.ui.display.wrap import wrap
-from groundstation.ui.drive.instruments.keycaps import KeycapsValue, bound_parts, style_parts
+from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue, bound_parts, style_parts
 from groundstation.ui.drive.instruments.speed import speed_text
+from groundstation.ui.drive.instruments.sticks import Bar, StickBars, build_bars
+from groundstation.ui.drive.instruments.stops import StopsLine, StopsValue
 from groundstation.ui.log.panel import LogPanel
 from groundstation.ui.look.colours import BLUE, DIM, PANEL, TEXT, badge, style
 from groundstation.ui.widgets.alert import LOOKS, MARKS, AlertValue
@@ -26,6 +28,12 @@ from groundstation.ui.widgets.status import (
     mode_badge,
     recording_parts,
 )
+
+TALL = 14
+"""Rows from which on there are bars, what stops the vehicle, and caps, if the alerts leave room."""
+
+LEAST_TEXTS = 2
+"""Lines of the log that they leave."""
 
 HINT_LINES = 2
 """Lines of the hint, above the footer."""
@@ -41,6 +49,8 @@ class StripValue(msgspec.Struct, frozen=True):
     hint: str
     texts: tuple[LogLine, ...]
     """The newest messages, for the lines that are left."""
+    bars: tuple[Bar, ...] = ()
+    stops: StopsValue = StopsValue()
 
     @classmethod
     def from_state(cls, now: DisplayState) -> StripValue:
@@ -52,6 +62,8 @@ class StripValue(msgspec.Struct, frozen=True):
             FooterValue.from_state(now),
             hint(now),
             now.snapshot.texts,
+            build_bars(now.snapshot),
+            StopsValue.from_state(now),
         )
 
 
@@ -68,9 +80,20 @@ class DrivingStrip(Instrument[StripValue]):
             room, hints = room + len(hints) - 1, hints[:1]
         if len(alerts) > room:
             alerts = [*alerts[: room - 1], self._more(width)] if room else []
+        if height >= TALL and self.value.status.snapshot.vehicle is not None:
+            for part in self._drive(width):
+                if room - len(alerts) - len(part) >= LEAST_TEXTS:
+                    top, room = [*top, *part], room - len(part)
         texts = LogPanel(self.value.texts).draw(width, room - len(alerts)) if room > len(alerts) else []
         blank = [strip((" " * width, style()))] * (room - len(alerts) - len(texts))
         return [*top, *alerts, *blank, *texts, *hints, *KeyFooter(self.value.footer).draw(width, 1)]
+
+    def _drive(self, width: int) -> Iterator[list[Strip]]:
+        """Yield what is shown beside the lines of the vehicle, the most important first."""
+        value, inside = self.value, width - 2
+        yield StopsLine(value.stops).draw(width, 1)
+        yield [Strip([*strip((" ", style())), *line]) for line in StickBars(value.bars).draw(inside, 2)]
+        yield [Strip([*strip((" ", style())), *line]) for line in Keycaps(value.caps).draw(inside, 3)]
 
     def _hints(self, width: int) -> list[Strip]:
         lines = wrap(f"› {self.value.hint}", width - 2)[:HINT_LINES]

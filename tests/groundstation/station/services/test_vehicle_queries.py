@@ -169,6 +169,8 @@ def test_a_restarted_vehicle_has_a_new_track_and_home() -> None:
     cockpit.run(0.1)
     assert (70.0, 80.0) not in selected.state.trail.points
     assert cockpit.view.home is None
+    told = [line.text for line in cockpit.snapshot.texts if "has restarted" in line.text]
+    assert told == ["ArduPilot rover 1 has restarted: its settings are read again"]
 
 
 def test_the_clock_of_another_component_is_no_reboot() -> None:

@@ -114,6 +114,14 @@ def test_scales_that_people_read(low: float, high: float, wanted: tuple[float, f
     assert nice_scale(low, high) == pytest.approx(wanted)
 
 
+@pytest.mark.parametrize(("width", "shown"), [(90, 4), (40, 2)])
+def test_times_stand_under_the_charts_where_there_is_room(width: int, shown: int) -> None:
+    times = ("10:00:20", "10:00:40")
+    value = ChartTimelineValue(60, begin="10:00:00", end="10:01:00", between=times)
+    line = texts(ChartTimeline(value).draw(width, 3))[2]
+    assert line.split() == ["time", "10:00:00", *(times if shown == 4 else ()), "10:01:00"]
+
+
 def test_the_timeline_draws_modes_events_and_keys_by_room() -> None:
     value = ChartTimelineValue(
         60, (TimelineMode(0, 30, "HOLD"), TimelineMode(30, 60, "MANUAL")),

@@ -27,6 +27,7 @@ from tests.groundstation.ui.example_connect import (
     remember,
 )
 from tests.groundstation.ui.example_files import fill_folder
+from tests.groundstation.ui.files.test_log_summary import HEARTBEATS, log
 from tests.groundstation.ui.link_examples import FLEET, VIEWS
 from tests.groundstation.ui.pilots import Console, console
 from tests.waits import until
@@ -184,6 +185,14 @@ async def test_a_log_that_is_here_leads_to_the_files_screen(tmp_path: Path) -> N
         assert "ENTER shows 2-00003.bin on the Files screen" in screen.text
         await screen.press("enter")
         assert any(line.startswith("│› 2-00003.bin") for line in screen.text.splitlines())
+
+
+async def test_logs_here_tell_how_long_they_are(tmp_path: Path) -> None:
+    (tmp_path / "a.tlog").write_bytes(log(HEARTBEATS, 754.0, 100))
+    async with console((140, 45), UNCONNECTED, folder=tmp_path) as screen:
+        await open_connect(screen)
+        await until(lambda: "12:34" in screen.text)
+        assert "length" in screen.text
 
 
 async def test_arrows_skip_the_logs_where_there_is_no_room(tmp_path: Path) -> None:

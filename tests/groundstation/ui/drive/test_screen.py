@@ -116,6 +116,15 @@ async def test_on_strip_keys_drive_and_the_driver_sees_what_matters(size: tuple[
         assert screen.text.startswith(" DISARMED  MANUAL")
 
 
+async def test_the_strip_has_caps_bars_and_bounds_where_there_is_room() -> None:
+    words = ("stops without", " steering ", " j   k   l ")
+    async with console(size=(60, 20)) as screen:
+        await until(lambda: all(map(screen.text.__contains__, words)))
+    async with console(size=(60, 12)) as screen:
+        await until(lambda: "0.84 m/s" in screen.text)
+        assert not any(map(screen.text.__contains__, words))
+
+
 @pytest.mark.parametrize("size", [(40, 10), (60, 15)])
 async def test_the_strip_shows_the_first_alert_and_arming_in_any_case(size: tuple[int, int]) -> None:
     bad = vehicle(

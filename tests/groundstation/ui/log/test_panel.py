@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.log.panel import LogPanel
+from tests.groundstation.ui.examples import NOON
 from tests.groundstation.ui.frames import texts
 
 
@@ -17,3 +18,11 @@ def test_the_log_shows_the_newest_and_how_often() -> None:
     shown = texts(LogPanel(lines).draw(80, 3))
     assert [line.split()[2] for line in shown] == ["7", "8", "9"]
     assert "×9" in shown[-1]
+
+
+def test_a_line_that_is_cut_ends_with_an_ellipsis() -> None:
+    line = LogLine(time=NOON, severity=6, label="vehicle", text="a text of thirty characters...")
+    (shown,) = texts(LogPanel((line,)).draw(40, 1))
+    assert (len(shown), shown[-1]) == (40, "…")
+    (whole,) = texts(LogPanel((line,)).draw(46, 1))
+    assert whole.endswith("characters...")

@@ -312,6 +312,7 @@ async def test_a_file_is_compared_and_its_values_are_taken(tmp_path: Path) -> No
         assert requested(screen)[-1] == ParamDiffRequest()
         screen.station.offer_view(DIFF)
         await screen.show(snapshot())
+        assert "rover-safe.param: 3 differ" in screen.text
         await screen.press("tab", "tab", "down", "enter")
         await until(lambda: "✎ COMPASS_OFS_X" in screen.text)
         assert "✎ ATC_STR_RAT_FF" not in screen.text
@@ -339,6 +340,21 @@ async def test_a_file_is_saved_and_one_that_is_there_only_after_a_word(tmp_path:
         await screen.show(snapshot())
         await until(lambda: "not saved: there is nothing to save" in screen.text)
         assert (tmp_path / "a.parm").read_text() == "A 1\n"
+
+
+async def test_enter_alone_saves_under_a_name_that_is_free(tmp_path: Path) -> None:
+    async with console((140, 45), folder=tmp_path) as screen:
+        await open_described(screen)
+        await screen.press("S")
+        name = screen.text.partition("ENTER alone: ")[2].split()[0]
+        assert name.startswith("rover-1-2")
+        await screen.press("enter")
+        await until(lambda: requested(screen)[-1] == ParamExportRequest(1, "mavproxy"))
+        screen.station.offer_view(ParamExport(1, "A 1\n", 1))
+        await screen.show(snapshot())
+        await until(lambda: (tmp_path / name).exists())
+        await screen.press("S")
+        assert "-2.param" in screen.text
 
 
 async def test_store_asks_once_and_reset_wants_the_word() -> None:
