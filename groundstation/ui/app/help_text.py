@@ -41,7 +41,7 @@ STATUS_LINE = (
 
 LIST_KEYS = (
     ("↑ ↓", "Move in the list or panel with the blue frame"),
-    ("PgUp  PgDn", "Move by a page; also ^b ^f, half a page ^u ^d, a row ^y ^e"),
+    ("PgUp  PgDn", "Move by a page; also ^b ^f, half a page ^u ^d"),
     ("HOME  END", "First and last row; also g and G, but for Map and Links, where they are commands"),
     ("y", "Copy what is under the cursor"),
     ("TAB", "Next panel, where a screen has several"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 ALL_ROWS = 10**6
 """More rows than any list has."""
 
-_STEPS = {"up": -1, "down": 1, "ctrl+y": -1, "ctrl+e": 1, "home": -ALL_ROWS, "end": ALL_ROWS}
+_STEPS = {"up": -1, "down": 1, "home": -ALL_ROWS, "end": ALL_ROWS}
 _PAGES = {"pageup": -1, "pagedown": 1, "ctrl+b": -1, "ctrl+f": 1}
 _HALVES = {"ctrl+u": -1, "ctrl+d": 1}
 _LETTERS = {"g": -ALL_ROWS, "G": ALL_ROWS}

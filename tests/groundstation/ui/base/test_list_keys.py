@@ -16,7 +16,7 @@ OWN_LETTERS = ("map", "links")
 @pytest.mark.parametrize(
     ("key", "rows"),
     [
-        ("up", -1), ("down", 1), ("ctrl+y", -1), ("ctrl+e", 1), ("pageup", -9), ("ctrl+b", -9), ("pagedown", 9),
+        ("up", -1), ("down", 1), ("ctrl+y", 0), ("pageup", -9), ("ctrl+b", -9), ("pagedown", 9),
         ("ctrl+f", 9), ("ctrl+u", -5), ("ctrl+d", 5), ("home", -ALL_ROWS), ("g", -ALL_ROWS), ("end", ALL_ROWS),
         ("G", ALL_ROWS), ("j", 0), ("k", 0), ("x", 0),
     ],
@@ -30,7 +30,7 @@ def test_letters_are_left_to_screens_that_use_them() -> None:
 
 
 def test_no_screen_uses_a_key_of_lists_for_something_else() -> None:
-    keys = {"ctrl+y", "ctrl+e", "ctrl+b", "ctrl+f", "ctrl+u", "ctrl+d"}
+    keys = {"ctrl+b", "ctrl+f", "ctrl+u", "ctrl+d"}
     for row in SCREENS:
         own = {each.key for each in load_screen(row).KEYS}
         assert not own & (keys if row.id in OWN_LETTERS else keys | {"g", "G"}), row.id
