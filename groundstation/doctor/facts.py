@@ -46,6 +46,8 @@ class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     links: tuple[LinkView, ...] = ()
     endpoints: tuple[str, ...] = ()
     id_conflict: str | None = None
+    free_id: int = 254
+    """System id that nobody who is heard uses."""
     terminal: TerminalFacts | None = None
     """None: there is no screen."""
     firmware: str = ""
@@ -74,3 +76,8 @@ class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     """Further parameters that are known."""
     motors_tested: frozenset[int] = frozenset()
     """Numbers of the motors that were turned in this session."""
+
+    @property
+    def another_id(self) -> str:
+        """How this program gets an id that nobody else uses, as the end of a remedy."""
+        return f"start with --system {self.free_id}"

@@ -133,9 +133,9 @@ def dialect(facts: DoctorFacts) -> ChainFinding:
 def our_id(facts: DoctorFacts) -> ChainFinding:
     """Judge whether we are who the vehicle obeys, and alone with our id."""
     if facts.id_conflict is not None:
-        return fault(facts.id_conflict, "end the other one, or use --system")
+        return fault(facts.id_conflict, f"end the other one, or {facts.another_id}")
     if facts.own_id:
-        return fault("another program sends with our ids", "end it, or use --system", "app.links")
+        return fault("another program sends with our ids", f"end it, or {facts.another_id}", "app.links")
     if facts.vehicle is None:
         return ok(f"{facts.system}, nobody else has it")
     wanted = _obeyed(facts)

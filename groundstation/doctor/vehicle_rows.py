@@ -22,11 +22,13 @@ def control(facts: DoctorFacts) -> ChainFinding:
     if view is None:
         return AFTER_VEHICLE
     if facts.clash:
-        return fault("two programs send with the ids of the driver", "end one of them, or use --system", "app.links")
+        return fault(
+            "two programs send with the ids of the driver", f"end one of them, or {facts.another_id}", "app.links"
+        )
     if view.in_control:
         return ok("this station")
     if view.twin:
-        return fault(f"another program with our id {view.driver}", "end it, or use --system", "app.links")
+        return fault(f"another program with our id {view.driver}", f"end it, or {facts.another_id}", "app.links")
     if view.driver == facts.system:
         return ok(f"ground station {view.driver}")
     if view.driver:

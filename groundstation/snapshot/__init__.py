@@ -277,6 +277,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """Those of these lines that are about simulators of this station, which end with it."""
     id_conflict: str | None = None
     """Another ground station that uses our system id, as a text for the driver."""
+    free_id: int = 254
+    """System id that no ground station and no vehicle that is heard uses, for --system."""
     blind_stop: str = ""
     """What is known of a stop that goes to vehicles that are not heard; "" while none does."""
     handover: HandoverNotice | None = None

@@ -28,6 +28,7 @@ class SnapshotBuilder:
             left_armed=parts.departure.left_armed(now),
             end_armed=parts.departure.end_armed(around.simulated, now),
             id_conflict=links.id_conflict.text(now),
+            free_id=links.stations.free_id(parts.ids[0], fleet.system_ids),
             blind_stop=parts.commander.blind_stops.describe(),
             vehicles=fleet.system_ids,
             not_shown=fleet.not_shown,

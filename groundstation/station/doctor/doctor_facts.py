@@ -75,6 +75,7 @@ def collect(
         links=snapshot.links,
         endpoints=snapshot.endpoints,
         id_conflict=snapshot.id_conflict,
+        free_id=snapshot.free_id,
         terminal=terminal,
         firmware=contact.details.firmware if contact else "",
         rover_dialect=bool(state and state.has_rover_dialect),

@@ -5,6 +5,8 @@ Vehicles cannot tell the demands of two stations with one system id apart. Time 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
+
 from dialects.enums import VehicleType
 from dialects.messages import Heartbeat
 from groundstation.views.links import StationRow
@@ -40,6 +42,11 @@ class GroundStations:
         self._expire(now)
         return tuple(StationRow(*ids, round(now - at, 1)) for ids, at in sorted(self._heard.items()))
 
+    def free_id(self, ours: int, vehicles: Collection[int]) -> int:
+        """Return the highest system id below 255 that is not ours, and that nobody uses who was heard."""
+        used = {ours, *vehicles, *(system for system, _ in self._heard)}
+        return next((system for system in range(254, 0, -1) if system not in used), ours)
+
     def _expire(self, now: float) -> None:
         self._heard = {ids: at for ids, at in self._heard.items() if now - at <= HEARD_WITHIN}
 
@@ -51,11 +58,12 @@ CONFLICT_TIMEOUT = 5.0
 class IdConflict:
     """The last ground station heard with our system id and another component id.
 
-    Frames with both of our ids are dropped by the link, which reports them itself.
+    Frames with both of our ids are dropped by the link, which reports them itself. `free_id` returns an id that nobody
+    uses.
     """
 
-    def __init__(self, system: int) -> None:
-        self._system = system
+    def __init__(self, system: int, free_id: Callable[[], int]) -> None:
+        self._system, self._free_id = system, free_id
         self._component = 0
         self._monitor = HeartbeatMonitor(CONFLICT_TIMEOUT)
 
@@ -73,4 +81,5 @@ class IdConflict:
         """Return which station uses our system id at present; None when there is none."""
         if not self._monitor.is_alive(now):
             return None
-        return f"ground station {self._system}/{self._component} uses our system id: use --system"
+        who = f"ground station {self._system}/{self._component}"
+        return f"{who} uses our system id: start with --system {self._free_id()}"

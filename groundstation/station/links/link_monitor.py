@@ -43,7 +43,7 @@ class LinkMonitor:
         self.heartbeat = HeartbeatSender(now)
         self.stations = GroundStations()
         self.params = HeardParams()
-        self.id_conflict = IdConflict(system)
+        self.id_conflict = IdConflict(system, lambda: self.stations.free_id(system, ()))
         self._events = LinkEvents()
 
     def receive(self, received: Received, now: float) -> None:

@@ -92,7 +92,9 @@ class ConsoleApp(App[int]):
         self._proxy = find_proxy()
         self.gate = KeyGate(client, keymap, clock, find_proxy=self._find_proxy)
         self._first = first
-        driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
+        driver: type[Driver] | None = None
+        if terminal is not None:
+            driver = ConsoleDriver.bind(self.gate, terminal, lambda: bool(self.gate.ping.waited(self._clock())))
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
         self._snapshot, self._outage = Snapshot(), client.outage

@@ -225,9 +225,11 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     if vehicle is None or vehicle.undriven:
         return
     if not vehicle.in_control and (vehicle.driver or vehicle.armed):
-        who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
         if vehicle.twin:
-            who = f"another program with our id {vehicle.driver} drives (use --system)"
+            text = f"another program with our id {vehicle.driver} drives: start with --system {now.snapshot.free_id}"
+            yield Alert(AlertLevel.WARNING, text)
+            return
+        who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
         asks = f"{now.key('vehicle.control')} requests control"
         if now.away is not None:
             who = f"tmux was detached for {now.away:.0f} s, control was released"

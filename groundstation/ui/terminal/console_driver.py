@@ -9,6 +9,7 @@ import contextlib
 import os
 import selectors
 import termios
+import time
 import weakref
 from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterable, Iterator
@@ -39,6 +40,9 @@ ABANDONED = f"{RELEASE_MOUSE}\x1b[<u\x1b[?2004l\x1b[?2048l\x1b[?1004l\x1b[?7h\x1
 SUSPEND_PATIENCE = 0.1
 """s that a suspend waits for its neutral demand to be sent."""
 
+ANSWER_PATIENCE = 0.1
+"""s that the end of the program waits for the answer to the last ping."""
+
 SELECT_TIMEOUT = 0.1
 """Longest wait of the input thread, s, while a lone Escape or the end of a paste may have to be noticed."""
 
@@ -52,6 +56,8 @@ class ConsoleDriver(LinuxDriver):
 
     sink: KeySink
     terminal: TerminalFile
+    awaits_answer: Callable[[], bool] = staticmethod(lambda: False)
+    """Return whether the terminal, which answers pings, has not answered the last one. Called from any thread."""
 
     def __init__(self, app: App[Any], **options: Any) -> None:
         super().__init__(app, **options)
@@ -63,9 +69,12 @@ class ConsoleDriver(LinuxDriver):
         self.input_tty = os.isatty(self.fileno)
 
     @classmethod
-    def bind(cls, sink: KeySink, terminal: TerminalFile) -> type[ConsoleDriver]:
+    def bind(
+        cls, sink: KeySink, terminal: TerminalFile, awaits_answer: Callable[[], bool] = lambda: False
+    ) -> type[ConsoleDriver]:
         """Return a driver class for one app: Textual creates the driver itself and passes no arguments of ours."""
-        return type("BoundConsoleDriver", (cls,), {"sink": sink, "terminal": terminal})
+        bound = {"sink": sink, "terminal": terminal, "awaits_answer": staticmethod(awaits_answer)}
+        return type("BoundConsoleDriver", (cls,), bound)
 
     def start_application_mode(self) -> None:
         """Set up the terminal, also after a suspend, and request key releases."""
@@ -134,7 +143,14 @@ class ConsoleDriver(LinuxDriver):
         super()._sigtstp_application(*arguments)
 
     def disable_input(self) -> None:
-        """End the input thread, which waits for keys without a limit."""
+        """End the input thread, which waits for keys without a limit.
+
+        It reads the answer to the last ping first: one that comes later is typed into the shell.
+        """
+        if self._key_thread is not None and self._key_thread.is_alive():
+            deadline = time.monotonic() + ANSWER_PATIENCE
+            while self.awaits_answer() and time.monotonic() < deadline:
+                time.sleep(ANSWER_PATIENCE / 20)
         os.write(self._end_sender, b"x")
         super().disable_input()
         os.read(self._end_signal, 1)

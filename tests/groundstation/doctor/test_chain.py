@@ -114,7 +114,7 @@ CASES: list[tuple[str, DoctorFacts, Health, str]] = [
     ("dialect", facts(rover_dialect=False, unknown_share=0.26), OK, "26% of the frames"),
     ("dialect", facts(mismatched=("HEARTBEAT",)), WARNING, "HEARTBEAT"),
     ("our_id", facts(), OK, "255, nobody else"),
-    ("our_id", facts(id_conflict="ground station 255/1 uses our system id: use --system"), FAULT, "255/1"),
+    ("our_id", facts(id_conflict="ground station 255/1 uses our system id: start with --system 254"), FAULT, "255/1"),
     ("our_id", facts(own_id=True), FAULT, "another program"),
     ("our_id", facts(settings=setting("MAV_GCS_SYSID", 250.0)), FAULT, "obeys ground station 250 only"),
     ("our_id", facts(settings=setting("SYSID_MYGCS", 300.0)), FAULT, "obeys ground station 44 only"),

@@ -212,3 +212,16 @@ def test_disarming_while_a_request_waits_leaves_it() -> None:
     cockpit.do(Disarm())
     cockpit.run(0.5)
     assert notice(cockpit) is not None
+
+
+def test_a_program_with_our_id_is_not_waited_for() -> None:
+    vehicle = driven_by_another()
+    vehicle.driver = OURS
+    cockpit = cockpit_with(vehicle)
+    vehicle.send(m.RoverControl(77, OURS, 190, 0))
+    cockpit.run(0.1)
+    assert cockpit.view.twin
+    cockpit.do(RequestControl())
+    cockpit.run(0.5)
+    assert len(vehicle.commands(CONTROL)) == 1
+    assert cockpit.view.control_wait is None, "the vehicle cannot ask that program"

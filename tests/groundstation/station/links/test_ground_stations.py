@@ -27,6 +27,14 @@ def test_stations_by_id_with_the_time_since_their_heartbeat() -> None:
     assert stations.build_rows(13.5) == ()
 
 
+def test_a_free_id_is_nobodys() -> None:
+    stations = GroundStations()
+    assert stations.free_id(255, ()) == 254
+    receive(stations, 254, 190, 1.0)
+    assert stations.free_id(255, (1, 253)) == 252
+    assert stations.free_id(252, (253,)) == 251
+
+
 def test_a_flood_of_ids_does_not_grow_the_table_and_expires() -> None:
     stations = GroundStations()
     for system in range(1, 255):

@@ -8,7 +8,7 @@ from groundstation.station.links.ground_stations import CONFLICT_TIMEOUT
 from groundstation.station.station import Station
 from link.core import Peer, Received
 
-TEXT = "ground station 255/230 uses our system id: use --system"
+TEXT = "ground station 255/230 uses our system id: start with --system 254"
 
 
 def beat(station: Station, now: float, *, system: int = 255, component: int = 230, kind: int = VehicleType.GCS) -> None:

@@ -121,6 +121,12 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         "ground station 254 drives: g requests control",
     ),
     (
+        snapshot(vehicle=vehicle(in_control=False, driver=255, twin=True), free_id=253),
+        {},
+        AlertLevel.WARNING,
+        "another program with our id 255 drives: start with --system 253",
+    ),
+    (
         snapshot(vehicle=vehicle(in_control=False, driver=None)),
         {},
         AlertLevel.WARNING,
@@ -128,10 +134,10 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     ),
     (snapshot(vehicle=vehicle(warnings=("FS_GCS_ENABLE is 0",))), {}, AlertLevel.WARNING, "FS_GCS_ENABLE is 0"),
     (
-        snapshot(id_conflict="ground station 255/230 uses our system id: use --system"),
+        snapshot(id_conflict="ground station 255/230 uses our system id: start with --system 254"),
         {},
         AlertLevel.WARNING,
-        "ground station 255/230 uses our system id: use --system",
+        "ground station 255/230 uses our system id: start with --system 254",
     ),
     (
         snapshot(

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import array
 import asyncio
+import fcntl
+import os
+import termios
+import tty
 
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.ui.keys.key_gate import GateClosure
+from groundstation.ui.terminal.console_driver import PING, ConsoleDriver
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, app_on_a_pty
 from tests.waits import until
 
@@ -106,3 +112,36 @@ async def test_the_emergency_stop_works_in_the_palette() -> None:
         await until(lambda: app.screen is not app.drive)
         terminal.type("!")
         await until(lambda: station.of(EmergencyStop))
+
+
+async def test_the_answer_to_the_last_ping_is_not_left_to_the_shell() -> None:
+    async with app_on_a_pty() as (app, _, terminal):
+        await until(lambda: app.gate.ping.round_trip is not None)
+        terminal.answers = False
+        drawn = len(terminal.drawn)
+        await until(lambda: PING.encode() in terminal.drawn[drawn:])
+        driver = app._driver
+        assert isinstance(driver, ConsoleDriver)
+        awaits, asked = driver.awaits_answer, list[bool]()
+
+        def answer_at_the_end() -> bool:
+            if not asked:
+                terminal.type(b"\x1b[0n")
+            asked.append(awaits())
+            return asked[-1]
+
+        driver.awaits_answer = answer_at_the_end  # type: ignore[method-assign]
+        keyboard = os.dup(driver.fileno)
+        app.end()
+        await until(lambda: not app.is_running)
+        assert asked[:1] == [True], "it waits for the answer"
+        assert unread_bytes(keyboard) == 0
+        os.close(keyboard)
+
+
+def unread_bytes(descriptor: int) -> int:
+    """Return how many bytes the next reader of a terminal gets, line ends or not."""
+    tty.setcbreak(descriptor, termios.TCSANOW)
+    count = array.array("i", [0])
+    fcntl.ioctl(descriptor, termios.FIONREAD, count)
+    return count[0]
