@@ -47,13 +47,11 @@ class VehicleQueries:
         """Handle a message of a vehicle."""
         own = received.component == contact.state.component  # another component has a clock of its own
         if own and contact.stream_requests.handle_message(received.message, now):
-            origin = LogOrigin(received.system, received.component)
-            self._log.add(now, "station", f"{contact.state.name} has restarted", Severity.WARNING, origin=origin)
             contact.check_settings_again()
             contact.state.restart()
             origin = LogOrigin(contact.state.system)
             text = f"{contact.state.name} has restarted: its settings are read again"
-            self._log.add(now, "station", text, Severity.NOTICE, origin=origin)
+            self._log.add(now, "station", text, Severity.WARNING, origin=origin)
             contact.details.home = None
             self._homes.pop((received.system, received.component), None)
         if contact.settings_check is not None:

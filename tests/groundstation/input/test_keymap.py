@@ -107,7 +107,7 @@ def test_a_held_r_does_not_disarm_again_and_again() -> None:
 
 
 def test_vehicle_commands() -> None:
-    assert read("1", "2", "g", "tab") == [SetMode("MANUAL"), SetMode("HOLD"), RequestControl(), SetStyle("next")]
+    assert read("1", "2", "g", "ctrl+y") == [SetMode("MANUAL"), SetMode("HOLD"), RequestControl(), SetStyle("next")]
 
 
 def test_every_binding_names_an_action() -> None:

@@ -130,7 +130,7 @@ async def test_the_answer_to_the_last_ping_is_not_left_to_the_shell() -> None:
             asked.append(awaits())
             return asked[-1]
 
-        driver.awaits_answer = answer_at_the_end  # type: ignore[method-assign]
+        driver.awaits_answer = answer_at_the_end
         keyboard = os.dup(driver.fileno)
         app.end()
         await until(lambda: not app.is_running)
