@@ -177,7 +177,7 @@ def test_doctor_and_motor_go_through_the_station(verb: Run, vehicle: Vehicle) ->
 
 
 def test_verbs_in_a_row_leak_nothing(verb: Run, station: int) -> None:
-    """A thousand, tried by hand, leak nothing either. A thread for work beside the links may start meanwhile."""
+    """A thousand, tried by hand, leak nothing either. The threads for work beside the links may become a few more."""
 
     def held() -> tuple[int, int]:
         status = Path(f"/proc/{station}/status").read_text()
