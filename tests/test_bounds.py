@@ -48,6 +48,8 @@ DAY = 86_400 * 100_000
         ("groundstation.station_socket.relay.MAX_RELAYED", 65536),
         ("groundstation.station_socket.relay.BATCH", 100),
         ("groundstation.station_socket.verb_run.ALIVE_PERIOD", 0.1),
+        ("groundstation.station_socket.verb_run.STILL_WITHIN", 1.0),
+        ("groundstation.station_socket.verb_run.MAX_PRINTED", 262_144),
         ("groundstation.station_socket.relay.KEEP", 30.0),
         ("link.protocol.address_budget.FACTOR", 100),
         ("link.protocol.address_budget.FIRST_REQUEST", 8192),

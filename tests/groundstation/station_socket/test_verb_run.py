@@ -1,0 +1,51 @@
+"""The packets between a shell and the station that runs its verb, as they are on the socket."""
+
+from __future__ import annotations
+
+import pytest
+
+from groundstation.station_socket.hello import VERB, Hello, decode_hello
+from groundstation.station_socket.hello import encode as encode_hello
+from groundstation.station_socket.verb_run import (
+    VERSION,
+    Alive,
+    AskedGroup,
+    CancelVerb,
+    FromShell,
+    Printed,
+    RunVerb,
+    StillHere,
+    ToShell,
+    VerbEnded,
+    VerbOutput,
+    decode_from_shell,
+    decode_from_station,
+    encode,
+)
+
+
+def test_packets_of_version_5() -> None:
+    """A shell and a station of two releases tell each other apart by the number: who changes a packet raises it."""
+    group = AskedGroup(frozenset({2}), frozenset(), ("rover*",))
+    assert VERSION == 5
+    assert encode(RunVerb(("arm", "--all"), group)).hex() == (
+        "83a474797065a752756e56657262a5776f72647392a361726da52d2d616c6ca567726f757093910290"
+        "91a6726f7665722a"
+    )
+    assert encode(VerbOutput((Printed("line", ("armed",), {"a": 1}),))).hex() == (
+        "82a474797065aa566572624f7574707574a77072696e7465649193a46c696e6591a561726d656481a16101"
+    )
+
+
+@pytest.mark.parametrize("packet", [RunVerb(("status",)), StillHere(), CancelVerb()])
+def test_what_a_shell_sends_arrives(packet: FromShell) -> None:
+    assert decode_from_shell(encode(packet)) == packet
+
+
+@pytest.mark.parametrize("packet", [Alive(), VerbEnded(4, "Rover 1"), VerbOutput((Printed("flush"),))])
+def test_what_a_station_sends_arrives(packet: ToShell) -> None:
+    assert decode_from_station(encode(packet)) == packet
+
+
+def test_a_verb_of_its_own_process_is_not_run_by_the_station() -> None:
+    assert not decode_hello(encode_hello(Hello(VERB, VERSION))).runs_here
