@@ -233,6 +233,9 @@ def _find_way(
     def choose() -> list[str]:
         return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note, reserved=VERBS)
 
+    own_process = not _runs_in_station(action, options)
+    if own_process:
+        check_options(action, options)
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
     hello = Hello(
         VERB,
@@ -240,13 +243,13 @@ def _find_way(
         f"groundstation {output.verb}",
         takes_part=not action.watches,
         follows=action.follows,
-        runs_here=_runs_in_station(action, options),
+        runs_here=not own_process,
     )
     station = find_station(through, endpoints, hello, output.note, within)
-    if station is None or not _runs_in_station(action, options):
-        check_options(action, options)
     if station is not None:
         return station, station.ready.endpoints
+    if not own_process:
+        check_options(action, options)
     return None, endpoints or choose()
 
 

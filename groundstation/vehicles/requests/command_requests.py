@@ -127,7 +127,9 @@ class CommandRequests:
             elif outcome.number is None:
                 self._book.fail(number, f"after {TRIES} tries")
             else:
-                self._book.refuse(number, _refusal(outcome.command, outcome.number), now)
+                explained = outcome.command != Command.REQUEST_MESSAGE  # of which programs send many in a row
+                text = _refusal(outcome.command, outcome.number)
+                self._book.refuse(number, text, now, by_vehicle=explained)
 
 
 def _refusal(command: int, result: int) -> str:

@@ -30,6 +30,8 @@ ASKED_ONCE = (m.AutopilotVersion, m.ControlStatus)
 NOT_YET = result_token(Result.TEMPORARILY_REJECTED)
 ARRIVES_WITHIN = 2.0
 """s for a message after its request was accepted. It comes at once unless a frame is lost or a program late."""
+ARRIVES_LATER = 0.3
+"""s for one of those after COMPLETE_WITHIN: a vehicle may accept requests and send nothing."""
 COMPLETE_WITHIN = 1.5
 """s for messages that a vehicle refuses at first or sends once a second: ours answers only who has been heard."""
 ASK_PERIOD = 0.1
@@ -141,17 +143,18 @@ class _Asker:
     async def ask(self, *, every: bool) -> None:
         """Request what was not heard lately; `every`: also what is asked for once only, until COMPLETE_WITHIN."""
         until = self._session.now + COMPLETE_WITHIN
-        while await self._ask_round(every) and every and self._missing() and self._session.now < until:
+        while await self._ask_round(until, every=every) and every and self._missing() and self._session.now < until:
             await self._session.look_for(lambda: not self._missing(), ASK_PERIOD)
 
-    async def _ask_round(self, every: bool) -> bool:
+    async def _ask_round(self, until: float, *, every: bool) -> bool:
         """Request each message once, as long as the vehicle takes requests; return whether it answers at all."""
         for kind in ASKED:
             once = kind in ASKED_ONCE
             fresh = self._session.now - self._session.heard_at(kind) < PERIOD
             if fresh or kind in self._refused or (once and not every):
                 continue
-            report = await self._session.request_message(kind, ARRIVES_WITHIN)
+            within = max(ARRIVES_LATER, min(ARRIVES_WITHIN, until - self._session.now))
+            report = await self._session.request_message(kind, within)
             if report.state is RequestState.NO_ANSWER:
                 return False
             if report.state is RequestState.REFUSED and report.detail == NOT_YET:

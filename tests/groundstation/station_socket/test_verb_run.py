@@ -29,8 +29,7 @@ def test_packets_of_version_5() -> None:
     group = AskedGroup(frozenset({2}), frozenset(), ("rover*",))
     assert VERSION == 5
     assert encode(RunVerb(("arm", "--all"), group)).hex() == (
-        "83a474797065a752756e56657262a5776f72647392a361726da52d2d616c6ca567726f757093910290"
-        "91a6726f7665722a"
+        "83a474797065a752756e56657262a5776f72647392a361726da52d2d616c6ca567726f75709391029091a6726f7665722a"
     )
     assert encode(VerbOutput((Printed("line", ("armed",), {"a": 1}),))).hex() == (
         "82a474797065aa566572624f7574707574a77072696e7465649193a46c696e6591a561726d656481a16101"

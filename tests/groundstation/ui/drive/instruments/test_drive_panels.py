@@ -49,7 +49,7 @@ def test_a_released_key_stops_at_once_by_a_timer_or_never(changes: dict[str, obj
     now = state(snapshot(operator=helm(**changes)))
     assert text in texts(StopsPanel(StopsValue.from_state(now)).draw(40, 12))[0]
     (line,) = texts(StopsLine(StopsValue.from_state(now)).draw(80, 1))
-    assert f"key {text}" in line.replace("░░░░ ", "")
+    assert f"key {text}" in line.replace("░░░ ", "")
 
 
 def test_each_bound_is_a_line_with_its_action_limit_and_value() -> None:
