@@ -125,16 +125,16 @@ async def test_the_answer_to_the_last_ping_is_not_left_to_the_shell() -> None:
         awaits, asked = driver.awaits_answer, list[bool]()
 
         def answer_at_the_end() -> bool:
-            if not asked:
-                terminal.type(b"\x1b[0n")
             asked.append(awaits())
+            if len(asked) == 1:
+                terminal.type(b"\x1b[0n")
             return asked[-1]
 
         driver.awaits_answer = answer_at_the_end
         keyboard = os.dup(driver.fileno)
         app.end()
-        await until(lambda: not app.is_running)
-        assert asked[:1] == [True], "it waits for the answer"
+        await until(lambda: bool(asked))  # within disable_input, which has returned then
+        assert asked[0], "it waits for the answer"
         assert unread_bytes(keyboard) == 0
         os.close(keyboard)
 
