@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from dialects import rover
-from dialects.printable import printable as printable
+from dialects.printable import printable
 
 Message = rover.MAVLink_message
 

@@ -45,7 +45,7 @@ def _run(arguments: Sequence[str]) -> int:
     if PLAIN in arguments:
         from groundstation.cli.plain import run as run_plain
 
-        return run_plain(arguments)
+        return run_plain([each for each in arguments if each != PLAIN])
     return _run_screen(arguments)
 
 

@@ -15,7 +15,6 @@ from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
 from link.runtime.child_process import end_process, end_with_parent, start_module
 
-PLAIN = "--plain"
 VERB = ("status", "--watch", "--changes")
 """What prints the lines."""
 
@@ -30,14 +29,16 @@ END_WITHIN = 5.0
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run a station, unless one has the endpoints, and print what changes until the end; return the exit code."""
-    rest = [each for each in arguments if each != PLAIN]
-    endpoints = [each for each in rest if not each.startswith("-") and ":" in each]
-    options = [each for each in rest if each not in endpoints and each != "--sitl"]
+    """Run a station, unless one has the endpoints, and print what changes until the end; return the exit code.
+
+    `arguments` are those of `groundstation` without --plain.
+    """
+    endpoints = [each for each in arguments if not each.startswith("-") and ":" in each]
+    options = [each for each in arguments if each not in endpoints and each != "--sitl"]
     words = [*VERB, *options, *(word for each in endpoints for word in ("-e", each))]
     if NOT_ABOUT_A_VEHICLE.intersection(each.partition("=")[0] for each in options) or _has_station(endpoints):
         return _print_changes(words)
-    return report_mistakes(lambda: _run_beside_station(endpoints, options, words, sitl="--sitl" in rest))
+    return report_mistakes(lambda: _run_beside_station(endpoints, options, words, sitl="--sitl" in arguments))
 
 
 def _has_station(endpoints: Sequence[str]) -> bool:

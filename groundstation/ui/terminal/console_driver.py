@@ -56,7 +56,7 @@ class ConsoleDriver(LinuxDriver):
 
     sink: KeySink
     terminal: TerminalFile
-    awaits_answer: Callable[[], bool] = staticmethod(lambda: False)
+    awaits_answer: Callable[[], bool]
     """Return whether the terminal, which answers pings, has not answered the last one. Called from any thread."""
 
     def __init__(self, app: App[Any], **options: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.mode_tables import STANDARD_MODES
+from dialects.printable import printable
 
 MAX_MODES = 128
 """AVAILABLE_MODES of one vehicle; ArduPilot has 30, PX4 up to 40 with modes of other programs."""
@@ -11,7 +12,7 @@ MAX_MODES = 128
 
 def listed_name(message: m.AvailableModes) -> str:
     """Return the name of a mode as the vehicle lists it, else by its MAV_STANDARD_MODE; "" if it has neither."""
-    name = m.printable(message._mode_name_raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
+    name = printable(message._mode_name_raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
     return name or STANDARD_MODES.get(message.standard_mode, "")
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any
 
 from groundstation.station_socket.verb_run import Printed
-from groundstation.vehicles.requests.requests import RequestReport
-from groundstation.verbs.common.output import PROGRESS_PERIOD, Output
+from groundstation.verbs.common.output import Output
 
 
 class SentOutput(Output):
@@ -17,6 +15,7 @@ class SentOutput(Output):
     def __init__(self, verb: str, *, as_json: bool, send: Callable[[Printed], None]) -> None:
         super().__init__(verb, as_json=as_json, quiet=False)
         self._send = send
+        self._shows_progress = True  # the Output of the shell knows whether it is at a terminal
 
     def line(self, text: str) -> None:
         """Send lines of data, unless --json."""
@@ -45,13 +44,6 @@ class SentOutput(Output):
     def error(self, text: str) -> None:
         """Send an error."""
         self._send(Printed("error", (text,)))
-
-    def progress(self, report: RequestReport) -> None:
-        """Send how a request stands, ten times a second at most."""
-        now = time.monotonic()
-        if not report.state.ended and now >= self._progress_due:
-            self._progress_due = now + PROGRESS_PERIOD
-            self.count(report.what, report.done, report.total)
 
     def count(self, what: str, done: int, total: int | None) -> None:
         """Send how many of a total are done."""

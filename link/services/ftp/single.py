@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from dialects import messages as m
+from dialects.printable import printable
 from link.services.ftp.files import Entry
 from link.services.ftp.job import TRIES, Exchange, FtpLine, FtpOperation, FtpOutcome, error_of, failure
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket
@@ -114,7 +114,7 @@ def parse_entry(line: bytes) -> Entry | None:
     name, _, size = line[1:].decode("utf-8", "replace").partition("\t")
     match line[:1]:
         case b"D":
-            return Entry(m.printable(name), None)
+            return Entry(printable(name), None)
         case b"F" if size.isdecimal() and size.isascii():
-            return Entry(m.printable(name), int(size))
+            return Entry(printable(name), int(size))
     return None

@@ -15,6 +15,7 @@ import msgspec
 
 from dialects import messages as m
 from dialects.enums import ParamErrorCode
+from dialects.printable import printable
 from link.core import Outgoing, Peer, Received
 from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 from link.services.param.float32 import same_float32, shortest_float32
@@ -173,7 +174,7 @@ class ParamServer:
         if not self._allowed(received, now):
             return self._deny(message, index, received, now)
         if index is None:
-            self._refused(received, f"No parameter {m.printable(name)}", now)
+            self._refused(received, f"No parameter {printable(name)}", now)
             return [self._fault(message._param_id_raw, -1, ParamErrorCode.DOES_NOT_EXIST, received)]
         rejection = self._rejection(self._table[index], message) or self._apply(name, message.param_value, received)
         if rejection:
@@ -184,7 +185,7 @@ class ParamServer:
 
     def _deny(self, message: m.ParamSet, index: int | None, received: Received, now: float) -> list[Outgoing]:
         """Deny a set of a sender that may not set parameters, with the current value of those that exist."""
-        self._refused(received, f"{m.printable(message.param_id)} not changed: you are not in control", now)
+        self._refused(received, f"{printable(message.param_id)} not changed: you are not in control", now)
         known = -1 if index is None else index
         fault = self._fault(message._param_id_raw, known, ParamErrorCode.PERMISSION_DENIED, received)
         return [fault] if index is None else [fault, Outgoing(self._value(index), received.peer)]
