@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import statistics
 import time
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from link.runtime.event_loop import run_loop, running_loop
 
 SHORT = 0.0002
-"""s; asyncio's own loop makes a millisecond of it, each time."""
+"""s; asyncio's own loop makes a millisecond of it."""
 FINE = 0.0009
 """s."""
 
@@ -32,8 +33,18 @@ def test_a_timer_is_not_rounded_to_milliseconds() -> None:
     assert SHORT <= run_loop(one_in_time(5000)) < FINE
 
 
+async def usual_time(tries: int) -> float:
+    """s that a short sleep usually took. Where the process is preempted before the wait, the timer is due at once."""
+    running, taken = asyncio.get_running_loop(), list[float]()
+    for _ in range(tries):
+        start = running.time()
+        await asyncio.sleep(SHORT)
+        taken.append(running.time() - start)
+    return statistics.median(taken)
+
+
 def test_asyncios_own_loop_would_fail_that() -> None:
-    assert asyncio.run(one_in_time(50)) >= FINE
+    assert asyncio.run(usual_time(50)) >= FINE
 
 
 def test_it_returns_what_main_returns_and_raises_what_it_raises() -> None:
