@@ -33,7 +33,8 @@ def test_a_wheel_has_the_dialect_with_its_byte_code(tmp_path: Path) -> None:
     assert {"dialects", "link", "vehicle", "groundstation"} == {
         name.split("/")[0] for name in names if "dist-info" not in name
     }
-    for data in ("dialects/rover.xml", "dialects/additions.xml", "groundstation/ui/drive/screen.tcss"):
+    plan = "groundstation/ui/map/plan/mission_commands.json"
+    for data in ("dialects/rover.xml", "dialects/additions.xml", "groundstation/ui/drive/screen.tcss", plan):
         assert data in names
     assert {f"{package}/py.typed" for package in ("dialects", "link", "vehicle", "groundstation")} <= set(names)
     assert not any(name.startswith("tests/") for name in names)

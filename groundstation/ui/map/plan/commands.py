@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.ui.map.plan.mission_command import MissionCommand
-from groundstation.ui.map.plan.mission_commands import MISSION_COMMANDS
+from groundstation.ui.map.plan.mission_commands import MISSION_COMMANDS, MissionCommand
 from groundstation.views.plan import PlanKind
 
 WAYPOINT, RTL, DO_JUMP, CHANGE_SPEED = 16, 20, 177, 178

@@ -9,7 +9,7 @@ import msgspec
 from groundstation.geo import MAX_LATITUDE, MAX_LONGITUDE
 from groundstation.ui.map.plan.commands import CIRCLES, DO_JUMP, POLYGONS, command_title, describe_command, has_location
 from groundstation.ui.map.plan.geometry import DEGREES_SCALE, GLOBAL_FRAMES, UNSET
-from groundstation.ui.map.plan.mission_command import CommandParam
+from groundstation.ui.map.plan.mission_commands import CommandParam
 from groundstation.views.plan import PlanItem
 from link.services.param.float32 import as_float32
 
