@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from msgspec.structs import asdict
+
 from groundstation.doctor import link_rows, stop_rows, vehicle_rows
 from groundstation.doctor.facts import DoctorFacts
-from groundstation.doctor.finding import ChainFinding
-from groundstation.views.doctor import DoctorRow
-from link.runtime.diagnosis import Check, Health, Row, run_checks
+from groundstation.views.doctor import ChainFinding, DoctorRow
+from link.runtime.diagnosis import Check, Health, run_checks
 
 CHAIN: tuple[Check[DoctorFacts, ChainFinding], ...] = (
     Check("keys", "keys", link_rows.keys),
@@ -30,20 +31,7 @@ CHAIN: tuple[Check[DoctorFacts, ChainFinding], ...] = (
 
 def examine(facts: DoctorFacts) -> tuple[DoctorRow, ...]:
     """Return all rows."""
-    return tuple(map(_to_view, run_checks(CHAIN, facts)))
-
-
-def _to_view(row: Row[ChainFinding]) -> DoctorRow:
-    found = row.found
-    return DoctorRow(
-        id=row.id,
-        title=row.title,
-        health=found.health,
-        evidence=found.evidence,
-        advice=found.advice,
-        action=found.action,
-        fix=found.fix,
-    )
+    return tuple(DoctorRow(id=row.id, title=row.title, **asdict(row.found)) for row in run_checks(CHAIN, facts))
 
 
 def count_faults(rows: tuple[DoctorRow, ...]) -> int:

@@ -1,22 +1,9 @@
-"""ChainFinding: what one row of the chain found, and the key or the parameter that mends it."""
+"""Build the finding of a row of the chain: all is well, a warning, a fault, or not known."""
 
 from __future__ import annotations
 
-import msgspec
-
-from groundstation.views.doctor import ParamFix
+from groundstation.views.doctor import ChainFinding, ParamFix
 from link.runtime.diagnosis import Health
-
-
-class ChainFinding(msgspec.Struct, frozen=True):
-    """How a link of the chain stands, why, and what to do."""
-
-    health: Health
-    evidence: str
-    advice: str = ""
-    action: str = ""
-    """As DoctorRow.action."""
-    fix: ParamFix | None = None
 
 
 def ok(evidence: str) -> ChainFinding:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from groundstation.doctor.facts import DoctorFacts
-from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
+from groundstation.doctor.finding import fault, ok, unknown, warn
 from groundstation.snapshot import LinkView
+from groundstation.views.doctor import ChainFinding
 
 SLOW_TERMINAL = 0.25
 """s of a terminal's round trip from which on keys feel late: half of the 0.5 s within which a release must count."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from groundstation.doctor.facts import DoctorFacts, SettingFact
-from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
+from groundstation.doctor.finding import fault, ok, unknown, warn
 from groundstation.doctor.link_rows import OBEYED
 from groundstation.doctor.vehicle_rows import AFTER_VEHICLE
 from groundstation.snapshot.drive import StopBound
-from groundstation.views.doctor import ParamFix
+from groundstation.views.doctor import ChainFinding, ParamFix
 
 REMEDIES = {
     "RC_OVERRIDE_TIME": 0.5,

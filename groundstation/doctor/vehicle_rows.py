@@ -5,10 +5,10 @@ from __future__ import annotations
 from dialects.enums import Autopilot, Sensor, SystemState, state_name
 from dialects.mode_tables import HOLD
 from groundstation.doctor.facts import DoctorFacts
-from groundstation.doctor.finding import ChainFinding, fault, ok, unknown, warn
+from groundstation.doctor.finding import fault, ok, unknown, warn
 from groundstation.doctor.prearm_advice import find_advice
 from groundstation.snapshot import VehicleView
-from groundstation.views.doctor import ParamFix
+from groundstation.views.doctor import ChainFinding, ParamFix
 
 AFTER_VEHICLE = unknown("after the vehicle is heard")
 

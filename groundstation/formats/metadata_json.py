@@ -10,7 +10,8 @@ import lzma
 from typing import Any
 
 from groundstation.formats.errors import FileFormatError
-from groundstation.formats.param_docs import MAX_CHOICES, MAX_DOCS, ParamDoc, ParamDocs, number_of, text_of
+from groundstation.formats.param_docs import MAX_CHOICES, MAX_DOCS, ParamDocs, number_of, text_of
+from groundstation.views.params import ParamDoc
 
 MAX_SIZE = 16 * 1024 * 1024
 """Bytes of a decompressed file; PX4's has 1.5 MB."""

@@ -1,4 +1,4 @@
-"""ParamDoc: what is known of a parameter beside its value; the same for the files of all autopilots."""
+"""ParamDocs: the texts of parameters, the same for the files of all autopilots."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import msgspec
+from groundstation.views.params import ParamDoc
 
 MAX_DOCS = 10_000
 """Parameters of one file; ten times what an autopilot has."""
@@ -16,36 +16,6 @@ MAX_TEXT = 4000
 MAX_CHOICES = 512
 """Values or bits of one parameter; ArduPilot's longest list has 190."""
 _WORD = re.compile(r"\w+")
-
-
-class ParamDoc(msgspec.Struct, frozen=True):
-    """One parameter. What its file does not say is empty or None."""
-
-    name: str
-    title: str = ""
-    text: str = ""
-    unit: str = ""
-    low: float | None = None
-    high: float | None = None
-    step: float | None = None
-    default: float | None = None
-    values: tuple[tuple[float, str], ...] = ()
-    """Values with a name."""
-    bits: tuple[tuple[int, str], ...] = ()
-    """Bits with a name, the lowest is 0."""
-    reboot: bool = False
-    """Takes effect after a restart."""
-    read_only: bool = False
-    not_armed: bool = False
-    """The vehicle refuses changes while it is armed."""
-
-    def meaning(self, value: float) -> str:
-        """Return the name of a value, or the names of its bits; empty where it has none."""
-        if self.values:
-            return next((name for each, name in self.values if each == value), "")
-        if self.bits and value.is_integer() and value >= 0:
-            return ", ".join(name for bit, name in self.bits if int(value) >> bit & 1)
-        return ""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,8 @@ from xml.parsers import expat
 
 from groundstation.formats.errors import FileFormatError
 from groundstation.formats.metadata_json import load_json
-from groundstation.formats.param_docs import MAX_CHOICES, MAX_DOCS, ParamDoc, ParamDocs, number_of, text_of
+from groundstation.formats.param_docs import MAX_CHOICES, MAX_DOCS, ParamDocs, number_of, text_of
+from groundstation.views.params import ParamDoc
 
 _RANGE = re.compile(r"^\s*(\S+?)(?:\s+to|\s*[,:]|\s)\s*(\S+)\s*$")
 _TRUE = ("true", "1", "yes")

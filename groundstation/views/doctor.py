@@ -17,11 +17,9 @@ class ParamFix(msgspec.Struct, frozen=True):
     value: float
 
 
-class DoctorRow(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of the chain."""
+class ChainFinding(msgspec.Struct, frozen=True):
+    """What one row of the chain found, why, and what to do."""
 
-    id: str
-    title: str
     health: Health
     evidence: str
     """What is known, in one line."""
@@ -30,6 +28,13 @@ class DoctorRow(msgspec.Struct, frozen=True, kw_only=True):
     action: str = ""
     """Id of an operator action (groundstation/actions.py) or of the screen that helps; "" for none."""
     fix: ParamFix | None = None
+
+
+class DoctorRow(ChainFinding, frozen=True, kw_only=True):
+    """One link of the chain."""
+
+    id: str
+    title: str
 
 
 class SensorRow(msgspec.Struct, frozen=True):

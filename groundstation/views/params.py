@@ -89,28 +89,43 @@ class ParamInfoRequest(ViewRequest, frozen=True):
     names: tuple[str, ...] = ()
 
 
-class ParamInfo(msgspec.Struct, frozen=True):
-    """What is known of a parameter. What is not known is empty or None."""
+class ParamDoc(msgspec.Struct, frozen=True):
+    """The description of a parameter. Where its file says nothing, a field is empty or None."""
 
     name: str
-    value: float
-    kind: str
-    index: int | None = None
-    default: float | None = None
     title: str = ""
     text: str = ""
     unit: str = ""
     low: float | None = None
     high: float | None = None
     step: float | None = None
+    default: float | None = None
+    """Of a vehicle: as it reports it, else as its description says."""
     values: tuple[tuple[float, str], ...] = ()
     """Values with a name."""
     bits: tuple[tuple[int, str], ...] = ()
-    """Bits with a name."""
+    """Bits with a name, the lowest is 0."""
     reboot: bool = False
+    """Takes effect after a restart."""
     read_only: bool = False
     not_armed: bool = False
     """The vehicle refuses changes while it is armed."""
+
+    def meaning(self, value: float) -> str:
+        """Return the name of a value, or the names of its bits; empty where it has none."""
+        if self.values:
+            return next((name for each, name in self.values if each == value), "")
+        if self.bits and value.is_integer() and value >= 0:
+            return ", ".join(name for bit, name in self.bits if int(value) >> bit & 1)
+        return ""
+
+
+class ParamInfo(ParamDoc, frozen=True, kw_only=True):
+    """A parameter of a vehicle with its description."""
+
+    value: float
+    kind: str
+    index: int | None = None
     file: float | None = None
     """Its value in the file that is compared."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import msgspec
+from msgspec.structs import asdict
 
 from dialects.enums import Autopilot
 from groundstation.formats.docs_files import DocsFile
@@ -267,23 +268,8 @@ def _row(param: Param, docs: ParamDocs, file: Mapping[str, float]) -> ParamRow:
 
 
 def _info(param: Param, docs: ParamDocs, file: Mapping[str, float]) -> ParamInfo:
-    doc = docs.get(param.name)
-    return ParamInfo(
-        name=param.name,
-        value=param.value,
-        kind=param_type_name(param.kind),
-        index=param.index,
-        default=_default(param, docs),
-        title=doc.title,
-        text=doc.text,
-        unit=doc.unit,
-        low=doc.low,
-        high=doc.high,
-        step=doc.step,
-        values=doc.values,
-        bits=doc.bits,
-        reboot=doc.reboot,
-        read_only=doc.read_only,
-        not_armed=doc.not_armed,
-        file=file.get(param.name),
-    )
+    own = {
+        "name": param.name, "value": param.value, "kind": param_type_name(param.kind), "index": param.index,
+        "default": _default(param, docs), "file": file.get(param.name),
+    }  # fmt: skip
+    return ParamInfo(**asdict(docs.get(param.name)) | own)

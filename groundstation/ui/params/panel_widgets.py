@@ -81,7 +81,7 @@ class ParamWidgets:
         page, editor = model.page, model.editor
         row = editor.row if editor else model.selected
         info = (
-            (model.infos.get(row.name) or ParamInfo(row.name, row.value, row.kind, default=row.default))
+            (model.infos.get(row.name) or ParamInfo(row.name, default=row.default, value=row.value, kind=row.kind))
             if row
             else None
         )

@@ -12,7 +12,7 @@ from dialects.enums import Autopilot
 from groundstation.formats.docs_files import parse_docs, read_docs
 from groundstation.formats.errors import FileFormatError
 from groundstation.formats.metadata_json import MAX_SIZE, load_json, parse_general, parse_parameters
-from groundstation.formats.param_docs import ParamDoc
+from groundstation.views.params import ParamDoc
 from link.services.metadata import build_metadata
 from vehicle.params import TABLE
 

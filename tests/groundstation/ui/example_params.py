@@ -12,20 +12,21 @@ from groundstation.views.requests import RequestLine
 
 INFOS = (
     ParamInfo(
-        "FS_ACTION", 2.0, "INT8", 411, 2.0, "Failsafe Action", "What to do on a failsafe event", low=0.0, high=6.0,
+        "FS_ACTION", "Failsafe Action", "What to do on a failsafe event", value=2.0, kind="INT8", index=411,
+        default=2.0, low=0.0, high=6.0,
         values=(
             (0.0, "Nothing"), (1.0, "RTL"), (2.0, "Hold"), (3.0, "SmartRTL or RTL"), (4.0, "SmartRTL or Hold"),
             (5.0, "Terminate"), (6.0, "Loiter or Hold"),
         ),
     ),
-    ParamInfo("FS_GCS_ENABLE", 0.0, "INT8", 414, 0.0, "GCS failsafe enable",
+    ParamInfo("FS_GCS_ENABLE", "GCS failsafe enable", value=0.0, kind="INT8", index=414, default=0.0,
               values=((0.0, "Disabled"), (1.0, "Enabled"), (2.0, "Enabled Continue with Mission in Auto"))),
-    ParamInfo("FS_OPTIONS", 1.0, "INT32", 419, 0.0, "Failsafe Options",
+    ParamInfo("FS_OPTIONS", "Failsafe Options", value=1.0, kind="INT32", index=419, default=0.0,
               bits=((0, "Failsafe enabled in Hold mode"), (1, "Ignore in manual"))),
     ParamInfo(
-        "RC_OVERRIDE_TIME", 3.0, "REAL32", 1043, 3.0, "RC override timeout",
+        "RC_OVERRIDE_TIME", "RC override timeout",
         "Timeout after which RC overrides will no longer be used, and RC input will resume.", "s", 0.0, 120.0, 0.1,
-        file=0.5,
+        default=3.0, value=3.0, kind="REAL32", index=1043, file=0.5,
     ),
 )  # fmt: skip
 ROWS = (

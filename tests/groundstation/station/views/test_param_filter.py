@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from groundstation.formats.param_docs import ParamDoc, ParamDocs
+from groundstation.formats.param_docs import ParamDocs
 from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of
-from groundstation.views.params import ParamGroup, ParamPageRequest
+from groundstation.views.params import ParamDoc, ParamGroup, ParamPageRequest
 from link.services.param.client import Param
 
 NAMES = (

@@ -139,7 +139,7 @@ def test_a_kept_value_is_not_written_and_stays_pending() -> None:
 
 def test_a_read_only_value_is_not_changed() -> None:
     model = shown()
-    model.show_infos(ParamInfos(1, (ParamInfo("P000", 0.0, "REAL32", read_only=True),)))
+    model.show_infos(ParamInfos(1, (ParamInfo("P000", value=0.0, kind="REAL32", read_only=True),)))
     assert change(model, "5") == "P000 is read-only"
     assert model.pending == {}
 

@@ -95,9 +95,9 @@ def test_texts_that_arrive_later() -> None:
         (TIME, 120.0, Level.GOOD, "in range 0 … 120"), (ACTION, 4.0, Level.GOOD, "in its list"),
         (ACTION, 9.0, Level.WARNING, "not in its list"), (OPTIONS, 3.0, Level.GOOD, "known bits"),
         (OPTIONS, 4.0, Level.WARNING, "unknown bits"), (OPTIONS, -1.0, Level.GOOD, "known bits"),
-        (None, 1.0, Level.UNKNOWN, ""), (ParamInfo("A", 0.0, "INT8"), 1.0, Level.UNKNOWN, "no range known"),
-        (ParamInfo("A", 0.0, "INT8", read_only=True), 1.0, Level.WARNING, "read-only"),
-        (ParamInfo("A", 0.0, "REAL32", high=0.1), 0.1, Level.GOOD, "in range -- … 0.1"),
+        (None, 1.0, Level.UNKNOWN, ""), (ParamInfo("A", value=0.0, kind="INT8"), 1.0, Level.UNKNOWN, "no range known"),
+        (ParamInfo("A", value=0.0, kind="INT8", read_only=True), 1.0, Level.WARNING, "read-only"),
+        (ParamInfo("A", value=0.0, kind="REAL32", high=0.1), 0.1, Level.GOOD, "in range -- … 0.1"),
     ],
 )  # fmt: skip
 def test_checks(info: ParamInfo | None, value: float, level: Level, text: str) -> None:
@@ -118,7 +118,7 @@ def test_what_needs_care_while_armed() -> None:
     assert needs_care(None, "FS_ACTION")
     assert needs_care(None, "MOT_THR_MAX")
     assert not needs_care(None, "LOG_BITMASK")
-    assert needs_care(ParamInfo("LOG_X", 0.0, "INT8", not_armed=True), "LOG_X")
+    assert needs_care(ParamInfo("LOG_X", value=0.0, kind="INT8", not_armed=True), "LOG_X")
     changes = {name: PendingChange(name, 0.0, 1.0) for name in ("LOG_X", "FS_ACTION")}
     assert question_text(changes, {}, armed=True) == "write 2 changes to the vehicle, which is ARMED (care: FS_ACTION)"
     assert question_text(changes, {}, armed=False) == "write 2 changes to the vehicle"
