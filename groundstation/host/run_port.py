@@ -15,8 +15,12 @@ import msgspec
 from groundstation.station.station import Station
 from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.verb_run import (
+    MAX_PRINTED,
     Alive,
     CancelVerb,
+    FileAnswered,
+    FileAsked,
+    FromShell,
     Printed,
     RunVerb,
     StillHere,
@@ -29,9 +33,6 @@ from groundstation.station_socket.verb_run import (
 from link.transport.receive_buffer import ReceiveBuffer
 
 log = logging.getLogger(__name__)
-
-MAX_ASKED = 1 << 16
-"""Bytes of the largest packet of a shell."""
 
 MAX_BATCH = 1 << 15
 """Bytes after which what a verb has printed goes into another packet."""
@@ -60,7 +61,7 @@ class RunPort:
         follows: bool,
     ) -> None:
         self._socket = sock
-        self._buffer = ReceiveBuffer(MAX_ASKED)
+        self._buffer = ReceiveBuffer(MAX_PRINTED)
         self._station, self._name, self._follows = station, name, follows
         self._flush, self._ended = flush, ended
         self._heard_at = 0.0
@@ -69,6 +70,8 @@ class RunPort:
         self._unread: deque[bytes] = deque()
         """Packets for which the socket had no room."""
         self._task: asyncio.Task[None] | None = None
+        self._answers: dict[int, asyncio.Future[FileAnswered]] = {}
+        """Number of a file of the user -> the answer that its verb waits for."""
         self._open = True
 
     def start(self, ready: VerbReady) -> None:
@@ -102,13 +105,24 @@ class RunPort:
             except msgspec.DecodeError:
                 log.exception("invalid packet from a shell")
 
-    def _handle(self, packet: RunVerb | StillHere | CancelVerb) -> None:
+    def _handle(self, packet: FromShell) -> None:
         if isinstance(packet, RunVerb) and self._task is None and packet.words:
             self._task = asyncio.get_running_loop().create_task(self._run(packet))
         elif isinstance(packet, CancelVerb) and self._task is not None:
             self._task.cancel()
         elif isinstance(packet, StillHere):
             self._send(encode(Alive()))
+        elif isinstance(packet, FileAnswered):
+            answer = self._answers.pop(packet.number, None)
+            if answer is not None and not answer.done():
+                answer.set_result(packet)
+
+    async def _ask_for_file(self, asked: FileAsked) -> FileAnswered:
+        """Have the shell work on a file; return its answer."""
+        answer: asyncio.Future[FileAnswered] = asyncio.get_running_loop().create_future()
+        self._answers[asked.number] = answer
+        self._send(encode(asked))
+        return await answer
 
     async def _run(self, asked: RunVerb) -> None:
         ended = VerbEnded(0)
@@ -120,6 +134,7 @@ class RunPort:
                 follows=self._follows,
                 flush=self._flush,
                 send=self._print,
+                ask_for_file=self._ask_for_file,
                 silence=lambda now: now - self._heard_at,
             )
             ended = await verb.run(asked)

@@ -1,7 +1,7 @@
 """What a shell and the station that runs its verb say to each other: the words of the verb, and what it prints.
 
 The verb runs in the process of the station, with the code, the links and the session of the station. The shell reads
-the command line, prints, and says ten times a second that it is there.
+the command line, prints, reads and writes the files of the user, and says ten times a second that it is there.
 """
 
 from __future__ import annotations
@@ -12,11 +12,14 @@ import msgspec
 
 from groundstation.station_socket.hello import StationFailed
 
-VERSION = 5
+VERSION = 6
 """Of the packets of verbs: those below, and those of relay.py."""
 
 MAX_PRINTED = 1 << 18
-"""Bytes of the largest packet of the station."""
+"""Bytes of the largest packet, each way."""
+
+PIECE = 1 << 17
+"""Bytes of a file in one packet."""
 
 ALIVE_PERIOD = 0.1
 """s between packets of a verb at least, as of a screen."""
@@ -91,8 +94,36 @@ class CancelVerb(msgspec.Struct, frozen=True, tag=True):
     """From the shell: its user has interrupted the verb, which ends in order. So does the end of the connection."""
 
 
-ToShell = VerbReady | VerbOutput | VerbEnded | Alive | StationFailed
-FromShell = RunVerb | StillHere | CancelVerb
+class FileAsked(msgspec.Struct, frozen=True, tag=True):
+    """From the station: work on a file of the user. The shell answers each with FileAnswered."""
+
+    number: int
+    """The same for all pieces of one file."""
+    work: str = ""
+    """A value of FileWork (verbs/common/files.py); "": the next piece of what was read."""
+    path: str = ""
+    """As the user has typed it."""
+    data: bytes = b""
+    """What to write, or a piece of it."""
+    whole: bool = True
+    """No piece of it follows."""
+    overwrite: bool = False
+
+
+class FileAnswered(msgspec.Struct, frozen=True, tag=True):
+    """From the shell: the work is done, or the piece has arrived."""
+
+    number: int
+    data: bytes = b""
+    """What was read, or a piece of it."""
+    whole: bool = True
+    """No piece of it follows."""
+    error: str = ""
+    """One line for the user: why it was not done."""
+
+
+ToShell = VerbReady | VerbOutput | VerbEnded | Alive | StationFailed | FileAsked
+FromShell = RunVerb | StillHere | CancelVerb | FileAnswered
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(ToShell).decode

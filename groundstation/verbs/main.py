@@ -23,15 +23,15 @@ from groundstation.station_socket.about import explain_taken
 from groundstation.station_socket.hello import HELLO_WITHIN, VERB, Hello
 from groundstation.station_socket.verb_run import VERSION
 from groundstation.verbs.action import ONLY, VerbAction
+from groundstation.verbs.client.station_choice import AUTO, StationLink, find_station, station_choice
+from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.performing import perform
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
-from groundstation.verbs.session.station_choice import AUTO, StationLink, find_station, station_choice
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
-from groundstation.verbs.session.verb_client import VerbClient
 from groundstation.verbs.table import VERBS
 from link.endpoint import EndpointError
 from link.runtime import stdio

@@ -35,7 +35,7 @@ class ForeignFtp:
             return
         # A request that is repeated is answered by the same reply, and its numbers alone say that it is one.
         if self._last is None or self._last[0] != (session, sequence):
-            result = self._handle(op, data.split(b"\0")[0].decode(), data, offset, size)
+            result = self._handle(op, data.split(b"\0")[0].decode(errors="replace"), data, offset, size)
             answer = reply(NAK, bytes([result])) if isinstance(result, int) else reply(ACK, result)
             self._last = (session, sequence), answer
         yield self._last[1]

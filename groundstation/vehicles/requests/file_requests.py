@@ -70,11 +70,6 @@ class FileRequests:
         job = self._jobs.get(number)
         return self._client.beginning if job is not None and job == self._client.number else b""
 
-    @property
-    def beginning(self) -> bytes:
-        """What arrived of the download under way without a gap from the start."""
-        return self._client.beginning
-
     # ---- for other requests ----
 
     def start_download(self, path: str, handler: OutcomeHandler, now: float, *, patience: int = TRIES) -> int:

@@ -65,11 +65,6 @@ class LogRequests:
         """Return what has arrived of a request without a gap from the start; nothing if it is not under way."""
         return self._client.beginning if number == self._number else b""
 
-    @property
-    def beginning(self) -> bytes:
-        """What arrived of the download under way without a gap from the start."""
-        return self._client.beginning
-
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""
         self._client.receive(received, now)

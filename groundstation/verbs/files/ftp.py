@@ -10,9 +10,8 @@ from groundstation.natural_order import natural_key
 from groundstation.vehicles.requests.disk_jobs import name_problem
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
-from groundstation.verbs.common.local_file import read_bytes
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.common.transfer import download_to
+from groundstation.verbs.common.transfer import Arrived, download_to
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
 from link.services.ftp.job import FtpOutcome
@@ -40,12 +39,13 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
     if not options.local and (problem := name_problem(local)):
         raise VerbError(ExitCode.USAGE, f"{problem}: name the local file, too")
 
+    arrived = Arrived(files.beginning_of)
+
     async def fetch(have: bytes) -> tuple[RequestReport, bytes]:
-        report, outcome = await _ask(session, lambda number, now: files.download(number, options.remote, now, have))
-        return report, outcome.data if outcome else b""
+        return await download_file(session, options.remote, have, arrived)
 
     made = options.remote.startswith("@")  # the vehicle makes it anew each time: a beginning is of no use
-    report = await download_to(local, fetch, lambda: files.beginning, overwrite=options.yes, resumable=not made)
+    report = await download_to(session.files, local, fetch, arrived, overwrite=options.yes, resumable=not made)
     if report.state is RequestState.ACCEPTED:
         output.note(f"{options.remote} of {session.vehicle.name} saved to {local}")
     return _finish(session, report, output, file=local)
@@ -53,7 +53,7 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
 
 async def put(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Upload a file; an existing one is replaced."""
-    data = read_bytes(options.local)
+    data = await session.files.read_bytes(options.local)
     await session.need_only_vehicle(options.vehicle)
     files = session.services.files
     report, _ = await _ask(session, lambda number, now: files.upload(number, options.remote, data, now))
@@ -70,7 +70,7 @@ async def rm(session: VerbSession, options: argparse.Namespace, output: Output) 
 
 async def crc(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Print the checksum of a file; with a local file, compare the two."""
-    local = crc32(read_bytes(options.local)) if options.local else None
+    local = crc32(await session.files.read_bytes(options.local)) if options.local else None
     files = session.services.files
     report, outcome = await _ask(session, lambda number, now: files.checksum(number, options.remote, now))
     if outcome is None or outcome.checksum is None:
@@ -82,6 +82,19 @@ async def crc(session: VerbSession, options: argparse.Namespace, output: Output)
         return ExitCode.DONE
     output.error(f"{options.local} has {local:08x}: the files differ")
     return ExitCode.DIFFERS
+
+
+async def download_file(session: VerbSession, path: str, have: bytes, arrived: Arrived) -> tuple[RequestReport, bytes]:
+    """Download a file behind the beginning `have`; return how that ended, and what is there from the start."""
+    files = session.services.files
+
+    def start(number: int, now: float) -> None:
+        arrived.begin(number)
+        files.download(number, path, now, have)
+
+    report = await session.request(start, arrived.interrupt)
+    outcome = files.pop_result(report.number)
+    return report, outcome.data if outcome is not None else b""
 
 
 async def _ask(session: VerbSession, start: Callable[[int, float], None]) -> tuple[RequestReport, FtpOutcome | None]:

@@ -13,7 +13,8 @@ from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.requests.transfer_requests import LOG_FOLDER, log_ending, log_path
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.common.transfer import download_to
+from groundstation.verbs.common.transfer import Arrived, download_to
+from groundstation.verbs.files.ftp import download_file
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
 from link.services.log.client import RemoteLog
@@ -39,18 +40,20 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
     path = await _path(session, log)
     file = options.file or f"{session.vehicle.system}-{log.number:05}{log_ending(session.vehicle.autopilot)}"
 
+    arrived = Arrived(requests.beginning_of if path is None else files.beginning_of)
+
     async def fetch(have: bytes) -> tuple[RequestReport, bytes]:
-        if path is None:
-            report = await session.request(lambda number, now: requests.download(number, log, now, have))
-            return report, requests.pop_data(report.number)
-        report = await session.request(lambda number, now: files.download(number, path, now, have))
-        outcome = files.pop_result(report.number)
-        return report, outcome.data if outcome is not None else b""
+        if path is not None:
+            return await download_file(session, path, have, arrived)
 
-    def beginning() -> bytes:
-        return requests.beginning if path is None else files.beginning
+        def start(number: int, now: float) -> None:
+            arrived.begin(number)
+            requests.download(number, log, now, have)
 
-    report = await download_to(file, fetch, beginning, overwrite=options.yes)
+        report = await session.request(start, arrived.interrupt)
+        return report, requests.pop_data(report.number)
+
+    report = await download_to(session.files, file, fetch, arrived, overwrite=options.yes)
     done = report.state is RequestState.ACCEPTED
     if done:
         output.note(f"log {log.number} of {session.vehicle.name} saved to {file}")

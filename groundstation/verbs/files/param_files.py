@@ -13,7 +13,6 @@ from groundstation.formats.param_file import ParamFile, format_params, parse_par
 from groundstation.formats.param_form import ParamForm
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.common.local_file import check_new_file, read_text, write_text
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.files.param import count, fetch, matching
 from groundstation.verbs.session.reports import finish
@@ -24,7 +23,7 @@ from link.services.param.float32 import value_text
 
 async def save(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Write parameters to a file."""
-    check_new_file(options.file, overwrite=options.yes)
+    await session.files.check_new(options.file, overwrite=options.yes)
     await _fetch_whole(session, output)
     params = matching(session.services.params.client.params.values(), options.patterns)
     if options.changed:
@@ -32,7 +31,7 @@ async def save(session: VerbSession, options: argparse.Namespace, output: Output
     params, unset = split_unset(params)
     state = session.vehicle
     text = format_params(params, ParamForm(options.format), vehicle=state.system, component=state.component)
-    write_text(options.file, text)
+    await session.files.write_text(options.file, text)
     output.note(f"{count(len(params))} of {state.name} saved to {options.file}{unset_text(unset)}")
     output.result(not unset, state.system, file=options.file, parameters=len(params), left_out=list(unset))
     return ExitCode.PARTLY if unset else ExitCode.DONE
@@ -40,7 +39,7 @@ async def save(session: VerbSession, options: argparse.Namespace, output: Output
 
 async def diff(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Print where a file and the vehicle differ."""
-    file = _read(options.file)
+    file = await _read(session, options.file)
     await _fetch_whole(session, output)
     found = _compare(file, session)
     differing, missing = found.different, found.only_file
@@ -57,7 +56,7 @@ async def diff(session: VerbSession, options: argparse.Namespace, output: Output
 
 async def load(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Set what differs from a file, without the vehicle's own id; a value that the vehicle keeps stops no other."""
-    file = _read(options.file)
+    file = await _read(session, options.file)
     await session.need_only_vehicle(options.vehicle)
     await _fetch_whole(session, output)
     found = _compare(file, session)
@@ -124,5 +123,5 @@ def _compare(file: ParamFile, session: VerbSession) -> ParamComparison:
     return compare(file, session.services.params.client.params, session.vehicle.component)
 
 
-def _read(path: str) -> ParamFile:
-    return parse_params(read_text(path), path)
+async def _read(session: VerbSession, path: str) -> ParamFile:
+    return parse_params(await session.files.read_text(path), path)

@@ -10,7 +10,7 @@ from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.verbs.session.contact import VehicleContact
-from groundstation.verbs.session.session import RequestStart
+from groundstation.verbs.session.session import Interrupted, RequestStart
 from groundstation.verbs.session.station_core import StationContact, StationCore, StationVerbSession
 
 
@@ -56,9 +56,9 @@ class LineSession(StationVerbSession):
     async def take_part(self) -> None:
         """Do nothing: the station proves its session."""
 
-    async def request(self, start: RequestStart) -> RequestReport:
+    async def request(self, start: RequestStart, interrupted: Interrupted | None = None) -> RequestReport:
         """Make a request and return how it ended."""
-        report = await super().request(start)
+        report = await super().request(start, interrupted)
         self.told.append(f"{self.vehicle.name}: {report.text}")
         return report
 

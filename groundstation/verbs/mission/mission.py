@@ -80,7 +80,7 @@ def check(kind: MissionType) -> Run:
     """Return the action that compares a plan of the vehicle with a file."""
 
     async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-        plan = read_plan(options.file, kind)
+        plan = await read_plan(session.files, options.file, kind)
         wanted = for_vehicle(plan, kind, session.vehicle.autopilot)
         there = await download(session, kind)
         first = 1 if kind is MissionType.MISSION and keeps_home(session.vehicle.autopilot) else 0

@@ -14,7 +14,7 @@ from groundstation.formats.plan_file import format_plan, parse_plan
 from groundstation.formats.waypoint_file import format_waypoints, lost_values, parse_waypoints
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
-from groundstation.verbs.common.local_file import check_new_file, read_text, write_text
+from groundstation.verbs.common.files import Files
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
@@ -48,10 +48,11 @@ def get(kind: MissionType) -> Run:
     """Return the action that downloads a plan into a file."""
 
     async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-        check_new_file(options.file, overwrite=options.yes)
+        await session.files.check_new(options.file, overwrite=options.yes)
         items = await download(session, kind)
         plan = from_vehicle(items, kind, session.vehicle.autopilot)
-        write_text(options.file, (format_waypoints if _is_waypoints(options.file) else format_plan)(plan))
+        write = format_waypoints if _is_waypoints(options.file) else format_plan
+        await session.files.write_text(options.file, write(plan))
         count = len(plan.of(kind))
         output.note(f"{count_text(count)} of {session.vehicle.name} saved to {options.file}")
         lost = lost_values(plan) if _is_waypoints(options.file) else ""
@@ -67,7 +68,7 @@ def put(kind: MissionType) -> Run:
     """Return the action that uploads the plan of a file."""
 
     async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-        plan = read_plan(options.file, kind)
+        plan = await read_plan(session.files, options.file, kind)
         if others := _other_kinds(plan, kind):
             output.note(f"{options.file} has {others}, too")
         await session.need_only_vehicle(options.vehicle)
@@ -80,10 +81,10 @@ def put(kind: MissionType) -> Run:
     return run
 
 
-def read_plan(path: str, kind: MissionType) -> Plan:
+async def read_plan(files: Files, path: str, kind: MissionType) -> Plan:
     """Return the plan of a file that has one of this kind. Raises VerbError, FileFormatError."""
     parse = parse_waypoints if _is_waypoints(path) else parse_plan
-    plan = parse(read_text(path), path)
+    plan = parse(await files.read_text(path), path)
     if not plan.of(kind):
         others = _other_kinds(plan, kind)
         hint = f"but {others}" if others else "`clear` removes the vehicle's"

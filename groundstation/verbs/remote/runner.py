@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 from msgspec.structs import astuple, replace
 
@@ -13,7 +13,7 @@ from dialects.extra.errors import DialectError
 from groundstation.config.groups import VehicleGroup
 from groundstation.formats.errors import FileFormatError
 from groundstation.station.operator_core import OperatorCore
-from groundstation.station_socket.verb_run import Printed, RunVerb, VerbEnded
+from groundstation.station_socket.verb_run import FileAnswered, FileAsked, Printed, RunVerb, VerbEnded
 from groundstation.verbs.action import VerbAction
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.later import LaterName, LaterResult
@@ -21,6 +21,7 @@ from groundstation.verbs.line.parser import LineParser
 from groundstation.verbs.main import build_parser, check_options, choose_action
 from groundstation.verbs.performing import perform
 from groundstation.verbs.remote.sent_output import SentOutput
+from groundstation.verbs.remote.shell_files import ShellFiles
 from groundstation.verbs.session.kept_session import KeptSession
 from groundstation.verbs.session.station_core import StationCore, StationVerbSession
 
@@ -30,7 +31,8 @@ log = logging.getLogger(__name__)
 class ShellVerb:
     """One verb of a shell. `name` is what others call it, `follows`: it may prove the session of the verb before.
 
-    `flush` sends what the station has queued, `send` what the verb prints; `silence`: s without a word of the shell.
+    `flush` sends what the station has queued, `send` what the verb prints, `ask_for_file` what is done with a file of
+    the user; `silence`: s without a word of the shell.
     """
 
     def __init__(
@@ -41,10 +43,12 @@ class ShellVerb:
         follows: bool,
         flush: Callable[[], None],
         send: Callable[[Printed], None],
+        ask_for_file: Callable[[FileAsked], Awaitable[FileAnswered]],
         silence: Callable[[float], float],
     ) -> None:
         self._station, self._name, self._follows = station, name, follows
         self._flush, self._send, self._silence = flush, send, silence
+        self._files = ShellFiles(ask_for_file)
         self._vehicle = ""
 
     async def run(self, asked: RunVerb) -> VerbEnded:
@@ -89,6 +93,7 @@ class ShellVerb:
         options.system = core.ids[0]
         kept = KeptSession(self._station.operator.session, follows=self._follows)
         session = StationVerbSession(core, core.flush, output.progress)
+        session.files = self._files
         session.where = " ".join(self._station.surroundings.endpoints)
         core.join()
         verb = asyncio.ensure_future(perform(session, action, options, output, group, kept, self._note_vehicle))

@@ -13,7 +13,6 @@ from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog, VehicleText
 from groundstation.vehicles.state.vehicle_details import VehicleDetails
 from groundstation.vehicles.state.vehicle_state import VehicleState
-from groundstation.verbs.session.in_control import is_in_control, other_driver
 from groundstation.verbs.session.operator import VerbOperator
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -63,12 +62,12 @@ class VehicleContact:
     @property
     def in_control(self) -> bool:
         """This program is in control, as the vehicle reports it."""
-        return is_in_control(self.state, self.ids, self.session)
+        return bool(self.state.driver) and self.state.control.is_program(self.ids, self.session, accepted=False)
 
     @property
     def other_driver(self) -> int | None:
         """System id of another program in control; None if there is none, or the vehicle does not tell."""
-        return other_driver(self.state, self.ids, self.session)
+        return self.state.driver if self.state.driver and not self.in_control else None
 
     @property
     def follows(self) -> bool:

@@ -17,10 +17,10 @@ from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station_socket.relay import LinksReport
+from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.link_reasons import describe_silence
-from groundstation.verbs.session.station_choice import StationLink
 from groundstation.verbs.session.station_link import StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
 from link.endpoint import Side

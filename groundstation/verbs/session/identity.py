@@ -7,9 +7,9 @@ import time
 from typing import TYPE_CHECKING
 
 from groundstation.station.component import COMPONENT
+from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.session.core import WATCHER
 from groundstation.verbs.session.kept_session import KeptSession, choose_session
-from groundstation.verbs.session.station_choice import StationLink
 
 if TYPE_CHECKING:
     from groundstation.verbs.action import VerbAction

@@ -15,11 +15,12 @@ from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.places import PLACES
 from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.files import Files
 from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.core import ALONE_AFTER, VerbCore
 from groundstation.verbs.session.link_reasons import describe_silence, to_view
-from groundstation.verbs.session.station_choice import StationLink
 from groundstation.verbs.session.station_link import StationRunner
 from link.protocol.log_tap import LogTap
 
@@ -46,6 +47,9 @@ SUCCESSION_WITHIN = 2.0
 RequestStart = Callable[[int, float], None]
 """Starts a request, with its number and the time."""
 
+Interrupted = Callable[[int], None]
+"""Gets the number of a request when its verb is interrupted, while what has arrived is still there."""
+
 
 class VerbSession:
     """What a verb does with its vehicle, or with another one if `contact` is given."""
@@ -63,6 +67,8 @@ class VerbSession:
         self._contact = contact
         self._count = 0
         self._ended: dict[int, RequestReport] = {}
+        self.files = Files()
+        """The files of whoever typed the verb."""
         self.where = ""
         """The endpoints, for texts."""
         self.began = self.now
@@ -199,15 +205,23 @@ class VerbSession:
 
     def of_others(self) -> list[VerbSession]:
         """Return a session for each vehicle that was heard, this one included."""
-        return [VerbSession(self.core, self.flush, self._progress, each) for each in self.core.contacts.values()]
+        others = [type(self)(self.core, self.flush, self._progress, each) for each in self.core.contacts.values()]
+        for each in others:
+            each.files = self.files
+        return others
 
-    async def request(self, start: RequestStart) -> RequestReport:
+    async def request(self, start: RequestStart, interrupted: Interrupted | None = None) -> RequestReport:
         """Make a request and return how it ended. Raises VerbError if its messages may not be sent."""
         self._count += 1
         number = self._count
         start(number, self.now)
         self.flush()
-        await self.core.add_look(lambda: self._collect(number) or bool(self._refusal))
+        try:
+            await self.core.add_look(lambda: self._collect(number) or bool(self._refusal))
+        except asyncio.CancelledError:
+            if interrupted is not None:
+                interrupted(number)
+            raise
         self.need_sent()
         return self._ended.pop(number)
 

@@ -19,7 +19,7 @@ from groundstation.vehicles.state.vehicle_details import VehicleDetails
 from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.core import VerbCore
 from groundstation.verbs.session.operator import VerbOperator
-from groundstation.verbs.session.session import RequestStart, VerbSession
+from groundstation.verbs.session.session import Interrupted, RequestStart, VerbSession
 from link.core import LinkReport, Outgoing, Received
 from link.services.command.client import CommandClient
 
@@ -184,12 +184,7 @@ class StationVerbSession(VerbSession):
 
     core: StationCore
 
-    def of_others(self) -> list[VerbSession]:
-        """Return a session for each vehicle that was heard, this one included."""
-        kind = type(self)
-        return [kind(self.core, self.flush, self._progress, each) for each in self.core.contacts.values()]
-
-    async def request(self, start: RequestStart) -> RequestReport:
+    async def request(self, start: RequestStart, interrupted: Interrupted | None = None) -> RequestReport:
         """Make a request and return how it ended; it is cancelled with the verb."""
         services, number, ended = self.core.station.services, next(NUMBERS), list[RequestReport]()
 
@@ -206,6 +201,8 @@ class StationVerbSession(VerbSession):
             if not ended:
                 await self.core.add_look(lambda: bool(ended) or bool(self._refusal))
         except asyncio.CancelledError:
+            if interrupted is not None:
+                interrupted(number)
             services.cancel(number, self.now)
             self.flush()
             raise

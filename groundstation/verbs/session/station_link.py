@@ -22,8 +22,8 @@ from groundstation.station_socket.relay import (
     encode,
 )
 from groundstation.station_socket.verb_run import ALIVE_PERIOD, Alive
+from groundstation.verbs.client.station_choice import StationLink, StationLostError
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.session.station_choice import StationLink, StationLostError
 from link.core import Core, Peer, Received, RefusalListener
 from link.protocol.log_tap import LogTap
 from link.transport.receive_buffer import ReceiveBuffer

@@ -13,9 +13,9 @@ from collections.abc import Awaitable, Callable, Sequence
 
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
+from groundstation.verbs.client.station_choice import AUTO, NEVER, SeveralStationsError, StationLostError
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.session.endpoints import link_error
-from groundstation.verbs.session.station_choice import AUTO, NEVER, SeveralStationsError, StationLostError
 
 STOP_WITHIN = 0.5
 """s for a station to answer before a stop goes without it: it may hang."""

@@ -14,10 +14,10 @@ from collections.abc import Sequence
 
 from dialects import messages as m
 from groundstation.vehicles.state.chunked_texts import TextJoiner
+from groundstation.verbs.client.station_choice import AUTO, NEVER
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.session import VerbSession
-from groundstation.verbs.session.station_choice import AUTO, NEVER
 from groundstation.verbs.setup.sign import one_line_errors
 from link.core import Received
 from link.endpoint import SERIAL, parse_endpoint

@@ -24,10 +24,10 @@ from groundstation.station_socket.verb_run import (
 )
 
 
-def test_packets_of_version_5() -> None:
+def test_packets_of_version_6() -> None:
     """A shell and a station of two releases tell each other apart by the number: who changes a packet raises it."""
     group = AskedGroup(frozenset({2}), frozenset(), ("rover*",))
-    assert VERSION == 5
+    assert VERSION == 6
     assert encode(RunVerb(("arm", "--all"), group)).hex() == (
         "83a474797065a752756e56657262a5776f72647392a361726da52d2d616c6ca567726f75709391029091a6726f7665722a"
     )

@@ -83,7 +83,7 @@ def test_files_are_cancelled_one_by_one() -> None:
     files.checksum(2, "/logs/1.bin", pair.now)
     files.list_folder(3, "/logs", pair.now)
     pair.run_until(lambda: any(report.done > 5000 for report in book.running), 5.0)
-    assert files.beginning == DATA[: len(files.beginning)] != b""
+    assert files.beginning_of(1) == DATA[: len(files.beginning_of(1))] != b""
     files.cancel(1, pair.now)
     files.cancel(2, pair.now)
     pair.run_until(lambda: not book.running, 20.0)
@@ -112,7 +112,7 @@ def test_logs_are_cancelled_one_by_one() -> None:
     logs.download(1, log, pair.now)
     logs.download(2, log, pair.now)
     logs.download(3, log, pair.now)
-    pair.run_until(lambda: len(logs.beginning) > 5000, 5.0)
+    pair.run_until(lambda: len(logs.beginning_of(1)) > 5000, 5.0)
     logs.cancel(9, pair.now)
     logs.cancel(2, pair.now)
     logs.cancel(1, pair.now)

@@ -14,11 +14,11 @@ from groundstation.intents.session import RenewLease
 from groundstation.station.component import COMPONENT
 from groundstation.station.station import Station
 from groundstation.station_socket.verb_run import STILL_WITHIN, VerbEnded, VerbReady, decode_from_station
+from groundstation.verbs.client.station_choice import StationLink
+from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.session.station_choice import StationLink
 from groundstation.verbs.session.station_core import StationCore
-from groundstation.verbs.session.verb_client import VerbClient
 from link.links import open_links
 from link.runner import Runner
 from tests.fakes.params import Param

@@ -100,6 +100,17 @@ def test_what_the_station_hears_can_be_recorded(verb: Run, tmp_path: Path) -> No
     assert len(heard) == record["messages"] > 10
 
 
+def test_files_are_those_of_the_shell_and_not_of_the_station(
+    verb: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # the station was started elsewhere
+    assert verb("param", "save", "all.param", "WP_*").code == 0
+    assert "WP_RADIUS" in (tmp_path / "all.param").read_text()
+    assert verb("param", "diff", "all.param").code == 0
+    assert verb("param", "save", "all.param").code == ExitCode.USAGE
+    assert [each.name for each in tmp_path.iterdir()] == ["all.param"]
+
+
 def test_the_vehicle_refuses(verb: Run) -> None:
     assert verb("param", "set", "MAN_TIMEOUT", "77").code == ExitCode.REFUSED
 

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import math
 import time
+from collections import deque
 from collections.abc import Sequence
 
 from groundstation.config.groups import VehicleGroup
@@ -16,6 +17,8 @@ from groundstation.station_socket.verb_run import (
     Alive,
     AskedGroup,
     CancelVerb,
+    FileAsked,
+    FromShell,
     Printed,
     RunVerb,
     StillHere,
@@ -24,9 +27,10 @@ from groundstation.station_socket.verb_run import (
     decode_from_station,
     encode,
 )
+from groundstation.verbs.client.file_worker import FileWorker
+from groundstation.verbs.client.station_choice import StationLink, StationLostError
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.session.station_choice import StationLink, StationLostError
 from link.transport.receive_buffer import ReceiveBuffer
 
 END_WITHIN = 1.5
@@ -43,6 +47,9 @@ class VerbClient:
         self._patience = patience
         self._asked_at = -math.inf
         self._unanswered_since = math.inf
+        self._files = FileWorker(self._send)
+        self._unsent: deque[bytes] = deque()
+        """Packets for which the socket had no room."""
         self.ended: VerbEnded | None = None
 
     async def run(self, words: Sequence[str], group: VehicleGroup | None) -> VerbEnded:
@@ -87,11 +94,20 @@ class VerbClient:
             silence = f"the station has not answered for {now - self._unanswered_since:.1f} s"
             raise StationLostError(ExitCode.NO_ANSWER, silence, self._endpoints)
         self._unanswered_since = min(self._unanswered_since, now)
-        self._send(StillHere())
+        if self._unsent:  # it has not read the last one
+            self._write()
+        else:
+            self._send(StillHere())
 
-    def _send(self, packet: RunVerb | StillHere | CancelVerb) -> None:
+    def _send(self, packet: FromShell) -> None:
+        self._unsent.append(encode(packet))
+        self._write()
+
+    def _write(self) -> None:
         with contextlib.suppress(OSError):  # a full queue: it hangs; a station that has ended: _read
-            self._socket.send(encode(packet))
+            while self._unsent:
+                self._socket.send(self._unsent[0])
+                self._unsent.popleft()
 
     def _read(self) -> None:
         while self.ended is None and (packet := read_packet(self._socket, self._buffer)) is not None:
@@ -105,6 +121,8 @@ class VerbClient:
                         self._print(each)
                 case VerbEnded() as ended_so:
                     self.ended = ended_so
+                case FileAsked() as asked:
+                    self._files.work(asked)
                 case Alive():
                     pass
 
