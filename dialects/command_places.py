@@ -17,7 +17,7 @@ LOCATED = frozenset(
 """MAV_CMDs whose parameters 5 and 6 are latitude and longitude (hasLocation in common.xml; 611 is newer)."""
 
 PLACELESS = frozenset(rover.enums["MAV_CMD"]) - LOCATED
-"""MAV_CMDs of common.xml whose parameters 5 and 6 are no place, whatever the frame of coordinates says."""
+"""MAV_CMDs of common.xml whose parameters 5 and 6 are not a place, whatever the frame of coordinates says."""
 
 DEGREE, METRE = 1e7, 1e4
 """Units of `x` and `y` of a COMMAND_INT in a degree, and in a metre of a local frame."""

@@ -39,7 +39,7 @@ NO_VEHICLES = frozenset(
         49,  # MAV_TYPE_RADIO, newer than pymavlink 2.4.50
     }
 )
-"""MAV_TYPEs that are no vehicle: parts of one, and what only looks at vehicles.
+"""MAV_TYPEs that are not a vehicle: parts of one, and what only looks at vehicles.
 
 Many of them name an autopilot in their HEARTBEAT: a gimbal that of its vehicle, a script on board GENERIC.
 MAV_TYPE_GENERIC and ANTENNA_TRACKER are missing here, because autopilots send them.

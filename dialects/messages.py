@@ -17,7 +17,7 @@ Message = rover.MAVLink_message
 class ExtraMessage(Message):
     """A message of a user's dialect (dialects/extra).
 
-    Its fields are no attributes: no code that asks any message for `target_system` or `time_boot_ms` may read a field
+    Its fields are not attributes: no code that asks any message for `target_system` or `time_boot_ms` may read a field
     that only has this name, with a type and a meaning of its own.
     """
 

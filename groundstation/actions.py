@@ -44,7 +44,7 @@ class OperatorAction(msgspec.Struct, frozen=True):
     when_armed: AnyIntent | None = None
     """Sent in place of `intent`, without confirmation, while the vehicle is armed."""
     steady: bool = False
-    """Its keys do not stop a vehicle that is driven. All others that are no drive keys do."""
+    """Its keys do not stop a vehicle that is driven. All others that are not drive keys do."""
 
 
 def _drive(name: str, label: str, text: str, throttle: int, steering: int, *keys: str) -> OperatorAction:

@@ -80,7 +80,7 @@ def is_on_earth(latitude: float, longitude: float) -> bool:
 
 
 def place_fault(latitude: float, longitude: float) -> str | None:
-    """Return why degrees are no place on earth, or None; NaN is none."""
+    """Return why degrees are not a place on earth, or None; NaN is none."""
     if not abs(latitude) <= MAX_LATITUDE:
         return f"latitude {latitude:.9g} is not in -90 to 90"
     if not abs(longitude) <= MAX_LONGITUDE:

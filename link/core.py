@@ -173,7 +173,7 @@ class Core(Protocol):
         """Advance to `now`: send what is due, act on what is overdue."""
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the state of all links, about once a second."""
+        """Store the state of all links, about once a second."""
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
@@ -234,7 +234,7 @@ class SendListener(Protocol):
     """A core that needs the packet sequence of the messages it sent."""
 
     def handle_sent(self, message: Message, sequence: int, now: float) -> None:
-        """Take the sequence under which `message` was sent."""
+        """Note the sequence under which `message` was sent."""
 
 
 @runtime_checkable
@@ -242,7 +242,7 @@ class RefusalListener(Protocol):
     """A core that wants to know which of its messages are not sent because its role does not allow them."""
 
     def handle_refused(self, message: Message, why: str, now: float) -> None:
-        """Take that a link did not send `message`; `why` is one line for the user."""
+        """Note that a link did not send `message`; `why` is one line for the user."""
 
 
 @runtime_checkable

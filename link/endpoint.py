@@ -143,7 +143,7 @@ def _parse_zenoh(scheme: str, rest: str) -> Endpoint:
         locator = f"{protocol}/{address}"
         found = _LOCATOR.fullmatch(locator)
         if not found or not _is_within(found["port"], 1, 65535):
-            raise EndpointError(f"endpoint {text!r}: {locator!r} is no address of a router; {_ZENOH_EXAMPLE}")
+            raise EndpointError(f"endpoint {text!r}: {locator!r} is not an address of a router; {_ZENOH_EXAMPLE}")
     elif config := _CONFIG.fullmatch(rest):
         locator, names = config["path"], config["names"] or ""
     else:
@@ -153,7 +153,7 @@ def _parse_zenoh(scheme: str, rest: str) -> Endpoint:
         raise EndpointError(f"endpoint {text!r}: name the fleet behind {locator}, and one vehicle at most")
     for name in (fleet, *vehicle):
         if not re.fullmatch(FLEET_NAME, name):
-            raise EndpointError(f"endpoint {text!r}: {name!r} is no name; it has {FLEET_NAME_RULE}")
+            raise EndpointError(f"endpoint {text!r}: {name!r} is not a name; it has {FLEET_NAME_RULE}")
     return Endpoint(text, scheme, locator=locator, fleet=fleet, vehicle="".join(vehicle))
 
 

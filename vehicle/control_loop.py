@@ -37,10 +37,10 @@ class Controller(Core, TimeTeller, PlaceKeeper, Protocol):
         """The outputs that the motors must get now."""
 
     def sense(self, readings: Readings, now: float) -> None:
-        """Take the readings of the sensors, each cycle before the tick."""
+        """Store the readings of the sensors, each cycle before the tick."""
 
     def update_estop_input(self, reason: str | None, now: float) -> None:
-        """Take why the emergency-stop input stops the motors, or None while it is closed; each cycle before the tick.
+        """Set why the emergency-stop input stops the motors, or None while it is closed; each cycle before the tick.
 
         Also called at once if the motors refuse outputs because of it; they are stopped by then.
         """
@@ -204,7 +204,7 @@ class ControlLoop:
             self._completed(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the reports of the links."""
+        """Store the reports of the links."""
         self._guard(lambda: self._controller.observe(reports, now), now)
 
     def messages_to_send(self) -> list[Outgoing]:

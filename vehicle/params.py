@@ -252,7 +252,7 @@ class Params:
         self._unannounced = set(names)
 
     def mark_announced(self, name: str) -> None:
-        """Leave out a change that its own PARAM_VALUE announces."""
+        """Do not announce a change that its PARAM_VALUE already reports."""
         self._unannounced.discard(name)
 
     def __getitem__(self, name: str) -> float:

@@ -182,7 +182,7 @@ class Rover:
         self._outbox.note_cycle(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the reports of the links, about once a second."""
+        """Store the reports of the links, about once a second."""
         if self._safety.state is SafetyState.OFF:
             return
         self._bandwidth.update(reports)
@@ -197,7 +197,7 @@ class Rover:
         return self._outbox.pop()
 
     def sense(self, readings: Readings, now: float) -> None:
-        """Take the newest readings."""
+        """Store the newest readings."""
         self._readings = readings
         self._navigator.sense(readings, now)
         self._safety.battery.update(readings.battery_voltage, now, expected="battery" in readings.configured)
@@ -205,7 +205,7 @@ class Rover:
         self._health_notices.update(sensor_notices(readings) | fence_notices(self._navigator.fence_avoidance), now)
 
     def update_estop_input(self, reason: str | None, now: float) -> None:
-        """Take the emergency-stop input each cycle: why it stops the rover, or None while it is closed."""
+        """Set the state of the emergency-stop input each cycle: why it stops the rover, or None while it is closed."""
         before = self._safety.state
         if before is not SafetyState.OFF:
             self._safety.update_estop_input(reason, now)

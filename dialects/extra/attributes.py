@@ -42,7 +42,7 @@ def read_name(attributes: Attributes, element: str, place: FilePosition) -> str:
     name = required(attributes, "name", element, place)
     if not _NAME.fullmatch(name):
         what = f"use at most {NAME_MAX} letters, digits and _, no digit first"
-        raise DialectError(f"{place}: {_shown(name)} is no {element} name: {what}")
+        raise DialectError(f"{place}: {_shown(name)} is not a valid {element} name: {what}")
     return name
 
 
@@ -50,7 +50,7 @@ def read_id(attributes: Attributes, place: FilePosition) -> int:
     """Return the id of a message."""
     text = required(attributes, "id", "message", place)
     if not _NUMBER.fullmatch(text) or int(text) > HIGHEST_ID:
-        raise DialectError(f"{place}: {_shown(text)} is no message id: use a number from 0 to {HIGHEST_ID}")
+        raise DialectError(f"{place}: {_shown(text)} is not a message id: use a number from 0 to {HIGHEST_ID}")
     return int(text)
 
 
@@ -97,7 +97,7 @@ def _read_value(text: str, name: str, place: FilePosition) -> int:
     value = _number(match) if match else None
     if value is None or not -(1 << 63) <= value < 1 << 64:
         raise DialectError(
-            f"{place}: entry {name}: {_shown(text)} is no value: use a number of at most 64 bits, 0x..., 0b... or 2**n"
+            f"{place}: entry {name}: {_shown(text)} is not a value: use up to 64 bits: a number, 0x..., 0b... or 2**n"
         )
     return value
 

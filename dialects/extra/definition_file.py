@@ -46,7 +46,7 @@ def read_definitions(path: Path, name: str) -> DefinitionFile:
     except OSError as error:
         raise DialectError(f"{name}: {error.strerror}") from error
     if len(data) > FILE_MAX:
-        raise DialectError(f"{name}: larger than {FILE_MAX >> 20} MiB: this is no MAVLink definition")
+        raise DialectError(f"{name}: larger than {FILE_MAX >> 20} MiB: this is not a MAVLink definition")
     return _Parser(name).parse(data)
 
 

@@ -17,7 +17,7 @@ def build_parser() -> CommandLineParser:
     parser = CommandLineParser(
         prog="groundstation completion",
         description="Print a script that completes verbs, options and names in a shell.",
-        epilog='bash: eval "$(groundstation completion bash)" in ~/.bashrc; zsh likewise; '
+        epilog='bash: eval "$(groundstation completion bash)" in ~/.bashrc; the same for zsh; '
         "fish: groundstation completion fish | source",
     )
     add = parser.add_mutually_exclusive_group(required=True).add_argument

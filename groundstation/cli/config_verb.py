@@ -47,7 +47,7 @@ def run(arguments: Sequence[str]) -> int:
     except (EndpointError, KeymapError) as error:
         _print_errors(str(error))
     except BrokenPipeError:
-        raise  # the reader has gone, which is no mistake
+        raise  # the reader has gone, which is not a mistake
     except OSError as error:
         _print_errors(f"{error.filename or 'output'}: {error.strerror}")
     return _Code.USAGE

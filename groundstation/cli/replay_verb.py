@@ -25,7 +25,7 @@ Ctrl-G 0 has the timeline, the events and the keys: p plays, the arrows move, / 
 
 times: 12:04:10 by the clock of the log, 1:23 from its start, +30 from its first vehicle
 
-exit codes: 0 after a session, 2 for wrong arguments or a file that is no telemetry log, 128 + n after signal n
+exit codes: 0 after a session, 2 for wrong arguments or a file that is not a telemetry log, 128 + n after signal n
 """
 
 

@@ -56,7 +56,7 @@ def parse_group(texts: str | Sequence[str]) -> VehicleGroup:
         if found := _RANGE.fullmatch(part):
             first, last = int(found[1]), int(found[2] or found[1])
             if not 1 <= first <= last <= LARGEST_ID:
-                raise GroupError(f"{part!r} is no system id, nor a range of them: they go from 1 to {LARGEST_ID}")
+                raise GroupError(f"{part!r} is not a system id or a range of them: they go from 1 to {LARGEST_ID}")
             (others if found[2] else listed).update(range(first, last + 1))
         elif _PATTERN.fullmatch(part):
             patterns.append(part.lower())

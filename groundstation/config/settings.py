@@ -137,7 +137,7 @@ class SettingRow(msgspec.Struct, frozen=True):
         """Return why a value that `convert` refuses is not taken; a percentage in place of a fraction is explained."""
         hint = ""
         with contextlib.suppress(TypeError, ValueError, msgspec.ValidationError):
-            percent = float(value)  # type: ignore[arg-type]  # anything: the error says that it is no number
+            percent = float(value)  # type: ignore[arg-type]  # anything: the error says that it is not a number
             if percent > 1:
                 hint = f"; {percent:g} % is {self.convert(percent / 100):g}"
         return f"{shown} is not {self.allowed}{hint}"

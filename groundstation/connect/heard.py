@@ -33,7 +33,7 @@ class HeardVehicles:
         self._found: dict[tuple[str, Hashable, int], _Sighting] = {}
 
     def receive(self, endpoint: str, messages: list[Received], size: int, now: float) -> None:
-        """Take the messages of one datagram of `size` bytes."""
+        """Handle the messages of one datagram of `size` bytes."""
         for received in messages:
             key = (endpoint, received.peer.address, received.system)
             found = self._found.get(key)

@@ -142,7 +142,7 @@ class LinkKeeper:
         worker.close(patience=0.0)
 
     def _opened(self, attempt: _Attempt, result: Transport | str) -> None:
-        """Take the result of the thread."""
+        """Handle the result of the thread."""
         now = asyncio.get_running_loop().time()
         if isinstance(result, str):
             attempt.problem = result.removeprefix(f"{attempt.endpoint}: ")

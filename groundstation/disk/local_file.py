@@ -13,7 +13,7 @@ from link.services.ftp.job import MAX_SIZE as MAX_DOWNLOAD
 from link.services.ftp.protocol import crc32
 
 MAX_SIZE = 16 * 1024 * 1024
-"""Bytes of a file that is read: more is no parameter file and no plan, and takes hours to upload."""
+"""Bytes of a file that is read: more is neither a parameter file nor a plan, and takes hours to upload."""
 
 PIECE = 1024 * 1024
 """Bytes that are read at once for a checksum."""

@@ -13,7 +13,7 @@ from link.runtime.whole_file import SHARED
 
 
 class NewFile:
-    """A file. What is no regular file, such as a pipe, is written directly. Raises OSError."""
+    """A file. What is not a regular file, such as a pipe, is written directly. Raises OSError."""
 
     def __init__(self, path: str) -> None:
         self.path = path

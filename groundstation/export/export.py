@@ -129,7 +129,7 @@ class _Pass:
             raise ExportError(f"{path}: {foreign}")
         begin = next((each.stamp for part in read_log(file) for each in part if isinstance(each, LogFrame)), None)
         if begin is None:
-            raise ExportError(f"{path}: this is no telemetry log: it has no MAVLink frame")
+            raise ExportError(f"{path}: this is not a telemetry log: it has no MAVLink frame")
         self.log = LogInfo(Path(path).name, begin, choice.only)
         self._choice = choice
         self._from = choice.begin.resolve(begin) if choice.begin else 0

@@ -52,7 +52,7 @@ def parse_log_time(text: str) -> LogTime:
             return LogTime(_unix(datetime.fromisoformat(text)))
     except (ValueError, OverflowError):
         pass
-    raise ValueError(f"{text!r} is no time in a log: write {FORMS}")
+    raise ValueError(f"{text!r} is not a time in a log: write {FORMS}")
 
 
 def iso_time(microseconds: int) -> str:

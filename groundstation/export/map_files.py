@@ -50,7 +50,7 @@ class MapExport:
         return self._tracks.count
 
     def add(self, sample: Sample) -> None:
-        """Take a position or a warning."""
+        """Handle a position or a warning."""
         self._tracks.add(sample)
 
     def finish(self) -> None:

@@ -19,7 +19,7 @@ from groundstation.geo import FIX_2D, read_place
 from groundstation.vehicles.state.chunked_texts import TextJoiner, TextKey
 
 PAUSE = 10_000_000
-"""us without a position that end a segment: a line across them would show a way that nobody knows."""
+"""us without a position that end a segment: a line across the gap would show a path that was not recorded."""
 
 
 class Position(msgspec.Struct, frozen=True):
@@ -81,7 +81,7 @@ class Tracks:
         """Texts of which chunks may follow, and the place of their remarks."""
 
     def add(self, sample: Sample) -> None:
-        """Take a message that has a position, or a warning."""
+        """Handle a message that has a position, or a warning."""
         if sample.kind is GlobalPositionInt or sample.kind is GpsRawInt:
             self._add_position(sample)
         elif sample.kind is StatusText:

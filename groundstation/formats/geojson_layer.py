@@ -117,7 +117,7 @@ def _place(value: object, where: str) -> Place:
 def _is_number(value: object) -> bool:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    return isinstance(value, float) or abs(value) < 10**9  # a longer whole number is no float
+    return isinstance(value, float) or abs(value) < 10**9  # a longer whole number is not a float
 
 
 def thin(shapes: tuple[LayerShape, ...], most: int) -> tuple[LayerShape, ...]:

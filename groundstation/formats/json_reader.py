@@ -18,7 +18,8 @@ _NAMES: dict[type, str] = {str: "a text", bool: "true or false", dict: "an objec
 def load_object(text: str, source: str, kind: str, *, constants: bool = False) -> dict[str, Any]:
     """Return the object of a file of this kind. Raises FileFormatError.
 
-    `constants`: NaN and Infinity are read, for a reader that names where they are. Else they are refused.
+    `kind`: for messages, e.g. "a plan". `constants`: NaN and Infinity are read, for a reader that names where they are;
+    else they are refused.
     """
 
     def refuse(constant: str) -> NoReturn:
@@ -29,11 +30,11 @@ def load_object(text: str, source: str, kind: str, *, constants: bool = False) -
     except FileFormatError:
         raise
     except json.JSONDecodeError as error:
-        raise FileFormatError(f"{source}:{error.lineno}: this is no JSON: {error.msg}") from None
+        raise FileFormatError(f"{source}:{error.lineno}: this is not JSON: {error.msg}") from None
     except (RecursionError, ValueError):
-        raise FileFormatError(f"{source}: this is no {kind}: nested too deeply, or a number too long") from None
+        raise FileFormatError(f"{source}: this is not {kind}: nested too deeply, or a number too long") from None
     if not isinstance(value, dict):
-        raise FileFormatError(f"{source}: this is no {kind}: it is no JSON object")
+        raise FileFormatError(f"{source}: this is not {kind}: it is not a JSON object")
     return value
 
 

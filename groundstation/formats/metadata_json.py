@@ -53,7 +53,7 @@ def load_json(data: bytes, where: str) -> Any:
     except (ValueError, RecursionError) as error:
         line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
         what = error.msg if isinstance(error, json.JSONDecodeError) else type(error).__name__
-        raise FileFormatError(f"{where}{line}: this is no JSON: {what}") from None
+        raise FileFormatError(f"{where}{line}: this is not JSON: {what}") from None
 
 
 def _decompressed(data: bytes, where: str) -> bytes:

@@ -19,7 +19,7 @@ def parse_pdef_json(data: bytes, where: str) -> ParamDocs:
     """Return the texts in an apm.pdef.json. Raises FileFormatError."""
     content = load_json(data, where)
     if not isinstance(content, dict):
-        raise FileFormatError(f"{where}: this is no object with groups of parameters")
+        raise FileFormatError(f"{where}: this is not an object with groups of parameters")
     docs: dict[str, ParamDoc] = {}
     for group in content.values():
         for name, entry in group.items() if isinstance(group, dict) else ():
@@ -96,7 +96,7 @@ class _PdefReader:
             self._path, self._text = (tag, attributes.get("name" if tag == "field" else "code", "")), ""
 
     def text(self, data: str) -> None:
-        """Take a piece of a text."""
+        """Handle a piece of a text."""
         if self._path is not None and len(self._text) < 10_000:
             self._text += data
 

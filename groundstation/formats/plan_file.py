@@ -37,7 +37,7 @@ _SETTINGS = {"cruiseSpeed": 15, "firmwareType": 0, "globalPlanAltitudeMode": 1, 
 
 def parse_plan(text: str, source: str) -> Plan:
     """Parse a file. Raises FileFormatError, with `source` and the place in it."""
-    root = JsonReader(load_object(text, source, "plan"), source)
+    root = JsonReader(load_object(text, source, "a plan"), source)
     if root.get("fileType", str) != "Plan":
         root.fail(f'"fileType" is {shown(str(root.value["fileType"]))}, not "Plan"')
     _check_version(root, 1)

@@ -59,7 +59,7 @@ class Gamepads:
         return tuple(self._devices)
 
     def poll(self) -> None:
-        """Take what the devices have sent, and those that were plugged in or unplugged."""
+        """Read the events of the devices, and those that were plugged in or unplugged."""
         while sdl2.SDL_PollEvent(ctypes.byref(self._event)):
             if self._event.type == sdl2.SDL_CONTROLLERDEVICEADDED:
                 self._open(self._event.cdevice.which)

@@ -30,7 +30,7 @@ class VerbSet:
         self._ports: set[VerbPort | RunPort] = set()
 
     def add(self, sock: socket.socket, name: str, hello: Hello) -> None:
-        """Take a verb; the loop runs."""
+        """Start a verb; the loop runs."""
         station = self._station
         follows = hello.follows and station.relay.may_follow(asyncio.get_running_loop().time())
         port: VerbPort | RunPort
@@ -68,7 +68,7 @@ class ProgramSet:
         return self._listener.start()
 
     def refuse(self) -> None:
-        """Take no more programs: the station ends."""
+        """Refuse further programs: the station ends."""
         self._ending = True
 
     def end_verbs(self) -> None:
@@ -82,7 +82,7 @@ class ProgramSet:
         self._verbs.close()
 
     def _take(self, caller: Caller) -> str | None:
-        """Take a program that has connected. Return why not."""
+        """Add a program that has connected. Return why not."""
         hello = caller.hello
         if self._ending:
             return "this station ends"

@@ -55,7 +55,7 @@ class FileSource:
             if path.is_dir():
                 raise ReplayError(f"{path}: is a folder: name a telemetry log (.tlog)")
             if not path.is_file() and path.exists():
-                raise ReplayError(f"{path}: is no regular file: name a telemetry log (.tlog)")
+                raise ReplayError(f"{path}: is not a regular file: name a telemetry log (.tlog)")
             if not path.exists():
                 raise ReplayError(f"{path}: no such file: name a telemetry log (.tlog)")
             self._descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
@@ -94,7 +94,7 @@ def open_log(path: Path) -> FileSource:
     if foreign := foreign_log(block):
         raise ReplayError(f"{path}: {foreign}")
     if not scan(block, 0, len(block), final=True).frames:
-        raise ReplayError(f"{path}: is no telemetry log (.tlog): no MAVLink frame in its first {len(block)} bytes")
+        raise ReplayError(f"{path}: is not a telemetry log (.tlog): no MAVLink frame in its first {len(block)} bytes")
     return source
 
 

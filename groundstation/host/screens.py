@@ -84,7 +84,7 @@ class ScreenSet:
     # ---- screens come and go ----
 
     def add(self, sock: socket.socket, name: str, *, owner: bool = False, watches: bool = False) -> str | None:
-        """Take a screen. Return why not. `owner`: it has started this station; `watches`: it begins without keys."""
+        """Add a screen. Return why not. `owner`: it has started this station; `watches`: it begins without keys."""
         if len(self._attached) >= MAX_SCREENS:
             return f"{MAX_SCREENS} screens are attached already"
         port = ScreenPort(sock, self)

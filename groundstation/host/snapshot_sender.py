@@ -48,7 +48,7 @@ class SlotTimer:
             self._next.cancel()
 
     def rouse(self) -> None:
-        """Let the next slot come SLOT after the one before, or at once, if it is one of a rest."""
+        """Schedule the next slot at the full rate; end an idle period at once."""
         if self._next is not None and self._period > SLOT and not self._ended:
             self._next.cancel()
             self._period = SLOT

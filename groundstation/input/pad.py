@@ -76,7 +76,7 @@ class PadCore:
         self._centred = False
 
     def update(self, names: tuple[str, ...], chosen: int, reading: PadReading | None, now: float) -> PadFrame | None:
-        """Take what was read of the gamepad that drives. Returns the frame that is due, None if none is."""
+        """Handle the readings of the gamepad that drives. Returns the frame that is due, None if none is."""
         device = None if reading is None else reading.device
         if device != self._device:
             self._device, self._spent = device, True

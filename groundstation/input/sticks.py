@@ -140,7 +140,7 @@ class Sticks:
         )
 
     def step_limits(self, change: StepLimits) -> None:
-        """Change the limits. A change that is no number changes nothing."""
+        """Change the limits. A change that is not a number changes nothing."""
         self.throttle_limit = _changed(self.throttle_limit, change.throttle)
         self.steering_limit = _changed(self.steering_limit, change.steering)
 

@@ -81,7 +81,7 @@ class Findings:
         return message_id in EVENT_IDS or message_id in KEPT or message_id in _OTHERS
 
     def add(self, time: float, frame: LogFrame) -> None:
-        """Take a valid frame."""
+        """Handle a valid frame."""
         number = frame.message_id
         payload = payload_of(frame.raw)
         if number in KEPT and len(self.kept) < MAX_KEPT:
@@ -107,7 +107,7 @@ class Findings:
         self.finder.handle(Found(time, frame.at, system, component, decode(number, payload)))
 
     def repeat_beat(self, beat: KnownBeat, time: float) -> bool:
-        """Take a HEARTBEAT that came again as it was. Returns False if that is an event, and the frame is needed."""
+        """Handle a HEARTBEAT that came again as it was. Returns False if that is an event, and the frame is needed."""
         return self.finder.repeat(beat.system, beat.component, time)
 
     def _add_speed(self, time: float, frame: LogFrame, payload: bytes) -> None:

@@ -58,7 +58,7 @@ class LogIndex:
         self.end = 0
         """Offset up to which the file is indexed."""
         self.tail = 0
-        """Bytes behind `end` that are no whole record."""
+        """Bytes behind `end` that are not a whole record."""
         self._end_sure = True
         self._wanted: set[SourceKey] = set()
         self._known: set[SourceKey] = set()
@@ -141,7 +141,7 @@ class LogIndex:
                 self._add_frame(frame, stamp_at(block, frame.end - base))
 
     def _add_repeated(self, beat: KnownBeat, at: int, block: bytes, start: int) -> None:
-        """Take a HEARTBEAT whose payload is that of the one before, which was checked: its time is all that is new."""
+        """Add a HEARTBEAT whose payload is that of the one before, which was checked: its time is all that is new."""
         stamp, following = stamp_at(block, start), stamp_at(block, start + beat.size)
         assert stamp is not None  # the scan has found the record
         time = self._time(at, stamp, following)

@@ -107,7 +107,7 @@ class PlanHistory:
         self._items = 0
 
     def add(self, frame: LogFrame, vehicles: Iterable[int]) -> list[PlanChange]:
-        """Take a message; return the changes that end with it. `vehicles`: their systems, as far as they are known."""
+        """Add a message; return the changes that end with it. `vehicles`: their systems, as far as they are known."""
         message: Any = decode_frame(frame.message_id, frame.raw)
         target, from_vehicle = message.target_system, frame.system in vehicles
         vehicle, station = (frame.system, target) if from_vehicle else (target, frame.system)

@@ -29,7 +29,7 @@ LONGEST_WORD = 16
 
 
 class RefusedDemandError(ValueError):
-    """A message is no demand; the text says why, in one line."""
+    """A message is not a demand; the text says why, in one line."""
 
 
 class Scale(msgspec.Struct, frozen=True):

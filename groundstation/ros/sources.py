@@ -43,7 +43,7 @@ class DemandSources(msgspec.Struct):
     _sources: dict[Hashable, _Source] = msgspec.field(default_factory=dict)
 
     def push(self, key: Hashable, axes: Axes, silence: float, now: float) -> bool:
-        """Take a demand that ends after `silence` s. Returns False if it moves, and is ignored."""
+        """Handle a demand that ends after `silence` s. Returns False if it moves, and is ignored."""
         self._expire(now)
         source = self._sources.get(key)
         known = source is not None

@@ -73,7 +73,7 @@ class RosTypes:
         try:
             return self.store.deserialize_cdr(data, kind)
         except Exception as error:  # rosbags raises what its generated code happens to: struct.error, IndexError, ...
-            raise BadMessageError(f"{len(data)} bytes are no {kind}: {type(error).__name__}") from None
+            raise BadMessageError(f"{len(data)} bytes are not a {kind}: {type(error).__name__}") from None
 
     def build(self, kind: str, values: Mapping[str, Any]) -> Any:
         """Return the message of a type, and of the types in it."""

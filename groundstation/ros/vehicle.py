@@ -51,7 +51,7 @@ class RosVehicle:
         """Time, m/s2, and how good its source is."""
 
     def take(self, message: m.Message, microseconds: int) -> tuple[str, str, Values] | None:
-        """Take a message of the vehicle at a Unix time; return topic, type and values of the message of ROS it makes.
+        """Handle a message of the vehicle at a Unix time; return topic, type and values of the message of ROS it makes.
 
         The topic has no leading slash: "odom", "imu", "fix", "battery_state". The type is named as in ROS 2. Values are
         numbers, text, lists and dictionaries; `header` is a tuple of the time in us and the frame.

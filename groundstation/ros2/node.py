@@ -81,7 +81,7 @@ class Ros2Node(msgspec.Struct):
         self._plans.append(_Plan(Kind.PUBLISHER, topic, kind, RELIABLE_10))
 
     def add_subscription(self, topic: str, kind: str, take: Take) -> None:
-        """Take the messages of a topic."""
+        """Handle the messages of a topic."""
         self._plans.append(_Plan(Kind.SUBSCRIPTION, topic, kind, BEST_EFFORT_5))
         self._takes[len(self._plans)] = take
 

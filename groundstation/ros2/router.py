@@ -39,7 +39,7 @@ def load_router(text: str) -> Router:
     if ".json" in text:
         return _load_file(text)
     if not _LOCATOR.fullmatch(text):
-        raise LinkError(f"{text!r} is no locator such as tcp/localhost:7447, nor a file .json5")
+        raise LinkError(f"{text!r} is neither a locator such as tcp/localhost:7447 nor a file .json5")
     config = zenoh.Config()
     apply_settings(config, SETTINGS | {"connect/endpoints": [text]})
     return Router(text, config)
@@ -55,7 +55,7 @@ def _load_file(text: str) -> Router:
         raise LinkError(f"{path}: {error.strerror}") from None
     except (zenoh.ZError, ValueError) as error:
         why = " ".join(str(error).split(" at /")[0].split())
-        raise LinkError(f"{path} is no Zenoh configuration: {why[:160]}") from None
+        raise LinkError(f"{path} is not a Zenoh configuration: {why[:160]}") from None
     if not isinstance(locators, list) or not locators:
         raise LinkError(f"{path} names no router; add it to connect/endpoints")
     apply_settings(config, SETTINGS)

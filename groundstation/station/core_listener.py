@@ -25,16 +25,16 @@ class CoreListener:
         return frozenset()
 
     def hear(self, received: Received, contact: Contact | None, now: float) -> None:
-        """Take a message of any system, before the parts of the core; `contact` is None if it is no vehicle's."""
+        """Handle a message of any system, before the parts of the core; `contact` is None if it is not a vehicle's."""
 
     def receive(self, contact: Contact, received: Received, now: float) -> None:
-        """Take a message of a vehicle; its state has it already."""
+        """Handle a message of a vehicle; its state has it already."""
 
     def receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
-        """Take one that answers a request, makes one, or decides on something (not in READINGS)."""
+        """Handle one that answers a request, makes one, or decides on something (not in READINGS)."""
 
     def handle_text(self, contact: Contact, text: str, now: float) -> None:
-        """Take a whole STATUSTEXT of a vehicle."""
+        """Handle a whole STATUSTEXT of a vehicle."""
 
     def tick(self, now: float) -> None:
         """Do what is due while the core ticks."""
@@ -43,19 +43,19 @@ class CoreListener:
         """Do what is due when the core has ticked."""
 
     def begin_intent(self, intent: AnyIntent, permission: Permission, now: float) -> None:
-        """Take an intent that is going to be carried out."""
+        """Handle an intent that is going to be carried out."""
 
     def repeat_key(self, push: AnyIntent, now: float) -> None:
-        """Take a repeat of a key that drives, which is not an intent for anybody else."""
+        """Handle a repeat of a key that drives, which is not an intent for anybody else."""
 
     def follow(self, intent: AnyIntent | None, permission: Permission, now: float) -> None:
-        """Take that an intent was carried out, or (None) that time has passed."""
+        """Note that an intent was carried out, or (None) that time has passed."""
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the reports of the open links, once a second, before the parts of the core."""
+        """Store the reports of the open links, once a second, before the parts of the core."""
 
     def handle_sent(self, message: Message, now: float) -> None:
-        """Take that a message was sent."""
+        """Note that a message was sent."""
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""

@@ -53,15 +53,15 @@ class DoctorFeed(CoreListener):
         return self.doctor.tester.busy
 
     def receive(self, contact: Contact, received: Received, now: float) -> None:
-        """Take a message of a vehicle for its display."""
+        """Handle a message of a vehicle for its display."""
         self._display.receive(contact, received, now)
 
     def receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
-        """Take a message of a vehicle for the doctor."""
+        """Handle a message of a vehicle for the doctor."""
         self.doctor.receive(contact, received, now)
 
     def handle_text(self, contact: Contact, text: str, now: float) -> None:
-        """Take a whole STATUSTEXT of a vehicle for the doctor."""
+        """Handle a whole STATUSTEXT of a vehicle for the doctor."""
         self.doctor.handle_text(contact, text, now)
 
     def tick(self, now: float) -> None:
@@ -78,7 +78,7 @@ class DoctorFeed(CoreListener):
         self.doctor.end_test(intent, now)
 
     def handle_sent(self, message: Message, now: float) -> None:
-        """Take that a message was sent for the display."""
+        """Note that a message was sent for the display."""
         self._display.handle_sent(message, now)
 
     def messages_to_send(self) -> list[Outgoing]:

@@ -245,7 +245,7 @@ class OperatorCore:
         self.driving.handle_sent(message, sequence, now)
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:
-        """Tell who wanted a message that our role does not allow."""
+        """Report a message that our signing role forbids to the part that queued it."""
         self._refusals.handle(message, why, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:

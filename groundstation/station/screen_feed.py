@@ -85,7 +85,7 @@ class ScreenFeed(DoctorFeed):
         self.notes.follow(intent, permission, now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the reports of the open links."""
+        """Store the reports of the open links."""
         self.notes.observe(reports, now)
         self._traffic.observe([*reports, *self._parts.links.surroundings.not_open], now)
         states = [contact.state for contact in self._parts.fleet]

@@ -234,7 +234,7 @@ class Fleet:
             contact.settings_check = SettingsCheck(rules, *self._own_id, target=target)
 
     def _change_component(self, contact: Contact, received: Received, now: float) -> None:
-        """Take another component of the system for the vehicle: its autopilot, which was not heard first."""
+        """Handle another component of the system for the vehicle: its autopilot, which was not heard first."""
         state, system, component = contact.state, contact.state.system, received.component
         text = f"vehicle {system}: component {component} is its autopilot, not {state.component}"
         self._log.add(now, "station", text, Severity.WARNING, origin=LogOrigin(system))

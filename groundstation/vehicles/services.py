@@ -254,7 +254,7 @@ class VehicleServices:
         return find_kind(self.autopilot, self.kind)
 
     def note_state(self, state: VehicleState) -> None:
-        """Take what its newest HEARTBEAT tells."""
+        """Store the state that its newest HEARTBEAT reports."""
         self.autopilot, self.kind = state.autopilot, state.kind
         self.book.busy = CALIBRATING if state.status == SystemState.CALIBRATING else ""
 
@@ -268,7 +268,7 @@ class VehicleServices:
         self._take_queries(now)
 
     def handle_text(self, text: str, severity: int, now: float) -> None:
-        """Take a whole STATUSTEXT of the vehicle."""
+        """Handle a whole STATUSTEXT of the vehicle."""
         self.book.handle_text(text, severity, now)
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:

@@ -226,7 +226,7 @@ def _options(action: VerbAction) -> list[str]:
 
 
 def _positionals(action: VerbAction) -> list[dict[str, Any]]:
-    """Return the settings of the arguments of an action that are no options."""
+    """Return the settings of the arguments of an action that are not options."""
     return [settings for name, settings in action.arguments if not name.startswith("-")]
 
 

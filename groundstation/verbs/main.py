@@ -55,7 +55,7 @@ HELD = "--station {pid} goes through it"
 """What to do where a station of one's own has the port or device that a verb opens."""
 
 HELP_ALL = "all vehicles that are heard, at once; prints a table, and the exit code is the worst"
-HELP_GROUP = "likewise: a name of [groups] in the config file, system ids as 1-20,31, or a pattern of names"
+HELP_GROUP = "several vehicles: a name of [groups] in the config file, system ids as 1-20,31, or a pattern of names"
 
 EPILOG = f"""\
 exit codes: 0 done and confirmed; 1 this program failed; 2 wrong arguments; 3 no vehicle within --wait; 4 refused;

@@ -31,26 +31,26 @@ class VehicleOutput:
         return (*self.lines, *(each.partition("; ")[0] if brief else each for each in notes))
 
     def line(self, text: str) -> None:
-        """Take lines of data."""
+        """Handle lines of data."""
         self.lines += text.split("\n")
 
     def record(self, **fields: Any) -> None:
-        """Take an object."""
+        """Handle an object."""
         self.records.append(fields)
 
     def result(self, ok: bool, vehicle: int | None, **fields: Any) -> None:
-        """Take how the verb ended."""
+        """Note how the verb ended."""
         self.fields = {key: value for key, value in fields.items() if key not in ("text", "name")}
 
     def flush(self) -> None:
         """Do nothing."""
 
     def note(self, text: str) -> None:
-        """Take something worth knowing."""
+        """Keep a note for the user."""
         self.notes.append(" ".join(text.split()))
 
     def error(self, text: str) -> None:
-        """Take an error."""
+        """Keep an error."""
         self.note(text)
 
     def progress(self, report: RequestReport) -> None:

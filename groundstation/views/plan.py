@@ -26,7 +26,7 @@ class PlanKind(IntEnum):
 
 
 class PlanItem(msgspec.Struct, frozen=True, array_like=True):
-    """One item, without its number. Home is no item, and DO_JUMP names its target by the index from 0."""
+    """One item, without its number. Home is not an item, and DO_JUMP names its target by the index from 0."""
 
     command: int
     """MAV_CMD."""

@@ -99,7 +99,7 @@ class ReplayView(View, frozen=True, kw_only=True):
     damaged: int = 0
     """Bytes that belong to no valid record, so far."""
     tail: int = 0
-    """Bytes at the end that are no whole record."""
+    """Bytes at the end that are not a whole record."""
     lost: int = 0
     """Packet numbers that are missing, so far."""
     stations: tuple[int, ...] = ()

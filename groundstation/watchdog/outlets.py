@@ -24,11 +24,11 @@ class Outlets:
         self._framers: dict[int, Framer] = {}
 
     def update(self, routes: tuple[DemandRoute, ...]) -> None:
-        """Take the routes of a report that has the descriptors of the one before."""
+        """Store the routes of a report that has the descriptors of the one before."""
         self._routes = routes
 
     def replace(self, descriptors: Sequence[int], routes: tuple[DemandRoute, ...]) -> None:
-        """Take the descriptors of a report and close those of the one before."""
+        """Store the descriptors of a report and close those of the one before."""
         for descriptor in self._descriptors:
             with contextlib.suppress(OSError):
                 os.close(descriptor)

@@ -54,7 +54,7 @@ class Announcer:
         return len(self._responders)
 
     def close(self) -> None:
-        """Take the announcements back."""
+        """Withdraw the announcements."""
         for each in self._responders:
             each.close()
 

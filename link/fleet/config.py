@@ -166,7 +166,7 @@ def _read_file(module: Any, endpoint: Endpoint) -> zenoh.Config:
         raise LinkError(f"{endpoint.text}: {path}: {error.strerror}") from None
     except module.ZError as error:
         why = " ".join(str(error).split(" at /")[0].split())
-        raise LinkError(f"{endpoint.text}: {path} is no Zenoh configuration: {why[:160]}") from None
+        raise LinkError(f"{endpoint.text}: {path} is not a Zenoh configuration: {why[:160]}") from None
     return config
 
 

@@ -28,19 +28,19 @@ class SessionEvents(Protocol):
     """What happens, told from threads of Zenoh."""
 
     def handle_frame(self, key: str, data: bytes) -> None:
-        """Take what arrived under a key."""
+        """Handle a sample that arrived under a key."""
 
     def handle_oversized(self) -> None:
-        """Take that something arrived that is no frame, because of its length or that of its key. It was not copied."""
+        """Note that something arrived that is no frame, because of its length or that of its key. It was not copied."""
 
     def handle_token(self, key: str, is_there: bool) -> None:
-        """Take that a token is there, or has gone."""
+        """Note that a token is there, or has gone."""
 
     def handle_connected(self) -> None:
-        """Take that there is a session; who is there follows."""
+        """Note that there is a session; who is there follows."""
 
     def handle_problem(self, problem: str) -> None:
-        """Take why there is no session; another attempt follows. Tokens of the one before count no more."""
+        """Note why there is no session; another attempt follows. Tokens of the one before count no more."""
 
 
 class FleetSession:
@@ -89,7 +89,7 @@ class FleetSession:
                 self._tokens[key] = session, session.liveliness().declare_token(key)
 
     def hide_token(self, key: str) -> None:
-        """Take back what show_token() has told."""
+        """Withdraw the token that show_token() has announced."""
         session, token = self._tokens.pop(key, (None, None))
         if token is not None and session is self._router.session:
             with self._router.quiet("undeclare a token"):

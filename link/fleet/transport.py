@@ -148,7 +148,7 @@ class FleetTransport:
         return not self._brief.passes(header, address, time.monotonic()) or self._session.publish(way, data)
 
     def _find_way(self, data: bytes, address: str) -> str | None:
-        """Return the key under which to publish a frame; None for what is no whole frame, or lacks a role.
+        """Return the key under which to publish a frame; None for what is not a whole frame, or lacks a role.
 
         The next ones to the same address go the same way: what a channel sends or forwards is whole.
         """
@@ -271,7 +271,7 @@ class FleetTransport:
         now = time.monotonic()
         if place.is_conditional(frame) and not self._circumstances.allows_watcher(frame, place.sender, now):
             self.refused += 1
-            self._say("a watcher's frame was dropped: it would end another's transfer, or is no stop", place.sender)
+            self._say("a watcher's frame was dropped: it would end another's transfer, or is not a stop", place.sender)
             return False
         self._circumstances.note_transfer(frame, place.sender, now)
         return True

@@ -16,7 +16,7 @@ from dialects.traits import URGENT
 FACTOR = 100
 """Bytes for each that came. Default telemetry is 53 times a HEARTBEAT a second, all that some stations send."""
 FIRST_REQUEST = 8192
-"""Bytes more for the first frame that is no HEARTBEAT: a station asks for all parameters at once."""
+"""Bytes more for the first frame that is not a HEARTBEAT: a station asks for all parameters at once."""
 LIMIT = 65536
 """Bytes that may be saved up."""
 ASK_PERIOD, ASK_AGAIN, ASKS = 1.0, 10.0, 5
@@ -62,7 +62,7 @@ class AddressBudget:
         yield Timesync(0, self._nonce)
 
     def note_answer(self, message: Message) -> None:
-        """Take what may be the answer: it holds a number that nobody can guess."""
+        """Handle a possible answer: it holds a number that nobody can guess."""
         if isinstance(message, Timesync):
             self.proven |= message.tc1 != 0 and message.ts1 == self._nonce
         elif isinstance(message, Ping):

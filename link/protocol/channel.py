@@ -105,7 +105,7 @@ class Channel:
         self._own_id = False
         self._untimely: list[Peer] = []
         self._proven: set[int] = set()
-        """Ids of messages that have arrived damaged and whole, so that the damage is no mismatch of dialects."""
+        """Ids of messages that have arrived damaged and whole, so that the damage is not a mismatch of dialects."""
         self._looked_at: frozenset[int] | None = None
         if target is not None:
             self._peers.add_fixed(target)
@@ -158,7 +158,7 @@ class Channel:
         self._peers.end_connection(address)
 
     def look_at(self, systems: frozenset[int] | None, now: float) -> None:
-        """Take the system ids that send everything; what others leave out is not lost. None: all do."""
+        """Set the system ids that send everything; what others leave out is not lost. None: all do."""
         self._looked_at = systems
         for state in self._peers:
             for (system, _), source in state.sources.items():
@@ -309,7 +309,7 @@ class Channel:
     ) -> Iterator[tuple[bytes, Hashable, int]]:
         """Yield the frames to send: bytes, address, packet sequence.
 
-        Each peer has its own sequence, so that a frame for one is no loss to the others. `payload` is the encoded
+        Each peer has its own sequence, so that a frame for one is not a loss to the others. `payload` is the encoded
         message, where it exists already, as for another link. `now` counts for signatures only. Raises
         codec.EncodeError.
         """

@@ -8,7 +8,7 @@ a byte `extra` in the place of the first checksum byte `low` changes the registe
 
     mcrf4xx(frame, START)   and   high ^ STEP[low ^ high] ^ TWO_STEPS[low ^ extra]
 
-where `low` and `high` are its last two bytes, and a signature is no part of it. This stands in line where frames are
+where `low` and `high` are its last two bytes, and a signature is not part of it. This stands in line where frames are
 found, because a call costs as much as the checksum.
 """
 

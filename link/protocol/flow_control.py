@@ -25,13 +25,13 @@ class FlowControl:
         self._last_seen = -math.inf
 
     def handle_frame(self, raw: bytes, now: float) -> None:
-        """Take a frame of RADIO_STATUS."""
+        """Handle a frame of RADIO_STATUS."""
         status = codec.decode_frame(RadioStatus.id, raw)
         assert isinstance(status, RadioStatus)
         self.handle_radio_status(status.txbuf, now)
 
     def handle_radio_status(self, txbuf: int, now: float) -> None:
-        """Take a report: the radio's transmit buffer is `txbuf` % free; 255 is "unknown"."""
+        """Handle a report: the radio's transmit buffer is `txbuf` % free; 255 is "unknown"."""
         self._last_seen = now
         for low, high, step in DELAY_STEPS:
             if low <= txbuf <= high:

@@ -102,7 +102,7 @@ class Framer:
         return frames
 
     def _feed_unusual(self, data: bytes) -> list[Frame]:
-        """Take a datagram; one that is a signed frame, or a frame with an unknown id, is not searched for others."""
+        """Handle a datagram; one that is a signed frame, or a frame with an unknown id, is not searched for others."""
         header = read_header(data) if len(data) >= _SHORTEST and data[0] == MAGIC_V2 else None
         if header is not None and header.size == len(data):
             message_id, system, component, sequence, size = header
@@ -119,7 +119,7 @@ class Framer:
         return self._scan(data, final=True)[0]
 
     def _feed_stream(self, data: bytes, now: float) -> list[Frame]:
-        """Take the bytes of one read; most of them only add to a partial frame of which the length is known."""
+        """Handle the bytes of one read; most of them only add to a partial frame of which the length is known."""
         since = self._waiting_since
         if since is not None and now - since >= PARTIAL_DEADLINE:
             frames = self.expire(now)

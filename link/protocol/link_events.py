@@ -10,7 +10,7 @@ from dialects.messages import MESSAGES, read_by_programs
 from link.core import GuardReport, LinkReport, SigningCounts
 
 PROVEN_AFTER = 3
-"""Refused frames that are no accident."""
+"""Refused frames that are not an accident."""
 DAY = 86_400.0
 """s by which a clock may be ahead without a word."""
 CONNECTING = "connecting"

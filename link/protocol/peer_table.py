@@ -272,6 +272,6 @@ class PeerTable:
 
 
 def _name(address: Hashable) -> str:
-    """Return the name of a program in its fleet; "" for a text that is no name, which may hold anything."""
+    """Return the name of a program in its fleet; "" for a text that is not a name, which may hold anything."""
     text = str(address)
     return text if re.fullmatch(FLEET_NAME, text) else ""

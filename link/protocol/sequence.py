@@ -88,7 +88,7 @@ class Numbering:
         return ahead if ahead <= min(REACH_MAX, CLOSE + 2 * rate * (now - self.heard_at)) else None
 
     def advance(self, sequence: int, message_id: int, digest: int, now: float) -> None:
-        """Take a frame ahead of all others."""
+        """Handle a frame ahead of all others."""
         self._seen = (self._seen << ((sequence - self.newest) & 0xFF) | 1) & _WINDOW_BITS
         self.newest = sequence
         self._kinds[message_id] = sequence
@@ -100,7 +100,7 @@ class Numbering:
             self._begin_window(now)
 
     def fill(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder | None:
-        """Take a frame behind the newest; None if another frame had its number."""
+        """Handle a frame behind the newest; None if another frame had its number."""
         if self.has_taken(sequence, digest):
             return FrameOrder.DUPLICATE
         bit = 1 << ((self.newest - sequence) & 0xFF)
@@ -155,7 +155,7 @@ class SequenceTracker:
         self._gaps_until = -math.inf
 
     def expect_gaps(self, until: float) -> None:
-        """Take the time until which the sender leaves frames out on purpose: missing numbers are not lost."""
+        """Set the time until which the sender leaves frames out on purpose: missing numbers are not lost."""
         self._gaps_until = until
 
     def has_received(self, message_id: int) -> bool:

@@ -65,7 +65,7 @@ class Router:
         self._loaded: list[RoutedPeer] = []
 
     def receive(self, link: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
-        """Take what arrived on a link; return what to send where. `now` in s, monotonic."""
+        """Handle the bytes that arrived on a link; return what to send where. `now` in s, monotonic."""
         peers = self.table.peers_of(link)
         for data, address in pieces:
             peer = peers.get(address)

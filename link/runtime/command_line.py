@@ -40,7 +40,7 @@ class CommandLineParser(argparse.ArgumentParser):
         if word == "help":
             self.error(f"there is no subcommand 'help'; did you mean {self.prog} --help?")
         if word.isalpha() and (hint := _did_you_mean(word, words, f"`{self.prog} {{}}`")):
-            self.error(f"{word!r} is no subcommand and no endpoint{hint}")
+            self.error(f"{word!r} is neither a subcommand nor an endpoint{hint}")
 
     def reject_empty(self, arguments: Sequence[str]) -> list[str]:
         """Return the arguments; exit if one of them is empty.

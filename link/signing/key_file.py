@@ -141,7 +141,7 @@ def _read_private(path: Path) -> str | None:
     finally:
         os.close(descriptor)
     if len(data) > MAX_SIZE:
-        raise KeyFileError(f"{path}: is larger than {MAX_SIZE} bytes; it is no key file")
+        raise KeyFileError(f"{path}: is larger than {MAX_SIZE} bytes; it is not a key file")
     try:
         return data.decode()
     except UnicodeDecodeError as error:

@@ -23,7 +23,7 @@ STDIN = "-"
 
 
 class SecretInputError(Exception):
-    """What was entered is no key; one line without the secret."""
+    """What was entered is not a key; one line without the secret."""
 
 
 class SecretForm(Enum):
@@ -90,7 +90,7 @@ def read_passphrase(ask: Ask, kind: PassphraseKind) -> bytes:
     try:
         return key_from_passphrase(text, kind)
     except UnicodeEncodeError:
-        raise SecretInputError("the passphrase contains bytes that are no text") from None
+        raise SecretInputError("the passphrase contains bytes that are not text") from None
 
 
 _READERS: dict[SecretForm, Callable[[Ask], bytes]] = {

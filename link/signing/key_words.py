@@ -21,7 +21,7 @@ UNIQUE = 4
 
 
 class WordsError(ValueError):
-    """These words are no key; one line that repeats none of them."""
+    """These words are not a key; one line that repeats none of them."""
 
 
 def words_from_secret(secret: bytes) -> tuple[str, ...]:

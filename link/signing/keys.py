@@ -59,10 +59,10 @@ class SigningKey:
 
 
 def find_secret_problem(secret: bytes) -> str | None:
-    """Return why these bytes are no secret, None if they are. 32 zero bytes mean "no signing" in SETUP_SIGNING."""
+    """Return why these bytes are not a secret, None if they are. 32 zero bytes mean "no signing" in SETUP_SIGNING."""
     if len(secret) != SECRET_SIZE:
         return f"a key has {SECRET_SIZE} bytes, this one has {len(secret)}"
-    return None if any(secret) else "32 zero bytes are no key"
+    return None if any(secret) else "32 zero bytes are not a key"
 
 
 def new_key(name: str, role: Role) -> SigningKey:

@@ -79,7 +79,7 @@ class CarefulScan(msgspec.Struct):
     sure: bool = True
     """A valid record ends there."""
     tail: int = 0
-    """Bytes at the end of the file that are no whole record: cut off, or still being written."""
+    """Bytes at the end of the file that are not a whole record: cut off, or still being written."""
 
 
 class FastScan(msgspec.Struct):

@@ -70,7 +70,7 @@ def missing_interfaces(private: Collection[str]) -> list[str]:
 
 
 def is_interface_name(text: str) -> bool:
-    """Return whether an interface may be called like this; a pattern is no name."""
+    """Return whether an interface may be called like this; a pattern is not a name."""
     return re.fullmatch(NAME, text) is not None and text not in (".", "..")
 
 

@@ -83,7 +83,7 @@ class SelectiveTransport(Protocol):
     """A transport whose vehicles send less to a ground station that does not look at them."""
 
     def look_at(self, systems: frozenset[int] | None) -> None:
-        """Take the system ids whose whole telemetry is needed; None: that of all vehicles, as at the start."""
+        """Set the system ids whose whole telemetry is needed; None: that of all vehicles, as at the start."""
 
 
 class Link(msgspec.Struct):

@@ -89,7 +89,7 @@ class Copies:
     def _is_copy(self, sent: Any) -> bool:
         demand = (sent.x, sent.y, sent.z, sent.r)
         if demand != self._demand:
-            self._changed_at = sent.time_boot_ms if self._demand else 0  # the first one that is seen is no change
+            self._changed_at = sent.time_boot_ms if self._demand else 0  # the first one that is seen is not a change
             self._demand = demand
             return False
         return bool(sent.time_boot_ms - self._changed_at < COPIED_WITHIN)

@@ -1,4 +1,4 @@
-"""The table of MAV_TYPEs that are no vehicle."""
+"""The table of MAV_TYPEs that are not a vehicle."""
 
 from __future__ import annotations
 

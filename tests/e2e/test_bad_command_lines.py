@@ -49,7 +49,7 @@ def run(words: list[str], folder: Path) -> tuple[int, str, str]:
 def run_in_terminal(
     words: list[str], folder: Path, size: tuple[int, int] = SIZE, term: str = "xterm-256color"
 ) -> tuple[int, str, str]:
-    """Do the same in a terminal of this size. Only stderr is no terminal, so that the two can be told apart."""
+    """Do the same in a terminal of this size. Only stderr is not a terminal, so that the two can be told apart."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
     environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES")}
@@ -164,9 +164,9 @@ def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None
         ("drve", ["did you mean `groundstation drive`?"]),
         ("attach", ["no station runs here", "`groundstation` or `groundstation serve --headless` starts one"]),
         ("replay none.tlog", ["none.tlog", "no such file", "name a telemetry log"]),
-        ("replay /etc/passwd", ["/etc/passwd", "is no telemetry log"]),
+        ("replay /etc/passwd", ["/etc/passwd", "is not a telemetry log"]),
         ("export none.tlog --csv out", ["none.tlog", "no such file", "name a telemetry log"]),
-        ("export /etc/passwd --csv out", ["/etc/passwd", "is no telemetry log"]),
+        ("export /etc/passwd --csv out", ["/etc/passwd", "is not a telemetry log"]),
         ("--style wild", ["'wild'", "hold"]),
         ("--log-file /nowhere/station.log", ["/nowhere/station.log", "No such file"]),
         ("--log-file /tmp", ["/tmp", "directory"]),

@@ -24,7 +24,7 @@ HOSTILE = ("[/x]", "[/]", "[red]a", "[@click=q]b", "\x1b[2Jc", "\x1b]0;d\x07e", 
 TEXTS = ("PreArm: [/x]", "[/]", "\x1b[2J\x1b]0;owned\x07text", "[@click=app.quit]b[/]")
 LINES = {
     "mode [/x]": "mode [/x]?  y does it",
-    "[/x]": "'[/x]' is no verb",
+    "[/x]": "'[/x]' is not a verb",
     "param get [/]": "no parameter matches [/]",
 }
 """Lines of the command line, and the answer to each."""

@@ -50,7 +50,7 @@ def _keep(heard: dict[str, bytes], topic: str, data: bytes, attachment: bytes) -
 
 
 def _send_nonsense(peer: Peer) -> None:
-    """Send what is no demand: NaN, other bytes, an unknown word, and a Twist without an attachment."""
+    """Send what is not a demand: NaN, other bytes, an unknown word, and a Twist without an attachment."""
     peer.twist(float("nan"), 1.0)
     peer.put("cmd_vel", TWIST, b"\xff" * 9)
     peer.word("faster")
@@ -71,7 +71,7 @@ def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
     world.stands()
     with world.repeating(partial(_send_nonsense, peer)):
         world.until(lambda: "refused: linear.x nan" in world.text, "NaN is not refused")
-        world.until(lambda: "are no geometry_msgs/msg/Twist" in world.text, "garbage is not refused")
+        world.until(lambda: "are not a geometry_msgs/msg/Twist" in world.text, "garbage is not refused")
         assert world.vehicle.stands()
     other = ros2_peer.start("publish", world.router, 1.0, 0.0)
     world.stack.callback(kill, other)

@@ -78,7 +78,7 @@ def test_arm_upload_start_and_watch_a_mission(tmp_path: Path, port: int, way: Se
         at = time.monotonic()
         assert at - began > FS_GCS_TIMEOUT
         waits = Waits(vehicle.process.pid)
-        wait_until(vehicle.turning, "the wheels stand")  # a script that ends is no stop; the failsafe is
+        wait_until(vehicle.turning, "the wheels stand")  # a script that ends is not a stop; the failsafe is
         assert ended.stdout.split()[-1] == "2"
         assert "this one keeps its session" in ended.stderr
         wait_until(vehicle.stands, "the wheels turn on")

@@ -81,7 +81,7 @@ class MissionRig:
     unfits: list[tuple[MissionType, int | None, MissionResult]] = field(default_factory=list)
     selected: list[int] = field(default_factory=list)
     requests: list[tuple[ItemRequest, MissionItem]] = field(default_factory=list)
-    """Items that were no part of a plan."""
+    """Items that were not part of a plan."""
     at: int = 0
     pacer: BulkPacer | None = None
 

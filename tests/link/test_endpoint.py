@@ -105,11 +105,11 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
         ("zenoh:127.0.0.1:7447/farm", "or zenoh:tcp/192.168.1.2:7447/farm/rover1"),
         ("zenoh:alice.json5", "name the fleet behind alice.json5"),
         ("zenoh:tcp/127.0.0.1:7447", "name the fleet behind tcp/127.0.0.1:7447"),
-        ("zenoh:tcp/127.0.0.1/farm", "'tcp/127.0.0.1' is no address of a router"),
-        ("zenoh:tls/host:99999/farm", "'tls/host:99999' is no address of a router"),
+        ("zenoh:tcp/127.0.0.1/farm", "'tcp/127.0.0.1' is not an address of a router"),
+        ("zenoh:tls/host:99999/farm", "'tls/host:99999' is not an address of a router"),
         ("zenoh:alice.json5/farm/rover1/x", "one vehicle at most"),
-        ("zenoh:alice.json5/fa*m", "'fa*m' is no name; it has 1 to 24 letters"),
-        ("zenoh:alice.json5/farm/**", "'**' is no name"),
+        ("zenoh:alice.json5/fa*m", "'fa*m' is not a name; it has 1 to 24 letters"),
+        ("zenoh:alice.json5/farm/**", "'**' is not a name"),
     ],
 )
 def test_what_is_not_understood_is_explained(text: str, told: str) -> None:

@@ -93,7 +93,7 @@ class Life:
         found = [f"{self.role} grows by {slopes[-1]:.2f} MB/h"] if slopes[-1] > MAX_GROWTH else []
         for name, values in (("descriptors", self.descriptors), ("threads", self.threads)):
             kept = values[self.behind(WARM_UPS[0])]
-            half = len(kept) // 2  # one that is open for a moment is no leak
+            half = len(kept) // 2  # one that is open for a moment is not a leak
             if median(kept[half:]) > median(kept[:half]):
                 found.append(f"{self.role}: {name} grew from {kept[0]} to {kept[-1]}")
         return found

@@ -64,6 +64,6 @@ class FailurePrinter:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Print failures in the process that has the terminal, which is no worker of pytest-xdist."""
+    """Print failures in the process that has the terminal, which is not a worker of pytest-xdist."""
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(FailurePrinter(config))

@@ -242,7 +242,7 @@ def test_a_driver_who_comes_back_is_ready_within_a_second(kind: type[Program], w
         ready.append(wires.now - start)
         back.hold(0.3, AHEAD)
         assert wires.turning
-    # Foreign: 0.7 s of silence, then three frames, one of which is no copy, then neutral; losses come on top.
+    # Foreign: 0.7 s of silence, then three frames, one of which is not a copy, then neutral; losses come on top.
     assert sorted(ready)[5] <= 1.0
     assert max(ready) <= 1.0 + 10 * loss
 

@@ -26,7 +26,7 @@ RELATIVE_FRAMES = (3, 6)
 ArduPilot."""
 
 ALTITUDE_MAX = 1e5
-"""m above or below sea level; beyond that it is no altitude of a rover."""
+"""m above or below sea level; beyond that it is not an altitude of a rover."""
 
 CommandResult = Result | CommandReply | CommandJob
 """What the handler of a command returns."""

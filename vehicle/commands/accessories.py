@@ -121,7 +121,7 @@ class AccessoryCommands:
         return CommandSpec(command, partial(self._handle_command, parse), Access.DRIVER_OR_UNCLAIMED, text, item=item)
 
     def _accepts_item(self, parse: ParseRequest, item: MissionItem) -> bool:
-        """Reject a plan that moves a motor, or whose output is no whole number."""
+        """Reject a plan that moves a motor, or whose output is not a whole number."""
         request = parse(item.params)
         return request.number == int(request.number) and not self._is_motor(request)
 

@@ -69,7 +69,7 @@ class GyroCalibration:
         return min(99, int(100 * (self._at - self._began) / SECONDS))
 
     def step(self, now: float) -> Result | None:
-        """Take one reading."""
+        """Handle one reading."""
         self._at = now
         rate = self._navigator.turn_rate
         if self._safety.armed:

@@ -1,4 +1,4 @@
-"""MISSION_ITEM(_INT) that is no part of a plan: drives to its position in GUIDED, as ArduRover does.
+"""MISSION_ITEM(_INT) that is not part of a plan: drives to its position in GUIDED, as ArduRover does.
 
 It follows the rules of a position setpoint: the ground station in control, in GUIDED, armed. It changes no mode;
 DO_REPOSITION can.

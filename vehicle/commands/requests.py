@@ -34,7 +34,7 @@ class MessageRequests:
     """Answers requests for messages and rates."""
 
     def __init__(self, reporting: Reporting, builders: MessageBuilders) -> None:
-        """`builders` build the messages that are no stream, by message id."""
+        """`builders` build the messages that are not a stream, by message id."""
         self._telemetry = reporting.telemetry
         self._build_view = reporting.build_view
         self._links = reporting.links
@@ -94,7 +94,7 @@ class MessageRequests:
         return self._reply_interval(request, request.params[0])
 
     def _reply_interval(self, request: CommandRequest, asked: float) -> CommandResult:
-        """Reply with the MESSAGE_INTERVAL of the sender: us, -1 off, 0 for a message that is no stream."""
+        """Reply with the MESSAGE_INTERVAL of the sender: us, -1 off, 0 for a message that is not a stream."""
         number, schedule = parse_message_id(asked), self._telemetry.schedule_of(request.peer)
         if number is None or number > m.UINT16_MAX:
             return Result.DENIED

@@ -28,7 +28,7 @@ class SigningSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def find_problems(settings: SigningSettings) -> list[str]:
     """Return one line for each contradiction."""
     if wrong := [name for name in settings.private if not is_interface_name(name)]:
-        return [f"signing.private: {wrong[0]!r} is no name of a network interface; write each as `ip link` shows it"]
+        return [f"signing.private: {wrong[0]!r} is not a name of a network interface; write each as `ip link` shows it"]
     if settings.required and settings.allow_unsigned:
         return ["signing: required and allow_unsigned contradict each other; remove one of them"]
     if not settings.open_stops and not settings.required:

@@ -56,7 +56,7 @@ class Control:
         self.reset()
 
     def hear(self, received: Received, now: float) -> None:
-        """Note a message of anybody, before it is handled; those whose key may not drive are no successors."""
+        """Note a message of anybody, before it is handled; those whose key may not drive are not successors."""
         if not received.introduced or received.role < Role.DRIVE:
             return
         if self.ownership.hear(received, now):

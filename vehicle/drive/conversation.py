@@ -1,6 +1,6 @@
 """Who sends: one run of packet numbers of one (system, component) from one peer.
 
-A system id is no identity: 255 is the default of most ground stations. A program that restarts, one that comes over
+A system id is not an identity: 255 is the default of most ground stations. A program that restarts, one that comes over
 another address, a second program with the same ids, and copies of old frames are all other conversations with the
 same ids, and one rule decides about them (vehicle/drive/driver.py).
 """

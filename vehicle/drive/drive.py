@@ -110,7 +110,7 @@ class Drive:
             self._limits |= SATURATED
         if self._driven < len(self._slews):
             return mixed.throttles
-        if self._pivot == 1.0 and not sideways:  # a share of one; one that is no number must spoil all values
+        if self._pivot == 1.0 and not sideways:  # a share of one; one that is not a number must spoil all values
             return mixed.throttles
         share = pivot_scale(throttle, steering, sideways, self._pivot)
         return tuple([share * value for value in mixed.throttles])

@@ -28,7 +28,7 @@ _STREAMED = frozenset(DEMANDS | _SETPOINTS)
 """Message ids of demands: a driver that has sent some is soon missed."""
 _ACTS = (_STREAMED | COMMANDS) - {m.RoverOperatorPresence.id}
 """Message ids with which a program succeeds a silent driver: not a heartbeat, and not the proof of a session, which is
-checked first (vehicle/drive/control.py). A command that only asks does not count either: who looks is no driver."""
+checked first (vehicle/drive/control.py). A command that only asks does not count either: who looks is not a driver."""
 
 
 class Ownership:

@@ -33,7 +33,7 @@ class BatteryMonitor:
         return self._low is not None or self._critical is not None
 
     def update(self, voltage: float | None, now: float, *, expected: bool = False) -> None:
-        """Handle a reading; None and values that are not finite are no reading.
+        """Handle a reading; None and values that are not finite are not a reading.
 
         `expected`: the configuration names a battery sensor.
         """

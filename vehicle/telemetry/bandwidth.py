@@ -46,7 +46,7 @@ class Bandwidth:
         """Links with bulk transfers before the last report: telemetry has made room there by now."""
 
     def update(self, reports: Sequence[LinkReport]) -> None:
-        """Take the reports of the links, about once a second."""
+        """Store the reports of the links, about once a second."""
         self._busy, self._used = self._used, set()
         self._room = {each.index: each.capacity * each.headroom for each in reports if each.capacity is not None}
         self.telemetry_rates = {link: self._shares(link).telemetry * room for link, room in self._room.items()}

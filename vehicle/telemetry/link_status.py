@@ -25,7 +25,7 @@ class LinkStatusReporter:
         self._reports: dict[int, LinkReport] = {}
 
     def update(self, reports: Sequence[LinkReport], now: float) -> list[m.Message]:
-        """Take the reports of all links. Return one ROVER_LINK_STATUS for each."""
+        """Store the reports of all links. Return one ROVER_LINK_STATUS for each."""
         self._reports = {report.index: report for report in reports}
         for report in reports:
             self._warn(report, now)

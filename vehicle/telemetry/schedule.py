@@ -106,7 +106,7 @@ class StreamSchedule:
         return min((each.interval for each in self._clocks.values() if each.interval is not None), default=math.inf)
 
     def interval(self, message_id: int) -> float | None:
-        """Return the interval of a stream in s, None without a rate. Raises KeyError if it is no stream."""
+        """Return the interval of a stream in s, None without a rate. Raises KeyError if it is not a stream."""
         return self._clocks[message_id].interval
 
     def set_interval(self, message_id: int, interval: float | None, now: float) -> None:

@@ -112,7 +112,7 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.AutopilotVersion, COMMON, 0, build_status.autopilot_version),
     Stream(m.ProtocolVersion, NEWER, 0, build_status.protocol_version),
 )  # fmt: skip
-"""All streams, the most important first. Messages that are no stream are built in vehicle/commands/requests.py."""
+"""All streams, the most important first. Messages that are not a stream are built in vehicle/commands/requests.py."""
 
 STREAM_BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
 
@@ -122,7 +122,7 @@ _LEVELS: dict[int, DialectLevel] = {
     m.ComponentMetadata.id: NEWER,
     m.RoverLinkStatus.id: ROVER,
 }
-"""Message -> level, also of messages that are no stream."""
+"""Message -> level, also of messages that are not a stream."""
 _COMMANDS: dict[int, DialectLevel] = {Command.REQUEST_OPERATOR_CONTROL: NEWER, Command.DO_SET_STANDARD_MODE: NEWER}
 _MESSAGE_REQUESTS = frozenset({Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL})
 """Commands with a message id as parameter 1."""

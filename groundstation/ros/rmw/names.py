@@ -99,12 +99,12 @@ def dds_type(kind: str) -> str:
 
 
 def name_fault(name: str) -> str | None:
-    """Return why text is no name of a node or part of a namespace, or None."""
+    """Return why text is not a name of a node or part of a namespace, or None."""
     return None if _NAME.fullmatch(name) else f"{name!r} is not letters, digits and _, with a letter first"
 
 
 def namespace_fault(namespace: str) -> str | None:
-    """Return why text is no namespace, or None. "/" is the one of everybody."""
+    """Return why text is not a namespace, or None. "/" is the one of everybody."""
     if not namespace.startswith("/"):
         return f"{namespace!r} does not begin with /"
     return next((fault for part in namespace.split("/")[1:] if part and (fault := name_fault(part))), None)

@@ -59,7 +59,7 @@ class PointBuffer:
         self._slot = _Slot(at + SLOT, at, value, at, value)
 
     def flush(self, now: float) -> None:
-        """Take the points of a slot that has ended."""
+        """Add the points of a slot that has ended."""
         if self._slot is not None and now >= self._slot.ends:
             self._close()
 

@@ -84,7 +84,7 @@ class DoctorDesk:
     # ---- core ----
 
     def receive(self, contact: Contact, received: Received, now: float) -> None:
-        """Take a message of a vehicle."""
+        """Handle a message of a vehicle."""
         report = self._report(contact)
         report.checks.receive(received, now)
         report.params.receive(received, now)
@@ -92,7 +92,7 @@ class DoctorDesk:
         self.tester.receive(received, now)
 
     def handle_text(self, contact: Contact, text: str, now: float) -> None:
-        """Take a whole STATUSTEXT of a vehicle."""
+        """Handle a whole STATUSTEXT of a vehicle."""
         report = self._report(contact)
         report.checks.handle_text(text, now)
         report.calibration.handle_text(text)

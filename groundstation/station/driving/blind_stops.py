@@ -66,7 +66,7 @@ class BlindStops:
         return next((kind for kind in STRONGEST_FIRST if kind in kinds), None)
 
     def receive(self, received: Received) -> None:
-        """Take an answer to one of them."""
+        """Handle an answer to one of them."""
         for sent in self._sent.values():
             sent.stop.receive(received)
 

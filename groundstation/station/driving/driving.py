@@ -80,7 +80,7 @@ class DrivingController:
         self._queue_idle_proof(now)
 
     def handle_report(self, contact: Contact, now: float) -> None:
-        """Have `update` called at once if a vehicle has reported something that decides on its demands."""
+        """Run `update` at the next opportunity when a report changes whether demands are allowed."""
         state = contact.state
         reported = (state.armed, state.mode, state.driver, state.emergency_stop)
         if self._reported.get(state.system) != reported:

@@ -169,7 +169,7 @@ class MotorTester:
     # ---- core ----
 
     def receive(self, received: Received, now: float) -> None:
-        """Take the answer to a request."""
+        """Handle the answer to a request."""
         run, message = self._run, received.message
         if run is None or not isinstance(message, m.CommandAck) or received.system != run.contact.state.system:
             return

@@ -69,7 +69,7 @@ class ScreenLease(msgspec.Struct):
     _count: int = 0
 
     def join(self, name: str, now: float, *, watches: bool = False) -> Screen:
-        """Take a screen; it drives if no other one does, unless it only `watches` at first."""
+        """Add a screen; it drives if no other one does, unless it only `watches` at first."""
         screen = Screen(self._count, name, renewed_at=now)
         self._count += 1
         if self.holder is not None or watches:
@@ -121,7 +121,7 @@ class ScreenLease(msgspec.Struct):
         return LeaseView() if asked is None else LeaseView(asks=asked.screen.name, left=max(0.0, asked.until - now))
 
     def _answers(self, intent: AnyIntent, now: float) -> bool:
-        """Take the holder's answer. Returns False without a request: then it is for another ground station."""
+        """Handle the holder's answer. Returns False without a request: then it is for another ground station."""
         if self._asked is None or not isinstance(intent, GiveControl | KeepControl):
             return False
         if isinstance(intent, GiveControl):

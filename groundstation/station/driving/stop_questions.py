@@ -21,7 +21,7 @@ class StopQuestions:
         """System id -> when the emergency stop was pressed last."""
 
     def confirms(self, system: int, now: float) -> bool:
-        """Take a press; return whether it answers the question of an earlier one."""
+        """Handle a press; return whether it answers the question of an earlier one."""
         before = self._asked.get(system)
         self._asked[system] = now
         return before is not None and CONFIRM_AFTER <= now - before <= CONFIRM_WITHIN

@@ -27,7 +27,7 @@ class HeardParams:
         self.names: set[str] = set()
 
     def receive(self, received: Received) -> None:
-        """Take a message; only PARAM_VALUE counts."""
+        """Handle a message; only PARAM_VALUE counts."""
         if isinstance(received.message, m.ParamValue) and len(self.names) < MAX_NAMES:
             self.names.add(name_from_wire(received.message._param_id_raw))
 

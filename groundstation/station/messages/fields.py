@@ -25,7 +25,7 @@ _UNKNOWN = {
 
 
 def array_length(kind: type[Message], field: str) -> int:
-    """Return the items of a field; 0: it is no array. -1: it is text."""
+    """Return the items of a field; 0: it is not an array. -1: it is text."""
     if _type(kind, field) == "char":
         return -1
     return int(kind.array_lengths[kind.ordered_fieldnames.index(field)])

@@ -17,7 +17,7 @@ from groundstation.views.messages import MessageRow, MessagesPage, MessagesReque
 from link.core import LinkReport, SourceCount
 
 MAX_KINDS = 1000
-"""Kinds of messages of sources that are no known vehicle: a flood of invented ids must not grow a table."""
+"""Kinds of messages of sources that are not a known vehicle: a flood of invented ids must not grow a table."""
 
 MAX_ROWS = 200
 """Rows in one page, more than any terminal shows."""
@@ -92,7 +92,7 @@ class MessageTraffic:
             self._end_buckets(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the unknown messages, and what was lost of each source, from the link that has received most of it."""
+        """Handle the unknown messages, and what was lost of each source, from the link that has received most of it."""
         self.unknown.observe(reports, now)
         for report in reports:
             for ids, counted in report.sources.items():

@@ -32,7 +32,7 @@ class UnknownMessages(msgspec.Struct):
     _kinds: dict[Ids, dict[int, _Unknown]] = msgspec.field(default_factory=dict)
 
     def observe(self, reports: Iterable[LinkReport], now: float) -> None:
-        """Take the counts of all links, about once a second."""
+        """Store the counts of all links, about once a second."""
         totals: dict[tuple[int, int, int], tuple[int, int]] = {}
         for report in reports:
             for key, (frames, length) in report.unknown_ids.items():

@@ -90,7 +90,7 @@ class OperatorLog:
             self._log.add(now, OPERATOR, text)
 
     def tick(self, demand: Axes, latency: LatencyMeter | None, now: float) -> None:
-        """Take the demand that was sent last; `latency` is that of the selected vehicle."""
+        """Store the demand that was sent last; `latency` is that of the selected vehicle."""
         if not demand.neutral:
             self._finish(None, now)
             self._began = now if self._began is None else self._began

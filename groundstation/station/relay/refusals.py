@@ -26,7 +26,7 @@ class Refusals:
         self._said: tuple[str, float] = ("", -math.inf)
 
     def handle(self, message: m.Message, why: str, now: float) -> None:
-        """Take that `message` was not sent."""
+        """Note that `message` was not sent."""
         if self._relay.handle_refused(message, why):
             return
         contact = self._fleet.get(m.target_system(message))

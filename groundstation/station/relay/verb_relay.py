@@ -109,7 +109,7 @@ class VerbRelay:
         return not self._operator.live and now - self._used_at <= KEEP
 
     def join(self, verb: Verb, now: float) -> None:
-        """Take a verb, and tell it what is known."""
+        """Start a verb, and report the present state to it."""
         verb.heard_at = now
         verb.report(self._reports)
         # The HEARTBEAT first: a verb takes nothing from a vehicle that it does not know.

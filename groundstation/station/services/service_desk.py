@@ -114,7 +114,7 @@ class ServiceDesk:
             contact.services.receive(received, now)
 
     def handle_text(self, contact: Contact, text: str, severity: int, now: float) -> None:
-        """Take a whole STATUSTEXT of a vehicle."""
+        """Handle a whole STATUSTEXT of a vehicle."""
         if contact.services is not None:
             contact.services.handle_text(text, severity, now)
 
@@ -154,7 +154,7 @@ class ServiceDesk:
         return [job for services in found for job in services.pop_disk_jobs()]
 
     def handle_disk(self, result: DiskResult, now: float) -> None:
-        """Take what the disk has answered."""
+        """Handle an answer of the disk."""
         for contact in self._fleet:
             if contact.services is not None:
                 contact.services.handle_disk(result, now)

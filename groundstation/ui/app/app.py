@@ -203,7 +203,7 @@ class ConsoleApp(App[int]):
         self._client.send(intent)
 
     def _readable(self) -> None:
-        """Take the newest snapshot; several may wait."""
+        """Read the newest snapshot; several may wait."""
         snapshot = self._client.receive()
         for view in self._client.pop_views():
             if isinstance(view, LineView):

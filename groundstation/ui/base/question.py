@@ -24,7 +24,7 @@ class Question(msgspec.Struct):
     word: str = ""
     """To type in place of `y`, e.g. "erase"."""
     until: float = math.inf
-    """Clock after which it is no question any more."""
+    """Clock after which it is not a question any more."""
     typed: str = ""
 
     @property
@@ -35,7 +35,7 @@ class Question(msgspec.Struct):
         return f"{self.text()} · type {self.word}: {self.typed}_"
 
     def answer(self, key: str, now: float) -> bool:
-        """Take a key; return whether the question is still open."""
+        """Handle a key; return whether the question is still open."""
         if now >= self.until or not (key == "y" if not self.word else self.word.startswith(self.typed + key)):
             return False
         self.typed += key

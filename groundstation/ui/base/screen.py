@@ -309,7 +309,7 @@ class ConsoleScreen(Screen[None]):
         return ScreenInfo(row.id if row else type(self).__name__, self.KEYS, self.hint, self.takes_text)
 
     def keep_state(self, now: DisplayState) -> None:
-        """Take a state to show later: what a hidden screen draws, Textual paints again on the one on top of it."""
+        """Store a state to show later: what a hidden screen draws, Textual paints again on the one on top of it."""
         self._state = replace(now, screen=self.describe())
 
     def show_state(self, now: DisplayState) -> None:

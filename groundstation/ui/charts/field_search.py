@@ -40,7 +40,7 @@ class FieldSearch:
         self.type("")
 
     def type(self, text: str) -> None:
-        """Take the text as far as it is typed: a name, and the number of a chart behind it."""
+        """Handle the text as far as it is typed: a name, and the number of a chart behind it."""
         words = text.split()
         number = int(words[-1]) if len(words) > 1 and words[-1] in "123456" else None
         self._chart = number
@@ -56,7 +56,7 @@ class FieldSearch:
         self.open = self._submitted = False
 
     def show_page(self, page: FieldsPage) -> None:
-        """Take the fields that match; choose the first of them if it was submitted."""
+        """Choose the fields that match; choose the first of them if it was submitted."""
         if page.text != self.text or not self.count:
             return
         self.rows, self.matching = page.rows, page.matching

@@ -77,7 +77,7 @@ class ChartsModel:
         return SeriesRequest(fields, self.store.state), FieldsRequest(text, search.count, fields)
 
     def show_series(self, page: SeriesPage) -> None:
-        """Take new points and marks."""
+        """Set the points and marks."""
         if self.store.add(page):
             self.marks.extend(page.marks)
             self.axis.now = page.now
@@ -85,7 +85,7 @@ class ChartsModel:
             self.axis.oldest = min(starts, default=page.now)
 
     def show_fields(self, page: FieldsPage) -> None:
-        """Take what is known of the fields."""
+        """Store the details of the fields."""
         self.infos = {info.field: info for info in page.known}
         self._ready = [ready_view(each) for each in page.ready]
         self.search.show_page(page)
@@ -255,7 +255,7 @@ class ChartsModel:
         try:
             factor = float(text)
         except ValueError:
-            return f"“{text}” is no number"
+            return f"“{text}” is not a number"
         if not -1e9 < factor < 1e9 or factor == 0:
             return "a factor is a number between -1e9 and 1e9, and not 0"
         self._replace(factor=factor)

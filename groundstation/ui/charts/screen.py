@@ -82,7 +82,7 @@ class ChartsScreen(ConsoleScreen):
         return self._model.requests()
 
     def show_view(self, view: View) -> None:
-        """Take new points, or fields."""
+        """Set the points, or fields."""
         if isinstance(view, SeriesPage):
             self._model.show_series(view)
             if self._model.axis.paused_at is None:

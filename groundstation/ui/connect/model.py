@@ -79,7 +79,7 @@ class ConnectModel:
         return self._file.warning
 
     def show_view(self, view: ConnectView) -> None:
-        """Take a view; the cursor stays on its row as far as that is there."""
+        """Show a view; the cursor stays on its row as far as that is there."""
         self.view = view
         for row in view.heard:
             if row.open and (row.endpoint, row.name) not in self._named:

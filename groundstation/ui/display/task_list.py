@@ -40,12 +40,12 @@ class TaskList:
         self._fresh: list[int] = []
 
     def show(self, view: RequestsView, now: float) -> None:
-        """Take a view."""
+        """Show a view."""
         self._view = view
         self._update(now)
 
     def show_local(self, lines: tuple[RequestLine, ...], now: float) -> None:
-        """Take what runs and has ended in this process."""
+        """Show the jobs of this process that run or have ended."""
         if lines != self._local:
             self._local = lines
             self._update(now)

@@ -36,7 +36,7 @@ class FilesHere:
         self._compared = {file: found for file, found in self._compared.items() if file in here}
 
     def show_recording(self, recording: RecordingView | None) -> None:
-        """Take the recording of this session; look for its file when another one begins."""
+        """Show the recording of this session; look for its file when another one begins."""
         before, self.recording = self.recording, recording
         if recording is not None and (before is None or before.path != recording.path):
             self.scan()
@@ -74,7 +74,7 @@ class FilesHere:
         self._comparing[request] = file
 
     def take_ended(self, lines: Iterable[RequestLine]) -> None:
-        """Take the requests that have ended."""
+        """Handle the requests that have ended."""
         for line in lines:
             file = self._comparing.pop(line.number, None)
             if file is not None and line.state == ACCEPTED:

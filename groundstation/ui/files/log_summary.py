@@ -25,7 +25,7 @@ LARGEST = STAMP + 293
 LONGEST = 10 * 86_400.0
 """s; a longer log has a damaged time."""
 LATEST = 4_102_444_800.0
-"""s since 1970: the year 2100. What has a later time is no log."""
+"""Unix time of the year 2100; a later timestamp is not from a log."""
 _SPEED = struct.Struct("<f")
 _V1, _V2, _SIGNED = 0xFE, 0xFD, 1
 _HEARTBEAT, _VFR_HUD = 0, 74
@@ -35,7 +35,7 @@ DRIVES = 0.1
 SHORT = 30.0
 """s; a shorter log in which nothing was armed is the start of a program, and no drive."""
 _GCS, _NO_AUTOPILOT = 6, 8
-"""MAV_TYPE of a ground station, and MAV_AUTOPILOT of what is no vehicle."""
+"""MAV_TYPE of a ground station, and MAV_AUTOPILOT of what is not a vehicle."""
 
 
 class LogSummary(msgspec.Struct, frozen=True):
@@ -57,7 +57,7 @@ class LogSummary(msgspec.Struct, frozen=True):
 
 
 def read_summary(path: Path) -> LogSummary | None:
-    """Return the summary of a file; None if it cannot be read or is no telemetry log."""
+    """Return the summary of a file; None if it cannot be read or is not a telemetry log."""
     try:
         with path.open("rb") as file:
             head = file.read(HEAD)

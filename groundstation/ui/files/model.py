@@ -62,7 +62,7 @@ class FilesModel:
         return FilesRequest(tuple(self._open))
 
     def show_view(self, view: FilesView) -> list[ServiceIntent]:
-        """Take a view; return what to request of a vehicle that is shown for the first time."""
+        """Show a view; return what to request of a vehicle that is shown for the first time."""
         self.view = view
         if view.system == self._system:
             return []
@@ -203,7 +203,7 @@ class FilesModel:
 
     @property
     def download_name(self) -> str:
-        """Name here of what is under the cursor; "" if that is no file."""
+        """Name here of what is under the cursor; "" if that is not a file."""
         if self.log is not None:
             return self.log_name(self.log.number)
         return self.node.name if self.node is not None and self.node.size is not None else ""

@@ -169,7 +169,7 @@ class FilesScreen(ConsoleScreen):
     def _ask_upload(self, text: str) -> None:
         file = Path(text.strip()).expanduser()
         if not text.strip() or not file.is_file():
-            self.say(f"{text.strip()!r} is no file of this machine" if text.strip() else None)
+            self.say(f"{text.strip()!r} is not a file of this machine" if text.strip() else None)
             return
         what = f"upload {file.name}, {size_text(file.stat().st_size)}, into {clean(self._model.target_folder)}"
         self.ask(f"{what} of {self._model.vehicle}", lambda: self._send_one(self._model.upload(file)))

@@ -65,7 +65,7 @@ class GateLevel(Enum):
     STOPS = auto()
     """Only stops: the other keys are those of the screen or menu on top."""
     TEXT = auto()
-    """Only stops that are no text: a text field has the keys, and SPACE is a letter there."""
+    """Only stops that are not text: a text field has the keys, and SPACE is a letter there."""
 
 
 class GateClosure(msgspec.Struct, frozen=True):

@@ -78,7 +78,7 @@ class MapModel:
         return self.copies.requests
 
     def show_view(self, view: View) -> tuple[AnyIntent, ...]:
-        """Take a view; return the intents that follow: plans that are not known are downloaded once."""
+        """Show a view; return the intents that follow: plans that are not known are downloaded once."""
         before, known = self.view.system if self.view is not None else None, set(self.copies.items)
         whole = self.copies.show_view(view)
         if isinstance(view, PlanView) and before not in (None, view.system):
@@ -181,7 +181,7 @@ class MapModel:
         return NO_CURSOR if self.ground.cursor is None else self.editor.move_to(self.ground.cursor)
 
     def take_file(self, document: PlanDocument, name: str) -> str:
-        """Take the plans of a file that are not empty; return what came."""
+        """Load the plans of a file that are not empty; return what came."""
         plans: dict[PlanKind, Items] = {kind: document.plans[kind] for kind in PlanKind if document.plans[kind]}
         if not plans:
             return f"{name}: no plan in it"

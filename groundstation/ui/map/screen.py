@@ -83,7 +83,7 @@ class MapScreen(ConsoleScreen):
         return self._model.requests
 
     def show_view(self, view: View) -> None:
-        """Take a view; plans that are not known are downloaded."""
+        """Show a view; plans that are not known are downloaded."""
         self.send(self._model.show_view(view))
         self.say(self._model.pop_news())
         if self._model.pop_fence_upload() and self._model.fence_off:

@@ -28,7 +28,7 @@ from groundstation.views.plan import MAX_ITEMS, PlanItem, PlanKind
 NARROW_VALUE = 5
 """Cells of a value in a narrow table; a longer one loses its unit."""
 LEAST_SPEED = 0.1
-"""m/s below which the speed of the vehicle is no base for a time."""
+"""m/s below which the speed of the vehicle is not a base for a time."""
 
 
 # ---- the table ----

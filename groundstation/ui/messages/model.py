@@ -43,7 +43,7 @@ class MessagesModel:
         return MessageRequest(*self.selected) if self.selected is not None and self.selected[3] else None
 
     def add(self, page: MessagesPage, height: int) -> None:
-        """Take a page. The cursor stays on its row, also where that has moved."""
+        """Show a page. The cursor stays on its row, also where that has moved."""
         if (page.order, page.text) != (self.order, self.text):
             return
         self.page = page

@@ -221,7 +221,7 @@ class MessagesScreen(ConsoleScreen):
     def _set_rate(self, view: MessageView, text: str) -> None:
         rate = parse_rate(text)
         if rate is None:
-            self.say(f"“{text}” is no rate: a number from 0 to 1000, or off")
+            self.say(f"“{text}” is not a rate: a number from 0 to 1000, or off")
         else:
             self.context.send(self._calls.set_rate(view, rate))
 
@@ -299,7 +299,7 @@ class MessagesScreen(ConsoleScreen):
         plot = view.plot
         if plot is not None and plot.info.field.field != self._field.field:
             return
-        reason = f"{self._field.field} is no number" if self._field.field else ""
+        reason = f"{self._field.field} is not a number" if self._field.field else ""
         self._plot.show(MessagePlotValue(plot, reason if plot is None and self._plot.value.plot is None else ""))
 
 

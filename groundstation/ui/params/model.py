@@ -100,7 +100,7 @@ class ParamModel:
         return tuple(sorted(self.favourites, key=natural_key)) if self.scope.kind is ScopeKind.FAVOURITES else None
 
     def show_page(self, page: ParamPage) -> tuple[AnyIntent, ...]:
-        """Take a page; return the intents that follow: parameters that are not known are fetched once."""
+        """Show a page; return the intents that follow: parameters that are not known are fetched once."""
         if self.page is not None and self.page.known and not page.known:
             self._fetched.discard(page.system)  # the station has forgotten them: the vehicle was lost, or restarted
         if page.system != self._system:
@@ -118,14 +118,14 @@ class ParamModel:
         return (self.fetch(),)
 
     def show_infos(self, view: ParamInfos) -> None:
-        """Take what is known of some parameters."""
+        """Store the details of the requested parameters."""
         if self.page is not None and view.system == self.page.system:
             self.infos = {info.name: info for info in view.infos}
             if self.editor is not None and self.editor.row.name in self.infos:
                 self.editor.set_info(self.infos[self.editor.row.name])
 
     def show_diff(self, view: ParamDiff) -> str | None:
-        """Take the comparison with a file; return how it ends, once for each file."""
+        """Handle the comparison with a file; return how it ends, once for each file."""
         is_new = bool(view.file) and (self.diff is None or self.diff.file != view.file)
         self.diff = view
         return _diff_note(view) if is_new else None

@@ -78,7 +78,7 @@ class ParamPanels:
         return False
 
     def edit_key(self, key: str) -> str | None:
-        """Handle a key of the value editor that is no text; return the new text."""
+        """Handle a key of the value editor that is not text; return the new text."""
         editor = self._model.editor
         if editor is None or key not in ("up", "down", "tab"):
             return None

@@ -25,7 +25,7 @@ class ReplayModel:
         return ReplayRequest(max(1, columns), max(1, rows), top)
 
     def show_view(self, view: ReplayView) -> str | None:
-        """Take a view; return a note that is new."""
+        """Show a view; return a note that is new."""
         new = view.note if view.notes != self._notes else None
         self.view, self._notes = view, view.notes
         return new

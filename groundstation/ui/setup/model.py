@@ -62,7 +62,7 @@ class SetupModel:
     # ---- the chain ----
 
     def show(self, view: DoctorView) -> tuple[RequestLine, ...]:
-        """Take a view; return the requests that have ended since the one before.
+        """Show a view; return the requests that have ended since the one before.
 
         For another vehicle, or none, the keys turn no motors any more.
         """

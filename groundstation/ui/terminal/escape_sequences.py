@@ -15,7 +15,7 @@ from textual.constants import ESCAPE_DELAY
 ESC = "\x1b"
 
 OPEN_TIME = 1.0
-"""s after its newest byte for which a sequence may still be completed; what completes it then is no key."""
+"""s after its newest byte for which a sequence may still be completed; what completes it then is not a key."""
 
 MAX_LENGTH = 64
 """Characters kept of an unfinished sequence; of a longer one the beginning is kept, until it ends."""
@@ -32,7 +32,7 @@ _OPEN = re.compile(
     r"|[\]P_^X][^\x00-\x1f]*\x1b?"
     r")?"
 )
-"""The beginning of a sequence. Space and "!" are no part of CSI sequences: no terminal sends them, and they stop."""
+"""The beginning of a sequence. Space and "!" are not part of CSI sequences: no terminal sends them, and they stop."""
 
 _WHOLE = re.compile(
     r"\x1b(?:"

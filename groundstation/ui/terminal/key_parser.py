@@ -118,7 +118,7 @@ class KeyEventParser(XTermParser):
         """Return the events of one read. Its keys have gone to the sink when this returns."""
         now = self._clock()
         pieces = self._sequences.feed(data, now)
-        if any(piece.text != PONG for piece in pieces):  # answers to pings go on for ever, and are no text
+        if any(piece.text != PONG for piece in pieces):  # answers to pings go on for ever, and are not text
             self._read_at = now
         return self._handle(pieces)
 
@@ -189,7 +189,7 @@ class KeyEventParser(XTermParser):
         return None
 
     def _handle_split(self, piece: Piece, keys: Sequence[KeyEvent]) -> list[KeyEvent]:
-        """Pass stop keys and releases of a split sequence; any other key in it is no key, but neutral."""
+        """Pass stop keys and releases of a split sequence; any other key in it is not a key, but neutral."""
         self._sink.handle_split_keys([press for press in keys if not press.release])
         if self._pasting or len(piece.text) == 1 or (piece.text and not keys):
             return []

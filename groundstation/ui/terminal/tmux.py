@@ -55,7 +55,7 @@ class TmuxSession:
         return self._detached_at is not None
 
     def update(self, clients: Sequence[int] | None, now: float) -> None:
-        """Take an answer, the process ids of the clients; None: not known, which changes nothing.
+        """Handle an answer, the process ids of the clients; None: not known, which changes nothing.
 
         A session that never had a client is a script's.
         """
@@ -77,7 +77,7 @@ class TmuxSession:
         return self._released
 
     def handle_control(self, in_control: bool, *, any_vehicle: bool = False) -> None:
-        """Take whether we are in control of the vehicle on the screen, and whether another one may be ours."""
+        """Set whether we are in control of the vehicle on the screen, and whether another one may be ours."""
         self._controls_any = in_control or any_vehicle
         if in_control and self._was_without:
             self.away = None

@@ -30,7 +30,7 @@ class FieldUse(msgspec.Struct, frozen=True):
     cancel: Callable[[], None] = lambda: None
     """Called when ESC ends it; the field is closed then."""
     key: Callable[[str], str | None] = _no_text
-    """Called with a key that is no text, such as "down"; returns the new text, None if the key does nothing."""
+    """Called with a key that is not text, such as "down"; returns the new text, None if the key does nothing."""
 
 
 class LineField(Input):
@@ -48,7 +48,7 @@ class LineField(Input):
 
     def open(self, use: FieldUse, *, text: str = "", placeholder: str = "") -> None:
         """Show the field with a text."""
-        self._use = None  # the text is no change
+        self._use = None  # the text is not a change
         self.value, self.placeholder = text, placeholder
         self.cursor_position = len(text)
         self._use = use

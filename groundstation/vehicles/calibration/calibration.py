@@ -100,7 +100,7 @@ class CalibrationState:
         self._outbox: list[Outgoing] = []
 
     def receive(self, received: Received) -> None:
-        """Take what the vehicle asks for or reports."""
+        """Handle a request or report of the vehicle."""
         match received.message:
             case m.CommandLong() as message if message.command == Command.ACCELCAL_VEHICLE_POS:
                 self._ask_for(int(message.param1) if abs(message.param1) < 1e9 else 0)
@@ -112,7 +112,7 @@ class CalibrationState:
                 self._tell_sticks()
 
     def handle_text(self, text: str) -> None:
-        """Take PX4's texts, which say what to do."""
+        """Handle PX4's texts, which say what to do."""
         if text.startswith(CALIBRATION_TEXT):
             self.text = text.removeprefix(CALIBRATION_TEXT)
             if (calibrated := find_calibrated(self.text)) in PX4_KINDS:

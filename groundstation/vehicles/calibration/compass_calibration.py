@@ -37,7 +37,7 @@ class CompassCalibration(msgspec.Struct):
     """The vehicle has written the result by itself."""
 
     def receive(self, message: m.Message) -> bool:
-        """Take a message; return whether it was about the calibration."""
+        """Handle a message; return whether it was about the calibration."""
         match message:
             case m.MagCalProgress():
                 self._begin(message.compass_id, message.cal_mask)

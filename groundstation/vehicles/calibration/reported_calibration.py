@@ -43,7 +43,7 @@ class ReportedCalibration:
         self._left_at: float | None = None
 
     def handle_text(self, text: str) -> None:
-        """Take a whole STATUSTEXT of the vehicle."""
+        """Handle a whole STATUSTEXT of the vehicle."""
         if self.ended or not text.startswith(CALIBRATION_TEXT):
             return
         self.text = text.removeprefix(CALIBRATION_TEXT)
@@ -53,7 +53,7 @@ class ReportedCalibration:
             self.ended, self.failure = True, self.text
 
     def handle_status(self, status: int, now: float) -> None:
-        """Take MAV_STATE of the newest HEARTBEAT, and what is overdue."""
+        """Handle MAV_STATE of the newest HEARTBEAT, and what is overdue."""
         if self.ended:
             return
         if status == SystemState.CALIBRATING:

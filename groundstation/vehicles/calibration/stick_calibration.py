@@ -60,7 +60,7 @@ class StickCalibration:
         self.running = False
 
     def receive(self, message: m.Message) -> None:
-        """Take an RC_CHANNELS."""
+        """Handle an RC_CHANNELS."""
         if not self.running or not isinstance(message, m.RcChannels):
             return
         for channel in range(1, CHANNELS + 1):

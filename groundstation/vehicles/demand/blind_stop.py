@@ -44,7 +44,7 @@ class BlindStop:
         return [self._message(stop) for stop in (*BLIND[self.kind], *later)]
 
     def receive(self, received: Received) -> None:
-        """Take a COMMAND_ACK; other messages are ignored."""
+        """Handle a COMMAND_ACK; other messages are ignored."""
         message = received.message
         if not isinstance(message, m.CommandAck) or message.target_system not in (0, self._ids[0]):
             return

@@ -32,7 +32,7 @@ class ArmingChecks(msgspec.Struct):
     """Reason -> when it arrived."""
 
     def receive(self, received: Received, now: float) -> None:
-        """Take SYS_STATUS, and the answer to a request for the checks."""
+        """Handle SYS_STATUS, and the answer to a request for the checks."""
         match received.message:
             case m.SysStatus() as message if received.component == self.component:
                 self._take_bits(message)
@@ -51,7 +51,7 @@ class ArmingChecks(msgspec.Struct):
             self._texts.clear()
 
     def handle_text(self, text: str, now: float) -> None:
-        """Take a whole STATUSTEXT."""
+        """Handle a whole STATUSTEXT."""
         reason = reason_of(text)
         if reason == READY:
             self._texts.clear()

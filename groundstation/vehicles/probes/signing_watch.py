@@ -42,7 +42,7 @@ class SigningWatch:
         self._key = ""
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the reports of all links."""
+        """Store the reports of all links."""
         guards = [report.guard for report in reports if report.guard is not None]
         self._key = next((guard.key for guard in guards), "")
         self._behind = {system: s for guard in guards for system, s in guard.behind.items()}

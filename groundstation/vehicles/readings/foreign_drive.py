@@ -40,15 +40,15 @@ class ForeignDrive:
         self._times: dict[str, float] = {}
 
     def handle_rc(self, message: m.RcChannels, now: float) -> None:
-        """Take an RC_CHANNELS."""
+        """Handle an RC_CHANNELS."""
         self._rc, self._times["rc"] = message, now
 
     def handle_servos(self, message: m.ServoOutputRaw, now: float) -> None:
-        """Take a SERVO_OUTPUT_RAW."""
+        """Handle a SERVO_OUTPUT_RAW."""
         self._servos, self._times["outputs"] = message, now
 
     def handle_actuators(self, message: m.ActuatorOutputStatus, now: float) -> None:
-        """Take an ACTUATOR_OUTPUT_STATUS."""
+        """Handle an ACTUATOR_OUTPUT_STATUS."""
         if self._actuators is not None:
             pairs = zip(message.actuator[:MAX_ACTUATORS], self._actuators.actuator, strict=False)
             moved = [number for number, (value, before) in enumerate(pairs, 1) if value != before]

@@ -58,7 +58,7 @@ class CommandRequests:
             self._transmit(int(command), params, now, place)
 
     def query(self, command: Command, params: tuple[float, ...], now: float) -> None:
-        """Send a command that is no request of the operator; call it only while none of its kind is_waiting."""
+        """Send a command that is not a request of the operator; call it only while none of its kind is_waiting."""
         self._transmit(command, params, now)
 
     def is_waiting(self, command: Command | int) -> bool:

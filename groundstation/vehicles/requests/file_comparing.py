@@ -56,7 +56,7 @@ class FileComparing:
         return jobs
 
     def handle_disk(self, result: DiskResult, now: float) -> None:
-        """Take the checksum of the file here, and request that of the vehicle."""
+        """Store the checksum of the file here, and request that of the vehicle."""
         comparison = self._running.get(result.number)
         if comparison is None:
             return

@@ -41,7 +41,7 @@ class FolderCache:
         """End nothing: the report of the cancelled request follows."""
 
     def handle_report(self, report: RequestReport, now: float) -> None:
-        """Take the list of a request that has ended."""
+        """Store the list of a request that has ended."""
         if not report.state.ended or report.number not in self._asked:
             return
         path = self._asked.pop(report.number)

@@ -108,5 +108,5 @@ class MissionRequests:
 
 
 def destination_fault(latitude: float, longitude: float) -> str | None:
-    """Return why these degrees are no place that a vehicle may drive to, or None."""
-    return "0, 0 is no place" if (latitude, longitude) == (0, 0) else place_fault(latitude, longitude)
+    """Return why these degrees are not a place that a vehicle may drive to, or None."""
+    return "0, 0 is not a place" if (latitude, longitude) == (0, 0) else place_fault(latitude, longitude)

@@ -104,7 +104,7 @@ class ModeRequests:
         self._begin(now)
 
     def receive(self, received: Received, now: float) -> None:
-        """Take the mode of a HEARTBEAT of the vehicle."""
+        """Handle the mode of a HEARTBEAT of the vehicle."""
         if isinstance(received.message, m.Heartbeat) and received.component == self._commands.target[1]:
             self.current, self._heard_at = received.message.custom_mode, now
             self._confirm()
@@ -119,7 +119,7 @@ class ModeRequests:
         self._give_up(now)
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
-        """Take how DO_SET_MODE ended."""
+        """Note how DO_SET_MODE ended."""
         change = self._change
         if change is None or change.mode is None:
             return

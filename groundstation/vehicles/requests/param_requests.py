@@ -143,7 +143,7 @@ class ParamRequests:
             self.client.fetch(now)
 
     def _take_file(self, outcome: FtpOutcome, now: float) -> None:
-        """Take all parameters from the file, or request the list if there is none."""
+        """Load all parameters from the file, or request the list if there is none."""
         from link.services.param.unpack import unpack
 
         self._file = None

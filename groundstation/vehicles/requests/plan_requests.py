@@ -62,7 +62,7 @@ class PlanRequests:
         self._add(job, f"upload {_NAMES[kind]} of {len(whole)} items", now)
 
     def take(self, kind: MissionType, items: Items, version: int, plan_id: int) -> None:
-        """Take a plan that was not requested here: of a log. `version` differs from those of its other plans."""
+        """Store a plan that was not requested here: of a log. `version` differs from those of its other plans."""
         self.plans[kind], self.versions[kind], self.ids[kind] = items, version, plan_id
 
     def forget(self, kind: MissionType) -> None:

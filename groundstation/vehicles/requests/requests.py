@@ -149,7 +149,7 @@ class RequestBook:
             self._refusal = ""
 
     def handle_text(self, text: str, severity: int, now: float) -> None:
-        """Take a STATUSTEXT of the vehicle. It may explain the refusals around it, and others may follow it."""
+        """Handle a STATUSTEXT of the vehicle. It may explain the refusals around it, and others may follow it."""
         if self._reasons.add(text, severity, now):
             for number, each in self._refused.items():
                 self._refused[number] = each._replace(until=min(each.until, now + MORE_WITHIN))

@@ -82,7 +82,7 @@ class TextJoiner:
         self._given_up: list[ChunkedText] = []
 
     def add(self, message: StatusText, system: int, component: int, now: float) -> ChunkedText:
-        """Take a message; return the text that it belongs to, which may be complete now."""
+        """Handle a message; return the text that it belongs to, which may be complete now."""
         number, raw = int(message.chunk_seq), message._text_raw.split(b"\0", 1)[0]
         key = (system, component, int(message.id))
         if message.id == 0:

@@ -23,14 +23,14 @@ class ControlReport(msgspec.Struct):
     """Two programs with its ids cannot be told apart, and none of them drives."""
 
     def handle_control_status(self, message: ControlStatus) -> None:
-        """Take a CONTROL_STATUS; of another driver the program is not known yet."""
+        """Handle a CONTROL_STATUS; of another driver the program is not known yet."""
         if message.gcs_main != self.driver:
             self.component = self.session = None
             self.silent = self.clash = False
         self.driver = message.gcs_main
 
     def handle_rover_control(self, message: RoverControl) -> None:
-        """Take a ROVER_CONTROL."""
+        """Handle a ROVER_CONTROL."""
         self.driver = message.driver_system
         self.component, self.session = message.driver_component, message.session_id
         self.silent = bool(message.flags & ControlFlag.SILENT)

@@ -100,7 +100,7 @@ class VehicleIdentity:
         self._wants_metadata = True
 
     def receive(self, received: Received) -> None:
-        """Take what the vehicle says; other messages are ignored."""
+        """Handle a message of the vehicle; others are ignored."""
         if received.component != self._component:
             return
         match received.message:

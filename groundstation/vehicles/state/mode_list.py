@@ -28,7 +28,7 @@ class ModeList:
         return custom_mode in self._names
 
     def add(self, message: m.AvailableModes) -> None:
-        """Take one mode of the list."""
+        """Handle one mode of the list."""
         if len(self._names) < MAX_MODES:
             self._names[message.custom_mode] = listed_name(message)
 

@@ -39,7 +39,7 @@ class ReasonTexts:
         """Texts so far; those from here on were said later."""
 
     def add(self, text: str, severity: int, now: float) -> bool:
-        """Take a text; return whether it may be a reason."""
+        """Handle a text; return whether it may be a reason."""
         may = severity <= Severity.INFO
         if may:
             self._texts.append(_Text(text, severity, now, self.count))

@@ -86,7 +86,7 @@ class Senders:
         self._senders: dict[Key, Sender] = {}
 
     def receive(self, received: Received, now: float) -> None:
-        """Take a HEARTBEAT of a vehicle, and what tells vehicles apart."""
+        """Handle a HEARTBEAT of a vehicle, and what tells vehicles apart."""
         message = received.message
         if type(message) not in TELLING:
             return

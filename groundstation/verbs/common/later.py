@@ -1,4 +1,4 @@
-"""Modules of verbs that are imported once a verb runs: to import all of them takes longer than most verbs do."""
+"""Import modules of verbs on first use: importing all of them takes longer than most verbs do."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 class LaterName:
-    """Something of a module, for the table: a function, a sequence, or a value of one of its classes."""
+    """Stand-in for a function, sequence or class attribute of a module that is imported on first use."""
 
     def __init__(self, module: str, name: str) -> None:
         self._module = module
@@ -29,7 +29,7 @@ class LaterName:
 
 
 class LaterModule:
-    """A module of groundstation.verbs in the place of which nothing is imported yet."""
+    """Stand-in for a module of groundstation.verbs that is imported on first use."""
 
     def __init__(self, name: str) -> None:
         self._name = f"groundstation.verbs.{name}"
@@ -40,7 +40,7 @@ class LaterModule:
 
 
 class LaterResult:
-    """What a function of the table makes of its arguments, once it is called."""
+    """A call of a function of the table, made on first use."""
 
     def __init__(self, factory: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
         self._factory, self._arguments = factory, arguments

@@ -51,7 +51,7 @@ class Output:
         self.record(ok=ok, verb=self.verb, vehicle=vehicle, **fields, took=took)
 
     def note(self, text: str) -> None:
-        """Print something worth knowing to stderr, unless --quiet."""
+        """Print a note to stderr, unless --quiet."""
         if not self._quiet:
             self.error(text)
 

@@ -67,11 +67,11 @@ def check(options: argparse.Namespace) -> None:
     steady = [options.throttle, options.steering, options.seconds]
     if options.script is not None:
         if any(each is not None for each in steady):
-            raise VerbError(ExitCode.USAGE, "--script goes without --throttle, --steering and --for")
+            raise VerbError(ExitCode.USAGE, "--script cannot be combined with --throttle, --steering or --for")
         options.course = _load(options)
         return
     if options.seconds is None or not (options.throttle or options.steering):
-        raise VerbError(ExitCode.USAGE, "write --throttle PERCENT --for S, --steering likewise, or --script FILE")
+        raise VerbError(ExitCode.USAGE, "write --throttle or --steering PERCENT with --for S, or --script FILE")
     if options.seconds > LONGEST_HOLD:
         raise VerbError(ExitCode.USAGE, f"--for: {LONGEST_HOLD:g} s at most; --script drives longer")
     axes = Axes((options.throttle or 0.0) / 100, (options.steering or 0.0) / 100)

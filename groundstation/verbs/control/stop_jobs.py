@@ -39,7 +39,7 @@ class StopTimes(msgspec.Struct, frozen=True):
 
 @dataclass(slots=True)
 class RepeatedCommand:
-    """One command until its effect is seen. An answer alone is no end, and neither is silence before `until`."""
+    """One command until its effect is seen. An answer alone is not an end, and neither is silence before `until`."""
 
     number: int
     command: Command
@@ -126,7 +126,7 @@ class RefusedJob(msgspec.Struct):
         book.refuse(self.number, self.why, now, by_vehicle=False)
 
     def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:
-        """Take nothing: no command is sent."""
+        """Ignore acknowledgements: no command is sent."""
 
 
 class EmergencyJob(msgspec.Struct):

@@ -83,7 +83,7 @@ class LineDesk:
         return LineView(view.number, view.state, view.note, request.text, words)
 
     def _modes(self, system: int) -> frozenset[str]:
-        """Return the names of the modes of a vehicle that are no verbs, in capitals."""
+        """Return the names of the modes of a vehicle that are not verbs, in capitals."""
         contact = self._station.fleet.get(system) if system else self._station.fleet.selected
         modes = () if contact is None else self._station.services.services_of(contact).modes.modes
         return frozenset(mode.name.upper() for mode in modes if mode.name.lower() not in VERBS)

@@ -61,7 +61,7 @@ def parse_line(text: str, modes: Collection[str] = ()) -> ParsedLine:
         words = ["home"]
     verb = words[0]
     if verb not in VERBS or describe_action(words):
-        hint = describe_action(words) or describe_word(verb, VERBS) or f"{verb!r} is no verb; TAB lists them"
+        hint = describe_action(words) or describe_word(verb, VERBS) or f"{verb!r} is not a verb; TAB lists them"
         raise VerbError(ExitCode.USAGE, here(hint))
     _refuse_elsewhere(verb)
     options = build_parser(verb, LineParser).parse_args(words[1:])

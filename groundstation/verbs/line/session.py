@@ -75,7 +75,7 @@ class LineOutput:
         """What an operator should know, and errors."""
 
     def line(self, text: str) -> None:
-        """Take a line of data."""
+        """Handle a line of data."""
         self.lines.append(text)
 
     def record(self, **fields: object) -> None:
@@ -88,11 +88,11 @@ class LineOutput:
         """Do nothing."""
 
     def note(self, text: str) -> None:
-        """Take something worth knowing."""
+        """Keep a note for the user."""
         self.notes.append(here(text))
 
     def error(self, text: str) -> None:
-        """Take an error."""
+        """Keep an error."""
         self.note(text)
 
     def progress(self, report: RequestReport) -> None:

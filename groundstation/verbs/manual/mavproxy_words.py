@@ -53,10 +53,10 @@ def describe_action(arguments: Sequence[str]) -> str | None:
 
 
 def describe_word(word: str, verbs: Collection[str]) -> str | None:
-    """Return one line for a word that is no verb and no endpoint, or None."""
+    """Return one line for a word that is neither a verb nor an endpoint, or None."""
     if word in WORDS:
         return f"{word}: {WORDS[word]}"
     import difflib  # 6 ms that a known verb does without
 
     near = difflib.get_close_matches(word, verbs, n=1, cutoff=0.7)
-    return f"{word!r} is no verb and no endpoint: did you mean `groundstation {near[0]}`?" if near else None
+    return f"{word!r} is neither a verb nor an endpoint: did you mean `groundstation {near[0]}`?" if near else None

@@ -32,7 +32,7 @@ def check_demand(kind: type[m.Message], values: Mapping[str, Any], *, confirmed:
     if kind in DEMANDS and not confirmed:
         raise VerbError(ExitCode.USAGE, f"{name} can move the vehicle: --yes sends it, and neutral at the end")
     if name in MOVES and not confirmed:
-        raise VerbError(ExitCode.USAGE, f"{name} can move the vehicle, and nothing ends it: --yes sends it")
+        raise VerbError(ExitCode.USAGE, f"{name} can move the vehicle and has no end; add --yes to send it")
     if kind in DEMANDS and any(not math.isfinite(each) for each in _numbers(values)):
         raise VerbError(ExitCode.USAGE, f"{name}: a demand needs finite numbers")
     if "type_mask" in kind.fieldnames and kind in DEMANDS and "type_mask" not in values:

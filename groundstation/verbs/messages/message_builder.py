@@ -43,7 +43,7 @@ def build(kind: type[Message], values: Mapping[str, Any]) -> Message:
 
 
 def _shape(kind: type[Message], name: str) -> tuple[str, int]:
-    """Return the type of a field, and its length; 0 if it is no array."""
+    """Return the type of a field, and its length; 0 if it is not an array."""
     length = kind.array_lengths[kind.ordered_fieldnames.index(name)]
     return kind.fieldtypes[kind.fieldnames.index(name)], length
 
@@ -84,7 +84,7 @@ def _parse_number(kind: type[Message], name: str, what: str, text: str) -> float
         value: float = float(text) if what in ("float", "double") else int(text, 0)
     except ValueError:
         hint = describe_nearest(text.upper(), named) if named else ""
-        raise VerbError(ExitCode.USAGE, f"{name}: {text!r} is no {_describe(what)}{hint}") from None
+        raise VerbError(ExitCode.USAGE, f"{name}: {text!r} is not a {_describe(what)}{hint}") from None
     low, high = _range(what)
     if not math.isnan(value) and (not low <= value <= high or (what == "float" and not is_float32(value))):
         raise VerbError(ExitCode.USAGE, f"{name}: {text} does not fit {what}")

@@ -79,7 +79,7 @@ def parse_condition(text: str, kind: type[Message], field: FieldPath | None) -> 
     found = _CONDITION.fullmatch(text)
     if found is None or (found["field"] is None and field is None):
         example = "'>0.5'" if field else f"'{kind.fieldnames[-1]}>0.5'"
-        raise VerbError(ExitCode.USAGE, f"{text!r} is no condition: write it as {example}")
+        raise VerbError(ExitCode.USAGE, f"{text!r} is not a condition: write it as {example}")
     path = find_field(kind, found["field"]) if found["field"] else field
     assert path is not None
     return Condition(path, found["sign"], _parse_value(found["value"], kind, path))

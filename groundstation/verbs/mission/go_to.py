@@ -28,7 +28,7 @@ KEEP_SPEED, CHANGE_MODE = -1.0, 1.0
 GROUND_SPEED, KEEP_THROTTLE = 1.0, -1.0
 """Parameters 1 and 3 of DO_CHANGE_SPEED."""
 FARTHEST = 100_000.0
-"""m; beyond that a plane is no picture of the earth."""
+"""m; beyond that a plane is not a picture of the earth."""
 RETURNING = (Mode.RTL.name, Mode.SMART_RTL.name, "AUTO_RTL")
 """Modes that drive home, of ArduRover, our vehicle and PX4."""
 POSITION_TRIES = 3
@@ -65,7 +65,7 @@ def check_place(options: argparse.Namespace) -> None:
             raise VerbError(ExitCode.USAGE, f"--by: {FARTHEST:g} m at most")
         return
     if not is_on_earth(options.latitude, options.longitude) or given == [0.0, 0.0]:
-        raise VerbError(ExitCode.USAGE, f"{options.latitude:g} {options.longitude:g} is no latitude and longitude")
+        raise VerbError(ExitCode.USAGE, f"{options.latitude:g} {options.longitude:g} is not a latitude and longitude")
 
 
 def _check_item(options: argparse.Namespace) -> None:
@@ -73,7 +73,7 @@ def _check_item(options: argparse.Namespace) -> None:
     if options.by is not None or number is None:
         raise VerbError(ExitCode.USAGE, "write the number of an item as `mission show` has it: goto wp 7")
     if not (0 <= number <= LAST_ITEM and number == int(number)):
-        raise VerbError(ExitCode.USAGE, f"{number:g} is no number of an item")
+        raise VerbError(ExitCode.USAGE, f"{number:g} is not a mission item number")
 
 
 async def go_to(session: VerbSession, options: argparse.Namespace, output: Output) -> int:

@@ -38,7 +38,7 @@ class SentOutput(Output):
         self._send(Printed("flush"))
 
     def note(self, text: str) -> None:
-        """Send something worth knowing."""
+        """Send a note."""
         self._send(Printed("note", (text,)))
 
     def error(self, text: str) -> None:

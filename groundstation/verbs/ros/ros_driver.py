@@ -44,7 +44,7 @@ class RosDriver:
     # ---- what arrives ----
 
     def push_twist(self, source: Hashable, linear_x: float, angular_z: float) -> None:
-        """Take the velocities of a Twist: m/s, rad/s."""
+        """Handle the velocities of a Twist: m/s, rad/s."""
         try:
             axes = self._scale.of_twist(linear_x, angular_z)
         except RefusedDemandError as error:
@@ -53,7 +53,7 @@ class RosDriver:
             self._push(source, axes, TWIST_SILENCE)
 
     def push_word(self, source: Hashable, data: str) -> None:
-        """Take the data of a String."""
+        """Handle the data of a String."""
         try:
             axes = self._scale.of_word(data)
         except RefusedDemandError as error:

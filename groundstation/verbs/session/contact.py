@@ -24,10 +24,10 @@ class Job(Protocol):
     number: int
 
     def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
-        """Take what is due."""
+        """Handle the entries that are due."""
 
     def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, book: RequestBook, now: float) -> None:
-        """Take how a command ended."""
+        """Note how a command ended."""
 
 
 class VehicleContact:
@@ -105,7 +105,7 @@ class VehicleContact:
         self._advance(now)
 
     def handle_refused(self, message: m.Message, why: str) -> None:
-        """Take that a message to it was not sent. Stops need no session, so that without one a verb goes on."""
+        """Note that a message to it was not sent. Stops need no session, so that without one a verb goes on."""
         if isinstance(message, m.RoverOperatorPresence):
             self.unproven = why
         else:

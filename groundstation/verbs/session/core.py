@@ -87,7 +87,7 @@ class VerbCore:
         self.frames_sent += 1
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:
-        """Take that a message was not sent, because the role of this program does not allow it."""
+        """Note that a message was not sent, because the role of this program does not allow it."""
         contact = self.contacts.get(m.target_system(message))
         if contact is not None:
             contact.handle_refused(message, why)

@@ -89,7 +89,7 @@ class VerbOperator:
         self._prove(now)
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
-        """Take the answer to the question for the dialect."""
+        """Handle the answer to the question for the dialect."""
         if outcome.command == Command.REQUEST_MESSAGE and outcome.params[0] == m.RoverDriveInfo.id:
             self._probe.handle_outcome(outcome, now)
             self._foreign |= outcome.result not in (Result.ACCEPTED, Result.TEMPORARILY_REJECTED)

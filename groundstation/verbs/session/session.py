@@ -142,7 +142,7 @@ class VerbSession:
         await asyncio.sleep(max(0.0, self.began + seconds - self.now))
 
     async def take_part(self) -> None:
-        """Prove a session to the vehicle, so that it takes what needs control from this program.
+        """Prove this session, so that the vehicle accepts commands that need control.
 
         A vehicle that says neither that it has our dialect nor that it has not is treated as one without.
         """

@@ -132,7 +132,7 @@ class StationCore(VerbCore):
         self._add_all(now)
 
     def _add_all(self, now: float) -> None:
-        """Take the vehicles of the station that are heard."""
+        """Add the vehicles of the station that are heard."""
         for contact in self.station.fleet:
             known = self.contacts.get(contact.state.system)
             is_same = isinstance(known, StationContact) and known.contact is contact

@@ -130,7 +130,7 @@ class _Answer:
         return self.confirmed is not None or self._session.vehicle.system in self._signers.systems
 
     def hear(self, received: Received, now: float) -> None:
-        """Take the texts of the vehicle that are about signing."""
+        """Store the texts of the vehicle that are about signing."""
         message = received.message
         if received.system != self._session.vehicle.system or not isinstance(message, m.StatusText):
             return

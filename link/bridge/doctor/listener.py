@@ -37,7 +37,7 @@ class EndpointListener:
         self._router = Router(links)
 
     def receive(self, link: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> None:
-        """Take what arrived on a link."""
+        """Handle the bytes that arrived on a link."""
         self._router.receive(link, pieces, now)
         endpoint = self._endpoints[link]
         for data, address in pieces:

@@ -86,7 +86,7 @@ def _quoted(name: str) -> str:
 def _find_problems(found: FleetFile) -> Iterator[str]:
     for name in (found.fleet, *found.names):
         if not re.fullmatch(FLEET_NAME, name):
-            yield f"{name!r} is no name; it has {FLEET_NAME_RULE}"
+            yield f"{name!r} is not a name; it has {FLEET_NAME_RULE}"
     for key in ("listen", "routers"):
         for locator in getattr(found, key):
             if problem := locator_problem(locator):
@@ -100,11 +100,11 @@ def _find_problems(found: FleetFile) -> Iterator[str]:
 
 
 def locator_problem(locator: str) -> str | None:
-    """Return why this is no address with certificates, or None."""
+    """Return why this is not an address with certificates, or None."""
     try:
         parse_endpoint(f"zenoh:{locator}/fleet")
     except EndpointError:
-        return f"{locator!r} is no address; write tls/HOST:PORT or quic/HOST:PORT"
+        return f"{locator!r} is not an address; write tls/HOST:PORT or quic/HOST:PORT"
     if not locator.startswith(("tls/", "quic/")):
         return f"{locator!r} has no certificates; write tls/ or quic/"
     return None

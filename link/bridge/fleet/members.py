@@ -117,7 +117,7 @@ def _member_file(fleet: FleetFile, name: str, role: str, folder: Path, pair: Key
 
 def _check_name(name: str) -> None:
     if not re.fullmatch(FLEET_NAME, name):
-        raise FleetError(f"{name!r} is no name; it has {FLEET_NAME_RULE}")
+        raise FleetError(f"{name!r} is not a name; it has {FLEET_NAME_RULE}")
 
 
 def _read_authority(folder: Path) -> KeyPair:

@@ -54,7 +54,7 @@ class FtpHandlers:
     def _terminate(self, request: FtpRequest, now: float) -> FtpReply:
         """Close a session.
 
-        An unknown one is no error: MAVSDK closes after a listing, and a reply may have been lost.
+        An unknown one is not an error: MAVSDK closes after a listing, and a reply may have been lost.
         """
         session = self._sessions.get(request.client, request.packet.session, now)
         return b"" if session is None else self._close(session)

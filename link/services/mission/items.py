@@ -64,7 +64,7 @@ Items = tuple[MissionItem, ...]
 
 
 class ItemRequest(IntEnum):
-    """`current` of MISSION_ITEM(_INT) that is no part of a plan but a request, an extension of ArduPilot.
+    """`current` of MISSION_ITEM(_INT) that is not part of a plan but a request, an extension of ArduPilot.
 
     DroneKit's simple_goto, Mission Planner and older scripts send it. MAVLink itself knows 0 and 1 only.
     """
@@ -193,7 +193,7 @@ def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
 def coordinate_scale(command: int, frame: int) -> float:
     """Return what a degree, a metre or a plain parameter 5 or 6 is multiplied by to give `x` and `y`.
 
-    The command decides first: a parameter that is no place stays as it is in each frame
+    The command decides first: a parameter that is not a place stays as it is in each frame
     (https://mavlink.io/en/services/mission.html#frames_mission_items).
     """
     if frame == FRAME_MISSION or command in PLACELESS:

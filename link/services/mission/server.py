@@ -50,7 +50,7 @@ class MissionBackend(PlanBackend, Protocol):
     def handle_item_request(
         self, request: ItemRequest, item: MissionItem, received: Received, now: float
     ) -> MissionResult:
-        """Handle an item that is no part of a plan; return the result for its MISSION_ACK."""
+        """Handle an item that is not part of a plan; return the result for its MISSION_ACK."""
 
     def build_mission_current(self) -> m.MissionCurrent:
         """Return MISSION_CURRENT."""

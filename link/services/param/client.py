@@ -41,7 +41,7 @@ LARGEST_EXACT = 2**24
 MAX_PARAMS = 8192
 """Parameters that are kept: five times what the largest autopilot has. More names would be an attack on our memory."""
 HASH_CHECK = "_HASH_CHECK"
-"""PX4 sends a hash of all values under this name. It is no parameter."""
+"""PX4 sends a hash of all values under this name. It is not a parameter."""
 
 
 class Param(msgspec.Struct, frozen=True):
@@ -154,7 +154,7 @@ class ParamClient:
         self._listing.stop()
 
     def load(self, params: Iterable[Param]) -> None:
-        """Take all parameters from another source, such as a file of the vehicle. Others are forgotten."""
+        """Load all parameters from another source, such as a file of the vehicle. Others are forgotten."""
         self.params = {param.name: param for param in params}
         self.version += 1
         self._listing.finish(len(self.params))

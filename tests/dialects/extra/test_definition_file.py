@@ -57,7 +57,7 @@ def test_values_have_the_forms_of_mavlink(value: str, number: int, tmp_path: Pat
 
 
 NAME = "use at most 100 letters, digits and _, no digit first"
-VALUE = "use a number of at most 64 bits, 0x..., 0b... or 2**n"
+VALUE = "use up to 64 bits: a number, 0x..., 0b... or 2**n"
 IDS = "use a number from 0 to 16777215"
 TYPES = (
     "use char, int8_t, uint8_t, int16_t, uint16_t, int32_t, uint32_t, int64_t, uint64_t, float, double, "
@@ -100,12 +100,12 @@ def test_a_document_that_is_no_definition(text: str, line: str, tmp_path: Path) 
     [
         ('name="A"', '<message> has no id: add id="..."'),
         ('id="1"', '<message> has no name: add name="..."'),
-        ('id="16777216" name="A"', f"'16777216' is no message id: {IDS}"),
-        ('id="-1" name="A"', f"'-1' is no message id: {IDS}"),
-        ('id="1_0" name="A"', f"'1_0' is no message id: {IDS}"),
-        ('id="1" name="A B"', f"'A B' is no message name: {NAME}"),
-        ('id="1" name="A\N{LATIN SMALL LETTER E WITH ACUTE}"', f"'A\\xe9' is no message name: {NAME}"),
-        ('id="1" name="1A"', f"'1A' is no message name: {NAME}"),
+        ('id="16777216" name="A"', f"'16777216' is not a message id: {IDS}"),
+        ('id="-1" name="A"', f"'-1' is not a message id: {IDS}"),
+        ('id="1_0" name="A"', f"'1_0' is not a message id: {IDS}"),
+        ('id="1" name="A B"', f"'A B' is not a valid message name: {NAME}"),
+        ('id="1" name="A\N{LATIN SMALL LETTER E WITH ACUTE}"', f"'A\\xe9' is not a valid message name: {NAME}"),
+        ('id="1" name="1A"', f"'1A' is not a valid message name: {NAME}"),
     ],
 )
 def test_a_message_without_a_usable_id_or_name(head: str, what: str, tmp_path: Path) -> None:
@@ -115,7 +115,7 @@ def test_a_message_without_a_usable_id_or_name(head: str, what: str, tmp_path: P
 @pytest.mark.parametrize(
     ("attributes", "what"),
     [
-        ('type="char" name="a;import os"', f"'a;import os' is no field name: {NAME}"),
+        ('type="char" name="a;import os"', f"'a;import os' is not a valid field name: {NAME}"),
         ('name="a"', '<field> has no type: add type="..."'),
         ('type="uint8" name="a"', "field a: unknown type 'uint8': did you mean uint8_t?"),
         ('type="bool" name="a"', f"field a: unknown type 'bool': {TYPES}"),
@@ -153,7 +153,7 @@ def test_a_message_that_mavlink_cannot_carry(fields: str, line: str, tmp_path: P
 @pytest.mark.parametrize("value", ["f()", str(2**64), "-9223372036854775809", "010", "2**64", "", "1 "])
 def test_an_entry_without_a_usable_value(value: str, tmp_path: Path) -> None:
     text = with_entries(f'<enum name="E"><entry name="A" value="{value}"/></enum>')
-    assert refusal(text, tmp_path) == f"my.xml:3: entry A: {value!a} is no value: {VALUE}"
+    assert refusal(text, tmp_path) == f"my.xml:3: entry A: {value!a} is not a value: {VALUE}"
 
 
 def test_what_is_no_file_or_too_large_is_not_read(tmp_path: Path) -> None:
@@ -161,13 +161,14 @@ def test_what_is_no_file_or_too_large_is_not_read(tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "pipe", Path("/dev/zero")):
         with pytest.raises(DialectError, match=r"^it: not a file: name the XML file of the dialect$"):
             read_definitions(path, "it")
-    assert refusal(b" " * (FILE_MAX + 1), tmp_path) == "my.xml: larger than 4 MiB: this is no MAVLink definition"
+    assert refusal(b" " * (FILE_MAX + 1), tmp_path) == "my.xml: larger than 4 MiB: this is not a MAVLink definition"
 
 
 def test_no_expression_of_a_file_is_executed(tmp_path: Path) -> None:
     """mavparse evaluates the value of an entry as Python."""
     evil = f"__import__('pathlib').Path('{tmp_path}/made').touch()"
-    assert "is no value" in refusal(with_entries(f'<enum name="E"><entry name="A" value="{evil}"/></enum>'), tmp_path)
+    entry = f'<enum name="E"><entry name="A" value="{evil}"/></enum>'
+    assert "is not a value" in refusal(with_entries(entry), tmp_path)
     assert not (tmp_path / "made").exists()
 
 

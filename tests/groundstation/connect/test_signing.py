@@ -87,7 +87,7 @@ def test_a_running_station_adopts_keys_made_chosen_and_forgotten(keys: Path) -> 
 
 
 def break_file(keys: Path) -> None:
-    """Replace the file by one that is no TOML, whole: the thread may read at any moment."""
+    """Replace the file by one that is not TOML, whole: the thread may read at any moment."""
     broken = keys.with_name("broken")
     broken.write_text("[[key]")
     broken.chmod(0o600)

@@ -91,5 +91,5 @@ def test_what_is_lost_is_named_with_its_place(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"text of no log\n" * 50, bytes(1000), b"\xfd" * 1000])
 def test_a_file_that_is_no_log(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "log.tlog").write_bytes(content)
-    with pytest.raises(ExportError, match="this is no telemetry log"):
+    with pytest.raises(ExportError, match="this is not a telemetry log"):
         run(tmp_path / "log.tlog", ("jsonl", tmp_path / "out.jsonl"))

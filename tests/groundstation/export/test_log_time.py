@@ -46,7 +46,7 @@ def test_a_time_of_day_in_the_second_of_the_start_is_today() -> None:
     "text", ["", "soon", "0:61", "25:00:00", "-5", "2026-13-01", "1:2:3:4", "+", "nan", "0:31s", "0001-01-01"]
 )
 def test_anything_else_is_one_line(text: str) -> None:
-    with pytest.raises(ValueError, match=r"is no time in a log: write 0:31 or \+31"):
+    with pytest.raises(ValueError, match=r"is not a time in a log: write 0:31 or \+31"):
         parse_log_time(text)
 
 

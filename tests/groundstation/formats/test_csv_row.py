@@ -1,4 +1,4 @@
-"""Rows of CSV files: texts of vehicles are no formulas, and numbers stay numbers."""
+"""Rows of CSV files: texts of vehicles are not formulas, and numbers stay numbers."""
 
 from __future__ import annotations
 

@@ -80,9 +80,9 @@ def test_a_damaged_feature_is_named(feature: Any, fault: str) -> None:
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ('{"type": "Feature",\n "geometry"', "a.geojson:2: this is no JSON"),
+        ('{"type": "Feature",\n "geometry"', "a.geojson:2: this is not JSON"),
         ("[" * 100_000, "nested too deeply"),
-        ("[]", "it is no JSON object"),
+        ("[]", "it is not a JSON object"),
         ('{"type": "FeatureCollection", "features": []}', "there is no shape in it"),
     ],
 )

@@ -167,11 +167,11 @@ ITEM = ("mission", "items", 1)
 @pytest.mark.parametrize(
     ("text", "error"),
     [
-        ("", "f.plan:1: this is no JSON: Expecting value"),
-        ('{\n"a": 1,\n"b" 2}', "f.plan:3: this is no JSON: Expecting ':' delimiter"),
-        ("[]", "f.plan: this is no plan: it is no JSON object"),
-        ("[" * 100_000, "f.plan: this is no plan: nested too deeply, or a number too long"),
-        ('{"a": ' + "9" * 5000 + "}", "f.plan: this is no plan: nested too deeply, or a number too long"),
+        ("", "f.plan:1: this is not JSON: Expecting value"),
+        ('{\n"a": 1,\n"b" 2}', "f.plan:3: this is not JSON: Expecting ':' delimiter"),
+        ("[]", "f.plan: this is not a plan: it is not a JSON object"),
+        ("[" * 100_000, "f.plan: this is not a plan: nested too deeply, or a number too long"),
+        ('{"a": ' + "9" * 5000 + "}", "f.plan: this is not a plan: nested too deeply, or a number too long"),
         ('{"fileType": NaN}', "f.plan: NaN is not a number of JSON"),
         ("{}", 'f.plan: "fileType" is missing'),
         (broken("fileType", value="Survey"), "f.plan: \"fileType\" is 'Survey', not \"Plan\""),

@@ -68,7 +68,7 @@ def test_a_place_that_is_not_on_earth_is_refused(frame: int, place: str, fault: 
     "rest",
     [
         "3\t16\t0\t0\t0\t0\t0\t0\t0\t1",  # a waypoint where the vehicle is
-        "3\t183\t1\t1500\t0\t0\t100\t0\t0\t1",  # a command whose parameters 5 and 6 are no place
+        "3\t183\t1\t1500\t0\t0\t100\t0\t0\t1",  # a command whose parameters 5 and 6 are not a place
         "2\t16\t0\t0\t0\t0\t100\t0\t0\t1",  # no frame with degrees
     ],
 )

@@ -119,12 +119,12 @@ def test_files_that_are_no_log_get_one_line(tmp_path: Path) -> None:
     (tmp_path / "text.tlog").write_text("some text\n" * 1000)
     os.mkfifo(tmp_path / "pipe.tlog")
     words = {
-        tmp_path: "is a folder", tmp_path / "empty.tlog": "is empty", tmp_path / "text.tlog": "is no telemetry log",
-        tmp_path / "none.tlog": "no such file: name a telemetry log", tmp_path / "pipe.tlog": "is no regular file",
+        tmp_path: "is a folder", tmp_path / "empty.tlog": "is empty", tmp_path / "text.tlog": "is not a telemetry log",
+        tmp_path / "none.tlog": "no such file: name a telemetry log", tmp_path / "pipe.tlog": "is not a regular file",
     }  # fmt: skip
     for path, text in words.items():
         with pytest.raises(ReplayError, match=text) as caught:
             open_log(path)
         assert "\n" not in str(caught.value)
-    with pytest.raises(StationError, match=r"text\.tlog: is no telemetry log"):
+    with pytest.raises(StationError, match=r"text\.tlog: is not a telemetry log"):
         StationClient.start_replay(tmp_path / "text.tlog")

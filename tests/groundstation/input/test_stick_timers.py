@@ -183,7 +183,7 @@ def test_another_keyboard_does_not_go_on_with_a_press() -> None:
     press(sticks, I, 0.0)
     sticks.change_keyboard(0.1, reports_releases=False)
     press(sticks, I, 1.0, *(1.04 + number * 0.04 for number in range(8)))
-    assert sticks.stop_bound == 0.75, "the second was no repeat after 1 s"
+    assert sticks.stop_bound == 0.75, "the second was not a repeat after 1 s"
 
 
 # ---- styles and gamepad ----

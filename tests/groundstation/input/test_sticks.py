@@ -294,7 +294,7 @@ def test_step_stays_within_the_limit() -> None:
         sticks.press(I, float(step))
     assert sticks.axes(30.0) == Axes(0.5, 0.0)
     sticks.press(COMMA, 31.0)
-    assert sticks.axes(32.0) == Axes(0.4, 0.0), "the limit is no rubber band"
+    assert sticks.axes(32.0) == Axes(0.4, 0.0), "the limit is not a rubber band"
 
 
 # ---- limits and styles ----

@@ -1,4 +1,4 @@
-"""Hashes and CDR against published values; bytes that are no message."""
+"""Hashes and CDR against published values; bytes that are not a message."""
 
 from __future__ import annotations
 

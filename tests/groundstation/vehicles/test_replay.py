@@ -108,7 +108,7 @@ def test_it_is_known_for_what_it_is() -> None:
     last = replay().moments[-1].snapshot
     assert last.vehicle is not None
     assert last.vehicle.name == "ArduPilot rover 1"
-    assert replay().systems == (1,), "the other ground station is no vehicle"
+    assert replay().systems == (1,), "the other ground station is not a vehicle"
     assert not last.vehicle.in_control
     assert last.operator.gate_reason == "not in control"
     assert len(replay().moments) == 1300

@@ -41,7 +41,7 @@ def test_a_vehicle_that_requires_signing_obeys_the_watchdog(ahead: int) -> None:
     assert all(each.signed for each in found)
     assert link_and_stamp(frames[0])[0] >= 128
     later = far.receive(send(ground, now=0.7)[0], THERE, 0.7)
-    assert [type(each.message) for each in later] == [Heartbeat], "the station that goes on is no replay"
+    assert [type(each.message) for each in later] == [Heartbeat], "the station that goes on is not a replay"
 
 
 def test_without_keys_it_signs_nothing() -> None:

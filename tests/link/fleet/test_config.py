@@ -87,7 +87,7 @@ def test_a_bare_router_is_a_network_also_on_this_computer() -> None:
         ({"whose": {"role": "vehicle"}}, "farm", Side.GROUND_STATION, "is the file of a vehicle; make one"),
         ({"whose": {"role": "vehicle", "name": "rover2"}}, "farm/rover1", Side.VEHICLE, "is the file of rover2; write"),
         ({"connect": {"endpoints": []}}, "farm", None, "names no router; add it to connect/endpoints"),
-        ({"modus": 1}, "farm", None, "is no Zenoh configuration: "),
+        ({"modus": 1}, "farm", None, "is not a Zenoh configuration: "),
         ({"whose": {"role": None}}, "farm", Side.VEHICLE, "name this vehicle, for example zenoh:"),
     ],
 )

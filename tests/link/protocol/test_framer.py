@@ -126,7 +126,7 @@ def test_another_dialects_checksum_is_noticed() -> None:
     framer = Framer(stream=False)
     framer.feed(bytes(foreign), 0.0)
     assert framer.counts.mismatches == {Heartbeat.id: 1}
-    framer.feed(b"\xfd" + TRAIN, 0.0)  # noise is no dialect
+    framer.feed(b"\xfd" + TRAIN, 0.0)  # noise is not a dialect
     assert framer.counts.mismatches == {Heartbeat.id: 1}
 
 

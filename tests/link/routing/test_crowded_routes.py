@@ -79,7 +79,7 @@ def test_runs_of_one_operator_of_a_fleet_keep_no_other_out() -> None:
 
 def test_a_stop_passes_a_bridge_without_a_place_and_is_answered() -> None:
     rig = crowded(3)
-    assert rig.send(UDP, command(1, 1), NEWCOMER, now=1.5) == {}, "arming is no stop"
+    assert rig.send(UDP, command(1, 1), NEWCOMER, now=1.5) == {}, "arming is not a stop"
     stop = frame(STOP, 2, system=254)
     assert rig.send(UDP, stop, NEWCOMER, now=1.6)[SERIAL, "tty"] == stop
     assert NEWCOMER in get_telemetry(rig, 1.7)

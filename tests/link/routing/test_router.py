@@ -343,7 +343,7 @@ PIECES = st.one_of(st.binary(max_size=60), st.sampled_from(FRAMES), st.sampled_f
 
 @given(st.lists(st.tuples(st.integers(0, 2), st.sampled_from(["tty", "out", "a", "b"]), PIECES), max_size=60))
 def test_byte_soup_never_raises_and_adds_nothing_to_the_output(soup: list[tuple[int, str, bytes]]) -> None:
-    # Two senders of one frame are no redundant links here: time passes in steps that are longer than that.
+    # Two senders of one frame are not redundant links here: time passes in steps that are longer than that.
     router = Router([(True, "tty"), (False, None), (False, "out")])
     taken: dict[str, bytes] = {}
     for step, (port, address, data) in enumerate(soup):

@@ -104,7 +104,7 @@ def test_root_gives_away_no_file_that_another_user_has_linked(tmp_path: Path) ->
     [
         (key(secret=SECRET[:-2]), "key[0] 'laptop': a secret is 64 hex digits, this one has 62 characters"),
         (key(secret=SECRET[:-1] + "g"), "key[0] 'laptop': a secret is 64 hex digits, this one has other characters"),
-        (key(secret="00" * 32), "key[0] 'laptop': 32 zero bytes are no key"),
+        (key(secret="00" * 32), "key[0] 'laptop': 32 zero bytes are not a key"),
         (key(role="admin"), "key[0] 'laptop': role 'admin' is not known; there are watch, drive, setup"),
         (key(name="a b"), "key[0] 'a b': a key's name is 1 to 24 letters"),
         (key() + key(secret="cd" * 32), "key[1] 'laptop': there is a key laptop already"),

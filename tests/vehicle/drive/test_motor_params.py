@@ -77,7 +77,7 @@ def test_the_trim_is_the_centre_of_a_servo_and_moves_no_wheel() -> None:
     assert bench.throttles == pytest.approx((0.3 + 0.7 * 0.4845 + 0.1, 1.0), abs=1e-3)
     bench.wait(1.0, Axes(steering=-1.0))
     assert bench.throttles == pytest.approx((0.0, -1.0))
-    assert bench.newest(m.VfrHud).throttle == 0  # a servo is no throttle
+    assert bench.newest(m.VfrHud).throttle == 0  # a servo is not a throttle
 
 
 def test_the_reverse_delay_is_for_wheels_and_not_for_a_servo() -> None:

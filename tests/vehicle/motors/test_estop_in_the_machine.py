@@ -86,7 +86,7 @@ def test_a_press_turns_all_off_in_the_cycle_and_enters_the_estop(
     assert beat.system_status == SystemState.EMERGENCY
     assert not beat.base_mode & ModeFlag.ARMED
     failsafes = car.newest(m.RoverFailsafeStatus)
-    assert failsafes.active == failsafes.latched == Failsafe.ESTOP, "it is no fault of the motor driver"
+    assert failsafes.active == failsafes.latched == Failsafe.ESTOP, "it is not a fault of the motor driver"
     assert [text for text in car.texts if "EMERGENCY" in text] == [f"EMERGENCY STOP by button: {PRESSED}"]
     assert not said(car, "Motor driver failed")
 

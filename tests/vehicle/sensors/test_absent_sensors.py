@@ -89,7 +89,7 @@ def test_without_its_encoders_a_rover_drives() -> None:
     assert said(bench, "encoders sensor: no data for 5 s")
     bench.drive()
     bench.wait(5.0, AHEAD)
-    assert bench.turning, "a speed that nobody measures is no blocked rover"
+    assert bench.turning, "a speed that nobody measures is not a blocked rover"
 
 
 def test_a_sensor_that_is_there_says_so() -> None:

@@ -65,7 +65,7 @@ def find_command(text: str, kind: PlanKind) -> int | str:
         names = {each.name: number for number, each in MISSION_COMMANDS.items() if number not in _NAMES}
     if words.isdecimal():
         known = kind is PlanKind.MISSION or int(words) in names.values()
-        return int(words) if known and int(words) <= 0xFFFF else f"{words} is no command of this plan"
+        return int(words) if known and int(words) <= 0xFFFF else f"{words} is not a command of this plan"
     return _find_name(words, names)
 
 

@@ -39,7 +39,7 @@ class PlanCopies:
         return PlanRequest(), PlanTrackRequest(), *self._page_request()
 
     def show_view(self, view: View) -> PlanKind | None:
-        """Take a view; return the plan that is whole with it. Those of another vehicle are dropped."""
+        """Show a view; return the plan that is whole with it. Those of another vehicle are dropped."""
         match view:
             case PlanView():
                 if self.view is not None and view.system != self.view.system:

@@ -96,7 +96,7 @@ class PlanEditor:
     # ---- plans of the vehicle and of files ----
 
     def load_base(self, kind: PlanKind, items: Items) -> None:
-        """Take a plan of the vehicle. Edits stay; without any the plan is shown as it is there."""
+        """Show a plan of the vehicle. Edits stay; without any the plan is shown as it is there."""
         if not self.diff(kind).count:
             if self._rows[kind] and not items:
                 self._remember()  # cleared there: undo has it back

@@ -19,13 +19,13 @@ class ValueEditor:
         self._place_cursor()
 
     def set_info(self, info: ParamInfo) -> None:
-        """Take the texts of the parameter."""
+        """Store the texts of the parameter."""
         if info != self.info:
             self.info = info
             self._place_cursor()
 
     def type(self, text: str) -> None:
-        """Take the text of the field."""
+        """Handle the text of the field."""
         self.text = text
         self._place_cursor()
 

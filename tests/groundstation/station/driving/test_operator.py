@@ -90,7 +90,7 @@ def test_operator_presence_precedes_each_demand_of_our_dialect() -> None:
     assert isinstance(proof, m.RoverOperatorPresence)
     assert (proof.target_system, proof.target_component, proof.session_id, proof.flags) == (1, 1, 7, 3 | 16)
     assert (proof.x, proof.y, proof.z, proof.r) == (600, m.INVALID_AXIS, m.INVALID_AXIS, 0)
-    assert proof.input_count == 2  # Arm and the key; leases and gates are no inputs
+    assert proof.input_count == 2  # Arm and the key; leases and gates are not inputs
     assert 230 <= proof.last_input_age_ms <= 310
     assert proof.echo_time_boot_ms == pytest.approx(cockpit.now * 1000, abs=110)
 

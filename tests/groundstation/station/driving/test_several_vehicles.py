@@ -75,7 +75,7 @@ class Convoy:
         return view
 
     def orders(self, system: int) -> int:
-        """Return the number of received commands that are no queries."""
+        """Return the number of received commands that are not queries."""
         return sum(each.command not in QUERIES for _, each in self.vehicles[system].all(m.CommandLong))
 
     def demands(self, system: int, since: float) -> list[tuple[float, int]]:

@@ -31,7 +31,7 @@ def test_a_word_may_be_the_beginnings_of_the_parts_of_a_name() -> None:
     assert chosen(ParamPageRequest("rcov")) == ["RC_OVERRIDE_TIME"]
     assert chosen(ParamPageRequest("fsge")) == ["FS_GCS_ENABLE"]
     assert chosen(ParamPageRequest("servo_fun")) == ["SERVO1_FUNCTION"]
-    assert chosen(ParamPageRequest("wpd")) == [], "the middle of a part is no beginning"
+    assert chosen(ParamPageRequest("wpd")) == [], "the middle of a part is not a beginning"
 
 
 def test_names_come_before_texts() -> None:

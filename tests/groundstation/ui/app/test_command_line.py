@@ -93,8 +93,8 @@ async def test_a_question_is_answered_by_y_and_by_nothing_else() -> None:
 async def test_a_mistake_stays_to_be_corrected() -> None:
     async with console() as screen:
         await enter(screen, "moed HOLD")
-        await answer(screen, FAILED, "'moed' is no verb")
-        await until(lambda: "'moed' is no verb" in screen.text)
+        await answer(screen, FAILED, "'moed' is not a verb")
+        await until(lambda: "'moed' is not a verb" in screen.text)
         assert isinstance(screen.app.screen, CommandLine)
         assert screen.app.screen.field.value == "moed HOLD"
         await screen.press("escape")

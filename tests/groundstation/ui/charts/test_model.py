@@ -178,7 +178,7 @@ def test_derived_lines_have_names_and_units(tmp_path: Path) -> None:
     made = model(tmp_path)
     made.toggle_rate()
     assert next(made.unit(spec) for spec in made.charts.specs()) == "m/s/s"
-    assert made.scale("x") == "“x” is no number"
+    assert made.scale("x") == "“x” is not a number"
     assert made.scale("0") is not None
     assert made.scale("nan") is not None
     assert made.scale("3.6") is None

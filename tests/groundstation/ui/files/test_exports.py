@@ -68,7 +68,7 @@ async def test_an_export_ends_as_a_request_does(log: Path) -> None:
     assert exports.cancel(3)
     done, refused, stopped = [await ended(exports, number) for number in (1, 2, 3)]
     assert (done.state, done.what, done.detail) == ("accepted", "export a.jsonl", "72 messages")
-    assert (refused.state, "'soon' is no time in a log" in refused.detail) == ("refused", True)
+    assert (refused.state, "'soon' is not a time in a log" in refused.detail) == ("refused", True)
     assert (stopped.state, stopped.detail) == ("cancelled", "nothing is written")
     assert not exports.cancel(1)
     assert {each.name for each in log.parent.iterdir()} == {"a.tlog", "a.jsonl"}

@@ -120,7 +120,7 @@ async def test_file_is_uploaded_to_the_marked_folder_after_a_question(tmp_path: 
         (put,) = screen.station.of(PutFile)
         assert (put.path, put.file) == ("/APM/1-00013.bin", str(tmp_path / "1-00013.bin"))
         await screen.press("U", *["backspace"] * 3, "enter")
-        await until(lambda: "is no file of this machine" in screen.text)
+        await until(lambda: "is not a file of this machine" in screen.text)
         assert len(screen.station.of(PutFile)) == 1
 
 

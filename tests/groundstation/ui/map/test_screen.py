@@ -280,7 +280,7 @@ async def test_a_geojson_file_is_a_layer_behind_the_plans(tmp_path: Path) -> Non
         await screen.show(STANDING)
         assert "meadow" in screen.text
         assert "gate" in screen.text
-        assert not model.editor.edited, "it is no plan"
+        assert not model.editor.edited, "it is not a plan"
         await screen.press("l")
         assert "layers hidden" in screen.text
         assert "meadow" not in screen.text

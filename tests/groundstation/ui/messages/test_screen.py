@@ -252,7 +252,7 @@ async def test_a_rate_is_requested_and_its_end_is_shown() -> None:
 async def test_a_wrong_rate_and_a_message_of_ours_are_not_requested() -> None:
     async with console() as screen:
         await open_sys_status(screen, "R", *"fast", "enter")
-        await until(lambda: "“fast” is no rate" in screen.text)
+        await until(lambda: "“fast” is not a rate" in screen.text)
         await screen.press("end")
         screen.station.offer_view(msgspec.structs.replace(SYS_STATUS_VIEW, system=255, component=190, sent=True,
                                                           name="MANUAL_CONTROL"))  # fmt: skip

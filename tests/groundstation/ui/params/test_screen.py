@@ -212,7 +212,7 @@ async def test_keys_do_not_drive_here() -> None:
         await until(lambda: screen.app.gate.closure == TEXT_FIELD)
         await screen.press(*"ijkl")
         assert not screen.station.of(SetKeyGate)[-1].open
-        assert STOP_KEY not in [stop.reason for stop in screen.station.of(Stop)], "letters are no stop keys in a text"
+        assert STOP_KEY not in [stop.reason for stop in screen.station.of(Stop)], "letters are not stop keys in a text"
 
 
 async def test_names_from_the_link_cannot_write_to_the_terminal() -> None:

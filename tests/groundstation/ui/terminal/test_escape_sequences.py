@@ -1,4 +1,4 @@
-"""Escape sequences that a slow line splits: what is left of them is no key, and stop keys still stop."""
+"""Escape sequences that a slow line splits: what is left of them is not a key, and stop keys still stop."""
 
 from __future__ import annotations
 

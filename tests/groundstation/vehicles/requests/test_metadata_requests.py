@@ -52,7 +52,7 @@ def test_texts_are_downloaded_and_kept() -> None:
     ("files", "words"),
     [
         ({}, "texts of the vehicle: /logs/g.json: "),
-        ({"g.json": b"{"}, "the vehicle's general metadata:1: this is no JSON"),
+        ({"g.json": b"{"}, "the vehicle's general metadata:1: this is not JSON"),
         ({"g.json": GENERAL}, "texts of the vehicle: /logs/p.json: "),
         ({"g.json": GENERAL, "p.json": b"[]"}, "the vehicle's parameter metadata: there is no list"),
     ],

@@ -36,7 +36,7 @@ def test_a_line_has_the_source_and_the_first_time_of_its_text() -> None:
     ours, other = log.build_lines(20.0, 1020.0)
     assert (ours.first, ours.time, ours.count) == (1010.0, 1012.5, 2)
     assert ours.origin == LogOrigin(1, 191, "ArduPilot rover 1")
-    assert other.origin is not None, "the text of another vehicle is no repeat"
+    assert other.origin is not None, "the text of another vehicle is not a repeat"
     assert (other.origin.system, other.first) == (2, None)
 
 

@@ -163,7 +163,7 @@ def test_the_id_of_a_vehicle_is_not_loaded_from_a_file(
     assert {vehicle.params[name].value for name in ("SYSID_THISMAV", "MAV_SYS_ID", "MAV_SYSID")} == {1}
     if vehicle.autopilot == ARDUPILOT:
         assert param(capsys, vehicle, "save", str(file), "--changed", "--yes").code == 0
-        assert "MAV_SYSID" not in file.read_text(), "an id is no setting that was changed"
+        assert "MAV_SYSID" not in file.read_text(), "an id is not a setting that was changed"
 
 
 def test_a_file_of_another_vehicle_names_what_is_not_here(

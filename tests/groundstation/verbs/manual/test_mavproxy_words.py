@@ -20,7 +20,7 @@ SAID = [
     ("fence load fence.txt", "use `groundstation fence put FILE`"),
     ("rc 3 1600", "refused: a vehicle may hold an override"),
     ("module load console", "there are no modules"),
-    ("statsu", "'statsu' is no verb and no endpoint: did you mean `groundstation status`?"),
+    ("statsu", "'statsu' is neither a verb nor an endpoint: did you mean `groundstation status`?"),
     ("nonsense", "'nonsense' is not an endpoint such as"),
 ]
 

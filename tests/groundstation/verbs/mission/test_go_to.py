@@ -139,9 +139,10 @@ def test_refusals(capsys: Capture) -> None:
     ("words", "said"),
     [
         ("goto", "write LAT LON in degrees, or --by"), ("goto 5", "write LAT LON"),
-        ("goto wp", "goto wp 7"), ("goto wp 1.5", "1.5 is no number of an item"),
-        ("goto wp -1", "no number of an item"), ("goto wp 1 --by 1 2", "goto wp 7"), ("goto 0 0", "is no latitude"),
-        ("goto 91 0", "91 0 is no latitude"), ("goto nan 0", "'nan' is not a number"), ("goto --by 1", "expected 2"),
+        ("goto wp", "goto wp 7"), ("goto wp 1.5", "1.5 is not a mission item number"),
+        ("goto wp -1", "not a mission item number"), ("goto wp 1 --by 1 2", "goto wp 7"),
+        ("goto 0 0", "is not a latitude"), ("goto 91 0", "91 0 is not a latitude"),
+        ("goto nan 0", "'nan' is not a number"), ("goto --by 1", "expected 2"),
         ("goto 1 2 --by 1 2", "not both"), ("goto --by 1e9 0", "m at most"), ("speed 0", "not a speed"),
         ("speed inf", "is not a number"), ("speed -1", "not a speed"),
     ],

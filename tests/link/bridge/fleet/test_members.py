@@ -126,7 +126,7 @@ def test_what_exists_is_not_made_again(farm: Path) -> None:
         add_member(farm, "rover1", "drive")
     with pytest.raises(FleetError, match="exists already; add to it"):
         new_fleet(farm.parent, "farm", ["10.0.0.1"])
-    with pytest.raises(FleetError, match="is no name"):
+    with pytest.raises(FleetError, match="is not a name"):
         add_member(farm, "../x", "vehicle")
     assert farm.read_text() == before
 
@@ -136,10 +136,10 @@ def test_what_exists_is_not_made_again(farm: Path) -> None:
     [
         ('role = "drive"', 'role = "drives"', "operators"),
         ("tls/[::]:7447", "tcp/[::]:7447", "listen: 'tcp/[::]:7447' has no certificates; write tls/ or quic/"),
-        ("tls/[::]:7447", "7447", "listen: '7447' is no address; write tls/HOST:PORT"),
+        ("tls/[::]:7447", "7447", "listen: '7447' is not an address; write tls/HOST:PORT"),
         ("alice-1", "rover1-1", "certificate rover1-1 is given twice"),
         ("operators.alice", "operators.rover1", "rover1 is a vehicle and an operator"),
-        ("[vehicles.rover1]", '[vehicles."**"]', "'**' is no name"),
+        ("[vehicles.rover1]", '[vehicles."**"]', "'**' is not a name"),
         ("fleet = ", "flet = ", "did you mean fleet?"),
     ],
 )
@@ -197,7 +197,7 @@ def test_the_commands_say_what_to_do_next(
     assert "there: groundstation zenoh:bob.json5/farm" in capsys.readouterr().out
     for wrong, told in (
         (["new", "farm", "--host", "10.0.0.1"], "exists already"),
-        (["new", "barn", "--host", "a/b"], "--host: 'tls/a/b:7447' is no address"),
+        (["new", "barn", "--host", "a/b"], "--host: 'tls/a/b:7447' is not an address"),
         (["add", "vehicle", "rover1"], "fleet.toml: No such file or directory"),
         (["add", "operator", "carl", "--role", "boss"], "choose from"),
     ):

@@ -49,7 +49,7 @@ def test_a_router_that_answers_goes_on_for_ever(router: RouterProcess) -> None:
     probe = probe_of(router, [])
     assert [probe.check() for _ in range(5)] == [None] * 5
     assert router.process.poll() is None
-    assert "router from" not in router.log.read_text(), "its own probes are no visitors"
+    assert "router from" not in router.log.read_text(), "its own probes are not visitors"
 
 
 def test_three_probes_in_a_row_without_an_answer_end_it(router: RouterProcess) -> None:

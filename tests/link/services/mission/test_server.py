@@ -104,7 +104,7 @@ def test_choosing_an_item_is_answered_to_all() -> None:
     assert (outgoing.message.seq, outgoing.peer, vehicle.selected) == (1, None, [1])
 
 
-# ---- items that are no part of a plan ----
+# ---- items that are not part of a plan ----
 
 
 def lone(current: int, target: int = 1, component: int = 1, kind: int = 0) -> m.MissionItemInt:

@@ -84,7 +84,7 @@ def test_66_silence_is_asked_again_then_cancelled_and_plan_stays() -> None:
 
 
 def test_who_refuses_floats_is_asked_in_integers_from_then_on() -> None:
-    """As MAVSDK does: its refusal is no wish to end."""
+    """As MAVSDK does: its refusal is not a wish to end."""
     vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 2))
     [old] = vehicle.tick(REQUEST_TIMEOUT)
@@ -109,7 +109,7 @@ def test_67_item_out_of_order_is_dropped_and_the_right_one_asked() -> None:
     vehicle = MissionRig()
     vehicle.ask(m.MissionCount(1, 1, 3), 0.0)
     vehicle.give(waypoint(0), 0, 0.1)
-    assert vehicle.give(waypoint(0), 0, 0.11) == [], "a repeat is no reason to ask"
+    assert vehicle.give(waypoint(0), 0, 0.11) == [], "a repeat is not a reason to ask"
     [again] = vehicle.give(waypoint(2), 2, 0.4)
     assert again.seq == 1
     vehicle.give(waypoint(1), 1, 0.5)

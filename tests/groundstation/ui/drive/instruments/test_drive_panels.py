@@ -57,7 +57,7 @@ def test_each_bound_is_a_line_with_its_action_limit_and_value() -> None:
     assert lines[0].split() == ["no", "command", "neutral", "0.45", "s", "▄░░░░░░░░", "0.04", "s"]
     assert lines[5].endswith("11.8 V")
     assert lines[6].endswith(" 3°")
-    assert "off" in lines[4], "a fence that is off is no failsafe of the link"
+    assert "off" in lines[4], "a fence that is off is not a failsafe of the link"
     assert lines[-1] == "a full bar stops it"
 
 

@@ -117,8 +117,8 @@ def test_commands_are_found_by_what_is_typed(text: str, command: int) -> None:
 def test_a_command_that_is_not_clear_lists_what_there_is() -> None:
     assert find_command("loiter_t", MISSION) == "several commands: NAV_LOITER_TIME, NAV_LOITER_TURNS, NAV_LOITER_TO_ALT"
     assert find_command("fly me to the moon", MISSION) == "no command is called 'fly me to the moon'"
-    assert find_command("70000", MISSION) == "70000 is no command of this plan"
-    assert find_command("16", FENCE) == "16 is no command of this plan"
+    assert find_command("70000", MISSION) == "70000 is not a command of this plan"
+    assert find_command("16", FENCE) == "16 is not a command of this plan"
     assert find_command("circle out", FENCE) == 5004
     assert find_command("waypoint", RALLY) == "the only command of this plan is rally point"
 

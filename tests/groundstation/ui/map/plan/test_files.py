@@ -41,7 +41,7 @@ def run(capsysbinary: pytest.CaptureFixture[bytes], *arguments: str) -> tuple[in
 @pytest.mark.parametrize(
     ("name", "text", "fault"),
     [
-        ("a.plan", "{", "a.plan:1: this is no JSON"),
+        ("a.plan", "{", "a.plan:1: this is not JSON"),
         ("a.plan", '{"fileType": "Plan", "mission": {"items": [{"type": "SimpleItem", "command": 16, "frame": 3, '
          '"params": [0, 0, 0, 0, 95, 8, 0]}]}}', "mission: items 1: latitude 95 is not in -90 to 90"),
         ("a.plan", '{"fileType": "Plan", "mission": {"items": [NaN]}}', "NaN is not a number of JSON"),

@@ -140,7 +140,7 @@ def test_what_a_refusal_leaves() -> None:
 def test_undo_and_redo() -> None:
     changes = PendingChanges()
     changes.set([PendingChange("A", 1.0, 2.0), PendingChange("B", 1.0, 1.0)])
-    assert list(changes.by_name) == ["A"], "the value that it has is no change"
+    assert list(changes.by_name) == ["A"], "the value that it has is not a change"
     changes.set([PendingChange("A", 1.0, 3.0)])
     assert changes.drop("A")
     assert not changes.drop("A")
