@@ -32,7 +32,7 @@ class Place(NamedTuple):
     longitude: float
 
 
-class Way(NamedTuple):
+class Separation(NamedTuple):
     """The straight way from one place to another."""
 
     distance: float
@@ -61,12 +61,12 @@ class LocalFrame(msgspec.Struct, frozen=True):
         return max(LEAST_SHRINK, math.cos(math.radians(self.origin.latitude)))
 
 
-def find_way(start: Place | None, end: Place | None) -> Way | None:
+def find_separation(start: Place | None, end: Place | None) -> Separation | None:
     """Return the way between two places that are some km apart at most; None if one is not known."""
     if start is None or end is None:
         return None
     point = LocalFrame(start).to_point(end)
-    return Way(math.hypot(*point), bearing((0.0, 0.0), point))
+    return Separation(math.hypot(*point), bearing((0.0, 0.0), point))
 
 
 def bearing(start: Point, end: Point) -> float:

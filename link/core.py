@@ -192,7 +192,7 @@ class EarlyActor(Protocol):
 
 
 @runtime_checkable
-class PlaceKeeper(Protocol):
+class PeerReservation(Protocol):
     """A core that is controlled by one peer, for which each link keeps places."""
 
     @property
@@ -225,7 +225,7 @@ class Onlooker(Protocol):
     """A core that looks at some vehicles only; of others a little telemetry is enough, where a link can choose."""
 
     @property
-    def looked_at(self) -> frozenset[int] | None:
+    def interesting_systems(self) -> frozenset[int] | None:
         """System ids of the vehicles that it looks at; None: all."""
 
 

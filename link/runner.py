@@ -19,7 +19,7 @@ from link.core import (
     LinkReport,
     Onlooker,
     Outgoing,
-    PlaceKeeper,
+    PeerReservation,
     Received,
     RefusalListener,
     RestingCore,
@@ -27,13 +27,13 @@ from link.core import (
     SendListener,
     TimeTeller,
 )
+from link.link_signing import LinkSigning
 from link.protocol.channel import Channel
 from link.protocol.frame import read_header
 from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
 from link.routing.router import Delivery, Router
 from link.runtime.multiples import next_multiple
-from link.signing_keeper import SigningKeeper
 from link.transport.transport import Link, RoleTransport, SelectiveTransport
 
 log = logging.getLogger(__name__)
@@ -67,7 +67,7 @@ class Runner:
         broken: Callable[[Exception], None] | None = None,
         log_tap: LogTap | None = None,
         sent: SentCallback | None = None,
-        signing: SigningKeeper | None = None,
+        signing: LinkSigning | None = None,
     ) -> None:
         """`log_tap` records what all links receive and what the core sends, even without any peer.
 
@@ -84,13 +84,13 @@ class Runner:
         self._refused = core.handle_refused if isinstance(core, RefusalListener) else None
         self._may_send = core.may_send if isinstance(core, SendGuard) else None
         self._on_sent = sent
-        self._keeper = core if isinstance(core, PlaceKeeper) else None
+        self._reservation = core if isinstance(core, PeerReservation) else None
         self._teller = core if isinstance(core, TimeTeller) else None
         self._resting = core if isinstance(core, RestingCore) else None
         self._rest: float | None = None
         """s between ticks while the core rests."""
         self._onlooker = core if isinstance(core, Onlooker) else None
-        self._looked_at: frozenset[int] | None = None
+        self._interesting: frozenset[int] | None = None
         self._early = core if isinstance(core, EarlyActor) else None
         self._early_timer: asyncio.TimerHandle | None = None
         self._ended: asyncio.Future[None] | None = None
@@ -124,7 +124,7 @@ class Runner:
         if self._refused and isinstance(link.transport, RoleTransport):
             link.refusal = link.transport.refusal
         if self._onlooker and isinstance(link.transport, SelectiveTransport):
-            link.look_at = link.transport.look_at
+            link.set_interest = link.transport.set_interest
         if self._signing is not None:
             link.channel.guard = self._signing.guard(link.channel.index)
         self._look_at(link)
@@ -312,19 +312,19 @@ class Runner:
         """Tell the links that can choose which vehicles are looked at, if that has changed."""
         if self._onlooker is None:
             return
-        links = [link for link in self._links.values() if link.look_at is not None]
+        links = [link for link in self._links.values() if link.set_interest is not None]
         if not links:
             return
-        systems = self._onlooker.looked_at
-        if systems != self._looked_at:
-            self._looked_at = systems
+        systems = self._onlooker.interesting_systems
+        if systems != self._interesting:
+            self._interesting = systems
             for link in links:
                 self._look_at(link)
 
     def _look_at(self, link: Link) -> None:
-        if link.look_at is not None:
-            link.look_at(self._looked_at)
-            link.channel.look_at(self._looked_at, time.monotonic())
+        if link.set_interest is not None:
+            link.set_interest(self._interesting)
+            link.channel.set_interest(self._interesting, time.monotonic())
 
     def observe(self) -> None:
         """Report the links to the core now, beside the reports each REPORT_PERIOD."""
@@ -335,8 +335,8 @@ class Runner:
             self._signing.update(now)
         for link in self.links:
             link.channel.expire_peers(now)
-            if self._keeper is not None:
-                link.channel.reserve(self._keeper.reserved_ids)
+            if self._reservation is not None:
+                link.channel.reserve(self._reservation.reserved_ids)
         reports = [self._report(link, now) for link in self.links]
         for report in reports:
             if event := self._events.update(report):

@@ -16,7 +16,7 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from link.core import Core, LinkReport, Outgoing, Peer, PlaceKeeper, Received, TimeTeller
+from link.core import Core, LinkReport, Outgoing, Peer, PeerReservation, Received, TimeTeller
 from vehicle.drive.gate import Outputs
 from vehicle.motors import MotorError, Motors, StopPressedError
 from vehicle.readings import Readings
@@ -29,7 +29,7 @@ MOTOR_RETRY_TIME = 1.0
 bus, and must not be tried so often that the bus stays busy."""
 
 
-class Controller(Core, TimeTeller, PlaceKeeper, Protocol):
+class Controller(Core, TimeTeller, PeerReservation, Protocol):
     """Decides the motor outputs; vehicle.rover.Rover is one."""
 
     @property

@@ -87,7 +87,7 @@ class Outbox:
         condition = (self._safety.state, self._safety.mode_generation, failsafes.active, failsafes.latched)
         if condition != self._condition or self._rack.repeating or self._telemetry.shortest < PERIOD:
             self._condition = condition
-            self._activity.stir(now)
+            self._activity.resume_full_rate(now)
         whole = self._services.is_due(now)
         self.queue_due(now, all_changes=whole)
         if whole:
@@ -97,5 +97,5 @@ class Outbox:
     def _run_services(self, now: float) -> None:
         found = self._dispatcher.tick(now)
         if found:
-            self._activity.stir(now)
+            self._activity.resume_full_rate(now)
             self._outgoing += found

@@ -22,7 +22,7 @@ class Activity:
     def __init__(self, now: float) -> None:
         self._until = now + BUSY_TIME
 
-    def stir(self, now: float) -> None:
+    def resume_full_rate(self, now: float) -> None:
         """Note that something has happened that may take several cycles."""
         self._until = now + BUSY_TIME
 

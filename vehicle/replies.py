@@ -28,7 +28,7 @@ ASKER_TEXTS = 8
 """Texts to one ground station that are remembered to find repeats."""
 
 
-class Asker(Protocol):
+class Requester(Protocol):
     """The sender of a message or a command: `link.core.Received` and `CommandRequest` are two."""
 
     @property
@@ -61,7 +61,7 @@ class ReplyQueue:
         self._budgets: dict[Peer, _Budget] = {}
         self._waiting: list[tuple[Peer, Severity, str]] = []
 
-    def add(self, asker: Asker, severity: Severity, text: str, cost: int, now: float) -> None:
+    def add(self, asker: Requester, severity: Severity, text: str, cost: int, now: float) -> None:
         """Queue a text of `cost` messages, unless it is a repeat or the budget of its asker is used up.
 
         To an asker without HEARTBEAT nothing is sent: its address may be another's.

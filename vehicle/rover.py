@@ -155,7 +155,7 @@ class Rover:
         if route is None or not (received.introduced or route.accepts_unintroduced(received)):
             return
         if not isinstance(message, ROUTINE):
-            self._activity.stir(now)
+            self._activity.resume_full_rate(now)
         effect = route.effect
         before = self._motion_inputs() if effect is _DEMAND else None
         replies = route.handle(received, message, now)
@@ -210,7 +210,7 @@ class Rover:
         if before is not SafetyState.OFF:
             self._safety.update_estop_input(reason, now)
         if self._safety.state is not before:
-            self._activity.stir(now)
+            self._activity.resume_full_rate(now)
             self._update_outputs(now)
 
     def motor_failed(self, reason: str, now: float) -> None:
@@ -277,7 +277,7 @@ class Rover:
         """Return whether a demand must be acted upon at once; one that repeats the last one waits for the cycle."""
         demand, state, generation = before
         if self._safety.state is not state or self._safety.mode_generation != generation:
-            self._activity.stir(now)
+            self._activity.resume_full_rate(now)
             return True
         if self._control.demand is demand:
             return False

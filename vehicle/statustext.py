@@ -17,7 +17,7 @@ from dialects.messages import StatusText
 from link.core import Outgoing
 from link.protocol.rate import TokenBucket
 from vehicle.repeats import RepeatFilter
-from vehicle.replies import Asker, ReplyQueue
+from vehicle.replies import ReplyQueue, Requester
 
 CHUNK_SIZE = 50
 """Bytes of text in one message (common.xml, STATUSTEXT)."""
@@ -91,11 +91,11 @@ class StatusTextQueue:
         if self._is_first(key):
             self.send(severity, text, now)
 
-    def reply(self, asker: Asker, severity: Severity, text: str, now: float) -> None:
+    def reply(self, asker: Requester, severity: Severity, text: str, now: float) -> None:
         """Queue a text, mostly a refusal, for the ground station that sent the request."""
         self._replies.add(asker, severity, text, _cost(text), now)
 
-    def reply_once(self, key: str, asker: Asker, severity: Severity, text: str, now: float) -> None:
+    def reply_once(self, key: str, asker: Requester, severity: Severity, text: str, now: float) -> None:
         """Queue a reply only the first time for its key; `reset_once` allows it again."""
         if self._is_first(key):
             self.reply(asker, severity, text, now)

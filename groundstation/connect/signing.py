@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 
 from link.key_watch import KeyWatch
+from link.link_signing import LinkSigning
 from link.protocol.signing_guard import SigningPolicy
 from link.signing.key_file import KeyFileError, load_keys, station_key_file
 from link.signing.keys import KeyRing
 from link.signing.memory_file import FILE, MemoryFileError
 from link.signing.role import Role
-from link.signing_keeper import SigningKeeper
 
 
 class SigningError(Exception):
     """The keys cannot be used; the text is one line."""
 
 
-def open_signing(now: float, *, key: str | None = None, required: bool = False) -> SigningKeeper | None:
+def open_signing(now: float, *, key: str | None = None, required: bool = False) -> LinkSigning | None:
     """Return what signs and verifies for a verb; None without keys. Raises SigningError.
 
     `key`: name of the key that signs, None for the chosen one. `required`: unsigned frames are dropped. Otherwise they
@@ -27,7 +27,7 @@ def open_signing(now: float, *, key: str | None = None, required: bool = False) 
         ring = _choose(load_keys(station_key_file()), key, required)
     except KeyFileError as error:
         raise SigningError(str(error)) from None
-    return SigningKeeper(ring, None, now, policy=_policy(required)) if ring.keys else None
+    return LinkSigning(ring, None, now, policy=_policy(required)) if ring.keys else None
 
 
 class StationSigning:
@@ -42,7 +42,7 @@ class StationSigning:
         try:
             self._watch = KeyWatch(station_key_file())
             ring = _choose(self._watch.ring, key, required)
-            self.keeper = SigningKeeper(ring, self._watch.path.with_name(FILE), now, policy=_policy(required))
+            self.link_signing = LinkSigning(ring, self._watch.path.with_name(FILE), now, policy=_policy(required))
         except (KeyFileError, MemoryFileError) as error:
             raise SigningError(str(error)) from None
 
@@ -69,10 +69,10 @@ class StationSigning:
 
     def _take(self, ring: KeyRing) -> None:
         self.version += 1
-        self.keeper.signing.set_ring(ring)
+        self.link_signing.signing.set_ring(ring)
 
     def _describe(self, *, missing: bool) -> str:
-        ring = self.keeper.signing.ring
+        ring = self.link_signing.signing.ring
         if not ring.keys:
             drops = "and nothing unsigned is taken" if self._required else "and nothing is verified"
             return f"keys changed: there is none; nothing is signed, {drops}"

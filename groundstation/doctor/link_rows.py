@@ -105,7 +105,7 @@ def vehicle(facts: DoctorFacts) -> ChainFinding:
     if view is None:
         return unknown("no HEARTBEAT of a vehicle yet", "switch the vehicle on")
     if not view.alive:
-        stops = f": {view.without_link}" if view.without_link else ""
+        stops = f": {view.link_loss_action}" if view.link_loss_action else ""
         return fault(f"{view.name} lost for {view.silence:.0f} s{stops}", "check power and link", "app.links")
     if view.twins:
         advice = "give one of them another id (MAV_SYSID, SYSID_THISMAV, MAV_SYS_ID)"

@@ -27,7 +27,7 @@ def control(facts: DoctorFacts) -> ChainFinding:
         )
     if view.in_control:
         return ok("this station")
-    if view.twin:
+    if view.duplicate_gcs:
         return fault(f"another program with our id {view.driver}", f"end it, or {facts.another_id}", "app.links")
     if view.driver == facts.system:
         return ok(f"ground station {view.driver}")

@@ -15,6 +15,6 @@ def answer_about(sock: socket.socket, station: Station, screens: ScreenSet) -> N
     selected = station.fleet.selected
     others = [contact for contact in station.fleet if contact is not selected]
     contacts = others if selected is None else [selected, *others]
-    about = About(tuple(each.state.name for each in contacts), station.surroundings.endpoints, screens.names)
+    about = About(tuple(each.state.name for each in contacts), station.station_info.endpoints, screens.names)
     with sock, contextlib.suppress(OSError):  # the program waits no longer
         sock.send(encode_about(about))

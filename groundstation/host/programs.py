@@ -39,7 +39,7 @@ class VerbSet:
         else:
             port = VerbPort(sock, station.relay, (name, hello.takes_part, follows), self._flush, self._remove)
         self._ports.add(port)
-        port.start(VerbReady(*self._ids, station.operator.session, station.surroundings.endpoints, follows))
+        port.start(VerbReady(*self._ids, station.operator.session, station.station_info.endpoints, follows))
 
     def close(self) -> None:
         """End all connections."""

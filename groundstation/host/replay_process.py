@@ -19,8 +19,8 @@ from groundstation.host.screen_port import ScreenPort
 from groundstation.host_process import REPLAY
 from groundstation.intents.session import Quit
 from groundstation.ipc import IntentBatch, StationReady, encode
-from groundstation.replay.desk import ReplayDesk
 from groundstation.replay.log_clock import LogClock
+from groundstation.replay.log_replay import LogReplay
 from groundstation.replay.time_text import TimeError, parse_time
 from groundstation.station.station import Station
 from groundstation.station_socket.hello import StationFailed
@@ -101,8 +101,8 @@ def open_log(path: Path) -> FileSource:
 class ReplayProcess:
     """One log and the pipe to the screen."""
 
-    def __init__(self, desk: ReplayDesk, source: FileSource, pipe: socket.socket) -> None:
-        self._desk = desk
+    def __init__(self, replay: LogReplay, source: FileSource, pipe: socket.socket) -> None:
+        self._replay = replay
         self._source = source
         self._port = ScreenPort(pipe, self)
         self._ended: asyncio.Future[None] | None = None
@@ -139,14 +139,14 @@ class ReplayProcess:
         if now >= self._growth_due:
             self._growth_due = now + GROWTH_PERIOD
             self._source.measure()
-        self._desk.advance(now)
+        self._replay.advance(now)
         if now >= self._snapshot_due:
             self._snapshot_due = now + SNAPSHOT_PERIOD
-            self._port.send(self._desk.snapshot())
-        self._desk.send_views(self._port.send, now)
+            self._port.send(self._replay.snapshot())
+        self._replay.send_views(self._port.send, now)
         more, loop = True, asyncio.get_running_loop()
         while more and loop.time() < now + SLICE:
-            more = self._desk.work()
+            more = self._replay.work()
         return 0.0 if more else max(0.0, now + STEP - loop.time())
 
     def _end(self) -> None:
@@ -161,7 +161,7 @@ class ReplayProcess:
             if isinstance(intent, Quit):
                 self._end()
             else:
-                self._desk.handle(intent)
+                self._replay.handle(intent)
 
     def handle_screen_end(self, port: ScreenPort, now: float) -> None:
         """End with the screen."""
@@ -197,19 +197,19 @@ def _run(options: argparse.Namespace, source: FileSource, pipe: socket.socket) -
     def build(system: int, now: float) -> Station:
         return Station((name,), system=system, texts=texts, now=now)
 
-    desk = ReplayDesk(str(options.file.absolute()), source, build, at=options.at, speed=options.speed)
+    replay = LogReplay(str(options.file.absolute()), source, build, at=options.at, speed=options.speed)
     gc.collect()
     gc.freeze()
     os.nice(NICENESS)
     try:
-        return run_loop(_replay(desk, source, pipe))
+        return run_loop(_show(replay, source, pipe))
     except Exception:
         log.exception("replay crashed")
         return 1
 
 
-async def _replay(desk: ReplayDesk, source: FileSource, pipe: socket.socket) -> int:
-    return await ReplayProcess(desk, source, pipe).run()
+async def _show(replay: LogReplay, source: FileSource, pipe: socket.socket) -> int:
+    return await ReplayProcess(replay, source, pipe).run()
 
 
 def _parser() -> argparse.ArgumentParser:

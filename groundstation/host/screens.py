@@ -92,7 +92,7 @@ class ScreenSet:
         views = self._station.views if owner else self._station.views.open_another()
         self._attached[port] = _Attached(port, screen, views, owner)
         if not owner:
-            port.send(StationReady(self._station.surroundings.endpoints, screen.first_request))
+            port.send(StationReady(self._station.station_info.endpoints, screen.first_request))
         port.start()
         return None
 
@@ -182,7 +182,7 @@ class ScreenSet:
         if ends and (isinstance(intent, Quit) or self._lifetime is Lifetime.SCREEN):
             self._host.end(intent if isinstance(intent, Quit) else Quit())
         elif drives and isinstance(intent, Quit) and intent.disarm:
-            self._station.departure.begin(now, disarm=True)
+            self._station.shutdown.begin(now, disarm=True)
             attached.leaving = True
             self._host.handle(Stop("quitting"), now, now)
         else:
@@ -195,7 +195,7 @@ class ScreenSet:
         self.lease.tick(now)
         for attached in list(self._attached.values()):
             attached.views.send_due(attached.port.send, now, time.time())
-            if attached.leaving and self._station.departure.finished:
+            if attached.leaving and self._station.shutdown.finished:
                 self._remove(attached, now)
 
     def show(self, snapshot: Snapshot, now: float) -> None:

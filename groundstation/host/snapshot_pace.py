@@ -26,7 +26,7 @@ class SnapshotPace:
 
     def __init__(self) -> None:
         self._sent_at = self._lively_at = -math.inf
-        self._decisive: Hashable = None
+        self._urgent_state: Hashable = None
 
     def note(self, now: float) -> None:
         """Note that something was done, of which a screen waits to see the effect."""
@@ -36,13 +36,13 @@ class SnapshotPace:
         """Return the s until the next call of `is_due`; `rests` as there."""
         return CALLS_AT_REST if self._rests(now, rests=rests) else SLOT
 
-    def is_due(self, now: float, *, rests: bool, decisive: Hashable) -> bool:
+    def is_due(self, now: float, *, rests: bool, urgent_state: Hashable) -> bool:
         """Return whether to send a snapshot now; it then counts as sent.
 
-        `rests`: nothing is armed or under way. `decisive`: what a driver must see in the next SLOT if it changes.
+        `rests`: nothing is armed or under way. `urgent_state`: what a driver must see in the next SLOT if it changes.
         """
-        if decisive != self._decisive:
-            self._decisive, self._lively_at = decisive, now
+        if urgent_state != self._urgent_state:
+            self._urgent_state, self._lively_at = urgent_state, now
         elif now - self._sent_at < self._period(now, rests=rests) - SLOT / 2:  # the calls come a little early or late
             return False
         self._sent_at = now

@@ -42,12 +42,12 @@ class SlotTimer:
         self._next = asyncio.get_running_loop().call_soon(self._run)
 
     def end(self) -> None:
-        """Call `work` no more; also `rouse` has no effect from now on."""
+        """Call `work` no more; also `resume_full_rate` has no effect from now on."""
         self._ended = True
         if self._next is not None:
             self._next.cancel()
 
-    def rouse(self) -> None:
+    def resume_full_rate(self) -> None:
         """Schedule the next slot at the full rate; end an idle period at once."""
         if self._next is not None and self._period > SLOT and not self._ended:
             self._next.cancel()
@@ -78,7 +78,7 @@ class SnapshotSender:
 
     def send_due(self, now: float) -> None:
         """Send what the screens do not have yet: a snapshot, if one is due, and the views that have changed."""
-        if self.pace.is_due(now, rests=self._station.rests, decisive=self._station.decisive(now)):
+        if self.pace.is_due(now, rests=self._station.rests, urgent_state=self._station.urgent_state(now)):
             self.send(now)
         self._screens.send_views(now)
 
@@ -88,7 +88,7 @@ class SnapshotSender:
 
     def send(self, now: float) -> None:
         """Send a snapshot."""
-        self._station.surroundings.addresses = self._addresses.find(now)
+        self._station.station_info.addresses = self._addresses.find(now)
         wall = time.time() - (asyncio.get_running_loop().time() - now)  # of the same moment as `now`
         shown = self._station.snapshot(now, wall)
         self._last = msgspec.structs.replace(shown, number=self._last.number + 1)

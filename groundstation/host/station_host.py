@@ -11,9 +11,9 @@ from typing import Any
 
 from dialects.enums import Severity, StationEventKind
 from dialects.printable import printable
-from groundstation.connect.desk import ConnectDesk
+from groundstation.connect.link_manager import LinkManager
 from groundstation.connect.signing import StationSigning
-from groundstation.disk.desk import DiskDesk
+from groundstation.disk.file_jobs import FileJobs
 from groundstation.host.programs import ProgramSet
 from groundstation.host.screens import Lifetime, ScreenSet
 from groundstation.host.snapshot_sender import SlotTimer, SnapshotSender
@@ -22,7 +22,7 @@ from groundstation.intents.session import Quit
 from groundstation.intents.union import AnyIntent
 from groundstation.recording.station_recording import StationRecording
 from groundstation.sitl.sitl import SimulatorControl
-from groundstation.station.driving.departure import DISARM_AFTER, DISARM_TIMEOUT
+from groundstation.station.driving.shutdown import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.process.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from groundstation.watchdog.feed import WatchdogFeed
@@ -75,11 +75,11 @@ class StationHost:
             broken=self._handle_crash,
             log_tap=recording.log_tap if recording else None,
             sent=watchdog.record_sent,
-            signing=signing.keeper if signing else None,
+            signing=signing.link_signing if signing else None,
         )
         self._programs = ProgramSet(station, self.screens, ids, self._runner.flush)
-        self._disk = DiskDesk(station, self._runner.flush)
-        self.connect = ConnectDesk(self._runner, station, ids, sent, simulators)
+        self._disk = FileJobs(station, self._runner.flush)
+        self.connect = LinkManager(self._runner, station, ids, sent, simulators)
         self._slots = SlotTimer(self._keep_up, self._snapshots.call_period)
         self._broken = self._ending = False
 
@@ -98,7 +98,7 @@ class StationHost:
             self.add_to_log(loop.time(), f"no other program can use this station: {problem}")
         listens()
         self._slots.start()
-        self._station.on_rest_end = self._slots.rouse
+        self._station.on_rest_end = self._slots.resume_full_rate
         self._station.fleet.on_first = lambda: loop.call_soon(lambda: self._snapshots.send(loop.time()))
         try:
             await self._runner.run()
@@ -119,7 +119,7 @@ class StationHost:
     def handle(self, intent: AnyIntent, now: float, read_at: float) -> None:
         """Carry out an intent of a screen."""
         self._snapshots.pace.note(now)
-        self._slots.rouse()
+        self._slots.resume_full_rate()
         self._station.handle_intent(intent, now, read_at=read_at)
 
     def flush(self) -> None:
@@ -160,7 +160,7 @@ class StationHost:
         if self._signing is None or text is None:
             return
         for link in self._runner.links:
-            link.channel.guard = self._signing.keeper.guard(link.channel.index)
+            link.channel.guard = self._signing.link_signing.guard(link.channel.index)
         self._watchdog.set_flags(keys_version=self._signing.version)
         self.add_to_log(now, text)
 

@@ -71,7 +71,7 @@ def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedSta
 
 def _start_watchdog(options: argparse.Namespace, pipe: socket.socket | None, signing: StationSigning) -> WatchdogFeed:
     """Start the watchdog; without a screen its end of the pipe leads nowhere."""
-    ids, keys = (options.system, COMPONENT), (signing.keeper.signing, signing.reload)
+    ids, keys = (options.system, COMPONENT), (signing.link_signing.signing, signing.reload)
     if pipe is not None:
         return WatchdogFeed.start(pipe, options.terminal, ids, *keys)
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

@@ -19,10 +19,10 @@ from groundstation.station_socket.relay import (
     BATCH,
     MAX_RELAYED,
     DemandRefused,
-    Heard,
     HeardMessage,
     LinksReport,
     MessageRefused,
+    ReceivedBatch,
     decode_from_verb,
     encode,
 )
@@ -92,7 +92,7 @@ class VerbPort:
 
     def _deliver(self, received: Sequence[Received]) -> None:
         for first in range(0, len(received), BATCH):
-            self._send(Heard(tuple(map(_heard, received[first : first + BATCH]))))
+            self._send(ReceivedBatch(tuple(map(_heard, received[first : first + BATCH]))))
 
     def _report(self, reports: Sequence[LinkReport]) -> None:
         self._send(LinksReport(tuple(replace(each, audience=()) for each in reports)))  # addresses have no one type

@@ -59,4 +59,4 @@ class WatchSticks(Intent, frozen=True):
 
 
 SETUP_INTENTS: tuple[type[Intent], ...] = (TurnMotor, StopMotorTest, ConfirmPosition, WatchSticks)
-"""Those that station/doctor/doctor_desk.py carries out; the others are requests to services."""
+"""Those that station/doctor/diagnostics.py carries out; the others are requests to services."""

@@ -34,7 +34,7 @@ class StationRecording:
         for news in self._session.tick(now, vehicle=bool(self._station.fleet.system_ids)):
             log.log(logging.WARNING if news.severity <= Severity.WARNING else logging.INFO, news.text)
             self._station.log.add(now, "station", news.text, news.severity)
-        self._station.surroundings.recording = self._session.view(now)
+        self._station.station_info.recording = self._session.view(now)
 
     def close(self) -> None:
         """Write the rest; a log without this note was ended by a kill."""

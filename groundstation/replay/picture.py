@@ -29,7 +29,7 @@ WARNING = 4
 
 
 class OpenLog(Protocol):
-    """What a picture is built from: a ReplayDesk."""
+    """What a picture is built from: a LogReplay."""
 
     name: str
     path: str

@@ -65,7 +65,7 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """System id of the ground station in control, 0 for none; None if the vehicle sends no CONTROL_STATUS."""
     in_control: bool = False
     """We are in control; without CONTROL_STATUS: the vehicle accepted arming or a control request from us."""
-    twin: bool = False
+    duplicate_gcs: bool = False
     """The ground station in control is another program with our system id."""
     control_wait: float | None = None
     """Seconds for which the station in control may still answer our request; None without a request."""
@@ -119,7 +119,7 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """That a vehicle without our failsafes is outside its fence, e.g. "outside the fence"; "" if not, or not known."""
     failsafe_in: float | None = None
     """Seconds to the next failsafe action."""
-    without_link: str | None = None
+    link_loss_action: str | None = None
     """What the vehicle does when it loses us, e.g. "it stops by itself"; None: not known."""
     prearm: bool | None = None
     """The pre-arm checks are passed (SYS_STATUS); None if the vehicle does not report that."""

@@ -7,16 +7,16 @@ from collections.abc import MutableMapping, Sequence
 from groundstation.input.style import Style
 from groundstation.station.component import COMPONENT
 from groundstation.station.driving.commander import Commander
-from groundstation.station.driving.departure import Departure
 from groundstation.station.driving.driving import DrivingController
 from groundstation.station.driving.handover import Handover
 from groundstation.station.driving.link_closing import LinkClosing
 from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.driving.shutdown import StationShutdown
 from groundstation.station.links.link_monitor import LinkMonitor
 from groundstation.station.notes.operator_log import OperatorLog
 from groundstation.station.relay.refusals import Refusals
 from groundstation.station.relay.verb_relay import VerbRelay
-from groundstation.station.services.service_desk import ServiceDesk, TransferHold
+from groundstation.station.services.service_requests import ServiceRequests, TransferPause
 from groundstation.station.services.vehicle_queries import VehicleQueries
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import MessageLog
@@ -48,10 +48,10 @@ class CoreParts:
         self.links = LinkMonitor(endpoints, log, system, now)
         stats = self.links.stats
         commander = self.commander = Commander(log, *ids)
-        hold = TransferHold(fleet, operator, stats)
-        self.services = ServiceDesk(fleet, commander, log, *ids, texts=docs_cache, is_held=hold.is_held)
+        hold = TransferPause(fleet, operator, stats)
+        self.services = ServiceRequests(fleet, commander, log, *ids, texts=docs_cache, is_held=hold.is_held)
         self.driving = DrivingController(operator, fleet, commander, ids)
-        self.departure = Departure(fleet, commander, self.driving)
+        self.shutdown = StationShutdown(fleet, commander, self.driving)
         self.handover = Handover(fleet, commander, self.driving, log, system)
         self.link_closing = LinkClosing(operator, fleet, stats)
         self.queries = VehicleQueries(fleet, commander, stats, log, self.services)

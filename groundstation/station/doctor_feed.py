@@ -7,7 +7,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot
 from groundstation.station.core_listener import CoreListener
 from groundstation.station.core_parts import CoreParts
-from groundstation.station.doctor.doctor_desk import DoctorDesk
+from groundstation.station.doctor.diagnostics import Diagnostics
 from groundstation.station.driving.permission import Permission
 from groundstation.station.intent_handler import Rows
 from groundstation.station.snapshot_builder import SnapshotBuilder
@@ -24,7 +24,7 @@ class DoctorFeed(CoreListener):
         self._display = DriveDisplay(parts.fleet, parts.operator, parts.links.timesync, parts.ids[0])
         self._snapshots = SnapshotBuilder(parts, self._display)
         links, ids = parts.links.stats, parts.ids
-        self.doctor = DoctorDesk(
+        self.doctor = Diagnostics(
             parts.fleet, parts.services, parts.queries, links, parts.operator, ids, lambda now: self.snapshot(now, now)
         )
 

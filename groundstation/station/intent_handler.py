@@ -78,7 +78,7 @@ class IntentHandler:
     def __init__(self, parts: CoreParts) -> None:
         self._operator, self._fleet, self._log = parts.operator, parts.fleet, parts.log
         self._commander, self._driving, self._services = parts.commander, parts.driving, parts.services
-        self._departure, self._handover, self._link_closing = parts.departure, parts.handover, parts.link_closing
+        self._shutdown, self._handover, self._link_closing = parts.shutdown, parts.handover, parts.link_closing
         self._emergency_at = -math.inf
         self._permission = Permission("starting", "starting")
         """Before the intent that is being carried out."""
@@ -237,7 +237,7 @@ class IntentHandler:
         self._operator.sticks.block(now)
         self._handover.give(now)
         self._driving.end()
-        self._departure.begin(now, disarm=intent.disarm)
+        self._shutdown.begin(now, disarm=intent.disarm)
 
 
 def _set_mode(commander: Commander, vehicle: VehicleState, intent: SetMode, now: float) -> None:

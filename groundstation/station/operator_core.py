@@ -11,7 +11,7 @@ from groundstation.intents.session import REST_PERIOD
 from groundstation.intents.union import AnyIntent
 from groundstation.station.core_listener import CoreListener
 from groundstation.station.core_parts import CoreParts
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.readings import READINGS
 from groundstation.vehicles.demand.drive_gate import drive_refusal
@@ -42,8 +42,8 @@ class OperatorCore:
         self.parts = parts
         self.log, self.operator, self.fleet = parts.log, parts.operator, parts.fleet
         self.services, self.driving, self.relay = parts.services, parts.driving, parts.relay
-        self.departure, self.link_closing = parts.departure, parts.link_closing
-        self.surroundings, self.params = parts.links.surroundings, parts.links.params
+        self.shutdown, self.link_closing = parts.shutdown, parts.link_closing
+        self.station_info, self.params = parts.links.station_info, parts.links.params
         self.intents = IntentHandler(parts)
         self._listener = listener or CoreListener()
         self._commander, self._handover, self._queries = parts.commander, parts.handover, parts.queries
@@ -126,12 +126,12 @@ class OperatorCore:
         self.driving.update(permission, now)
         self._log_driving(now)
         self._listener.follow(None, permission, now)
-        self.departure.tick(now)
+        self.shutdown.tick(now)
         self._update_rest(now)
         self._listener.end_tick(now)
 
     @property
-    def looked_at(self) -> frozenset[int] | None:
+    def interesting_systems(self) -> frozenset[int] | None:
         """System ids of the vehicles whose whole telemetry is needed: shown, driven, or asked for something.
 
         A link of a fleet asks the others for less (link/fleet/brevity.py): a table of a hundred vehicles needs neither
@@ -183,7 +183,7 @@ class OperatorCore:
             if not rests:
                 self.on_rest_end()
 
-    def decisive(self, now: float) -> Hashable:
+    def urgent_state(self, now: float) -> Hashable:
         """Return what a driver must see at once if it changes: who drives what, armed, stopped, held keys, the log."""
         selected, operator = self.fleet.selected, self.operator
         state = selected.state if selected is not None else None
@@ -211,7 +211,7 @@ class OperatorCore:
         """Update the link statistics; log when a link problem starts and ends."""
         self._listener.observe(reports, now)
         self.relay.observe(reports)
-        reports = [*reports, *self.surroundings.not_open]
+        reports = [*reports, *self.station_info.not_open]
         selected = self.fleet.selected
         self._links.stats.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
@@ -257,7 +257,7 @@ class OperatorCore:
         moves = isinstance(message, DEMANDS) or is_turn(message)
         return not moves or not self.operator.stall.is_stalled(now)
 
-    def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
+    def report_to_watchdog(self, now: float) -> tuple[WatchdogTarget, ...]:
         """Return the vehicles that the watchdog stops if no further call follows in time (stall.py)."""
         self._expire_lease(now)
         self._update_rest(now)
@@ -306,7 +306,7 @@ class OperatorCore:
         return (
             self.driving.ending
             and self.driving.finished
-            and self.departure.finished
+            and self.shutdown.finished
             and self._handover.finished
             and self.relay.finished
         )

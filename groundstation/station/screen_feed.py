@@ -8,7 +8,7 @@ from dialects.messages import Message
 from groundstation.intents.charts import PinSeries
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
-from groundstation.station.charts.desk import ChartDesk
+from groundstation.station.charts.chart_recorder import ChartRecorder
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.driving.permission import Permission
@@ -31,7 +31,7 @@ class ScreenFeed(DoctorFeed):
         fleet, links = parts.fleet, parts.links
         self._traffic = MessageTraffic(*parts.ids)
         self._detail = MessageDetail(self._traffic)
-        self._charts = ChartDesk(fleet, self._traffic, links.stats, links.timesync)
+        self._charts = ChartRecorder(fleet, self._traffic, links.stats, links.timesync)
         self.notes = StationNotes(parts.operator, fleet)
         parts.log.listener = self.notes.add_line
         shown = (self._charts, self._detail, self.doctor, self._display)
@@ -87,7 +87,7 @@ class ScreenFeed(DoctorFeed):
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Store the reports of the open links."""
         self.notes.observe(reports, now)
-        self._traffic.observe([*reports, *self._parts.links.surroundings.not_open], now)
+        self._traffic.observe([*reports, *self._parts.links.station_info.not_open], now)
         states = [contact.state for contact in self._parts.fleet]
         self._traffic.set_labels({(each.system, each.component): each.name for each in states})
 

@@ -17,7 +17,7 @@ class SnapshotBuilder:
 
     def build(self, now: float, wall: float, *, faults: int) -> Snapshot:
         """Build the snapshot; `faults`: how many links of the doctor's chain stop the operator."""
-        parts, links, fleet, around = self._parts, self._parts.links, self._parts.fleet, self._parts.links.surroundings
+        parts, links, fleet, around = self._parts, self._parts.links, self._parts.fleet, self._parts.links.station_info
         selected = fleet.selected
         return Snapshot(
             uptime=now - parts.started,
@@ -25,8 +25,8 @@ class SnapshotBuilder:
             addresses=() if selected else around.addresses,
             waiting=None if selected else around.waiting(has_traffic=links.stats.has_traffic),
             vehicle=self._vehicle(selected, now) if selected else None,
-            left_armed=parts.departure.left_armed(now),
-            end_armed=parts.departure.end_armed(around.simulated, now),
+            left_armed=parts.shutdown.left_armed(now),
+            end_armed=parts.shutdown.end_armed(around.simulated, now),
             id_conflict=links.id_conflict.text(now),
             free_id=links.stations.free_id(parts.ids[0], fleet.system_ids),
             blind_stop=parts.commander.blind_stops.describe(),
@@ -52,7 +52,7 @@ class SnapshotBuilder:
         return state.build_view(
             now,
             in_control=driving.is_in_control(contact),
-            twin=driving.is_driven_by_twin(contact),
+            duplicate_gcs=driving.is_driven_by_duplicate_gcs(contact),
             control_wait=self._parts.handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),

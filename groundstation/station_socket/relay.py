@@ -42,7 +42,7 @@ class HeardMessage(msgspec.Struct, frozen=True, array_like=True):
     """As in link.core.Received."""
 
 
-class Heard(msgspec.Struct, frozen=True, tag=True):
+class ReceivedBatch(msgspec.Struct, frozen=True, tag=True):
     """From the station: what it has received, at most BATCH messages."""
 
     messages: tuple[HeardMessage, ...]
@@ -75,7 +75,7 @@ class ToSend(msgspec.Struct, frozen=True):
     messages: tuple[tuple[int, bytes], ...] = ()
 
 
-FromStation = VerbReady | Heard | LinksReport | DemandRefused | MessageRefused | Alive | StationFailed
+FromStation = VerbReady | ReceivedBatch | LinksReport | DemandRefused | MessageRefused | Alive | StationFailed
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(FromStation).decode

@@ -85,7 +85,7 @@ class Contact(msgspec.Struct):
         return None if info is None or self.state.mode == Mode.ACRO.name else int(info.drive_type)
 
     @property
-    def without_link(self) -> str | None:
+    def link_loss_action(self) -> str | None:
         """What the vehicle does when it loses us, as a text; None: not known.
 
         Our own vehicle has failsafes for driving by hand; a foreign one does what its settings say. In an autonomous
@@ -95,7 +95,7 @@ class Contact(msgspec.Struct):
             return None
         if self.state.has_rover_dialect:
             return "it stops by itself"
-        return self.settings_check.without_link if self.settings_check else None
+        return self.settings_check.link_loss_action if self.settings_check else None
 
     def lose(self, now: float) -> None:
         """Mark the vehicle as lost since its last message."""

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from groundstation.verbs.session.demand_guard import DemandGuard
     from groundstation.verbs.session.doctor_session import DoctorSession
     from groundstation.verbs.session.session import VerbSession
-    from link.signing_keeper import SigningKeeper
+    from link.link_signing import LinkSigning
 
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
@@ -253,7 +253,7 @@ def _find_way(
     return None, endpoints or choose()
 
 
-def _open_signing() -> SigningKeeper | None:
+def _open_signing() -> LinkSigning | None:
     """Return what signs the frames of a verb that has links of its own. Raises VerbError."""
     from groundstation.connect.signing import SigningError, open_signing  # a verb through a station does without
 
@@ -263,7 +263,7 @@ def _open_signing() -> SigningKeeper | None:
         raise VerbError(ExitCode.USAGE, str(error)) from None
 
 
-def _start_guard(ids: tuple[int, int], signing: SigningKeeper | None) -> DemandGuard:
+def _start_guard(ids: tuple[int, int], signing: LinkSigning | None) -> DemandGuard:
     from groundstation.verbs.session.demand_guard import DemandGuard
 
     return DemandGuard(ids, signing.signing if signing else None)

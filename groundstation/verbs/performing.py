@@ -7,7 +7,7 @@ import asyncio
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from groundstation.verbs.common.later import LaterModule
+from groundstation.verbs.common.lazy import LazyModule
 
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from groundstation.verbs.session.kept_session import KeptSession
     from groundstation.verbs.session.session import VerbSession
 
-many, stops = LaterModule("many"), LaterModule("control.stops")
+multi_vehicle, stops = LazyModule("multi_vehicle"), LazyModule("control.stops")
 
 
 async def perform(
@@ -34,7 +34,7 @@ async def perform(
     if action.finds:
         await session.find_vehicle(options.wait, options.vehicle, session.where)
     if action.takes_part:
-        await session.take_part()
+        await session.prove_session()
     if action.shows_neutral:
         await session.show_neutral()
     _keep(session, kept, output)
@@ -52,7 +52,7 @@ async def _perform_for_group(
         sending = asyncio.ensure_future(stops.stop_unheard(session, output.verb, systems))
     try:
         await session.find_vehicle(options.wait, None, session.where)
-        code: int = await many.ManyVehicles(session, action, options, group, output).run()
+        code: int = await multi_vehicle.ManyVehicles(session, action, options, group, output).run()
         return code
     finally:
         if sending is not None:
@@ -70,4 +70,4 @@ def _keep(session: VerbSession, kept: KeptSession, output: Output) -> None:
     def tell(_: asyncio.Future[None]) -> None:
         output.note(f"{contact.state.name} is controlled by the verb before; this one keeps its session")
 
-    session.core.add_look(lambda: contact.in_control).add_done_callback(tell)
+    session.core.add_waiter(lambda: contact.in_control).add_done_callback(tell)

@@ -23,7 +23,7 @@ from groundstation.verbs.common.arguments import (
     seconds,
     system_id,
 )
-from groundstation.verbs.common.later import LaterModule, LaterName, made
+from groundstation.verbs.common.lazy import LazyAttribute, LazyModule, lazy_call
 from link.signing.key_options import ENTERED, SHOWN
 
 if TYPE_CHECKING:
@@ -34,33 +34,33 @@ if TYPE_CHECKING:
     from groundstation.verbs.ros import ros1, ros2
     from groundstation.verbs.setup import calibrate, doctor, sign, sign_setup
 else:
-    arm = LaterModule("control.arm")
-    calibrate = LaterModule("setup.calibrate")
-    command = LaterModule("messages.command")
-    control = LaterModule("control.control")
-    doctor = LaterModule("setup.doctor")
-    drive = LaterModule("control.drive")
-    export = LaterModule("files.export")
-    ftp = LaterModule("files.ftp")
-    go_to = LaterModule("mission.go_to")
-    log = LaterModule("files.log")
-    messages = LaterModule("messages.messages")
-    mission = LaterModule("mission.mission")
-    mode = LaterModule("control.mode")
-    motor = LaterModule("control.motor")
-    param = LaterModule("files.param")
-    param_files = LaterModule("files.param_files")
-    ping = LaterModule("messages.ping")
-    plan = LaterModule("mission.plan")
-    reboot = LaterModule("control.reboot")
-    record = LaterModule("messages.record")
-    ros1 = LaterModule("ros.ros1")
-    ros2 = LaterModule("ros.ros2")
-    send = LaterModule("messages.send")
-    sign = LaterModule("setup.sign")
-    sign_setup = LaterModule("setup.sign_setup")
-    status = LaterModule("messages.status")
-    stops = LaterModule("control.stops")
+    arm = LazyModule("control.arm")
+    calibrate = LazyModule("setup.calibrate")
+    command = LazyModule("messages.command")
+    control = LazyModule("control.control")
+    doctor = LazyModule("setup.doctor")
+    drive = LazyModule("control.drive")
+    export = LazyModule("files.export")
+    ftp = LazyModule("files.ftp")
+    go_to = LazyModule("mission.go_to")
+    log = LazyModule("files.log")
+    messages = LazyModule("messages.messages")
+    mission = LazyModule("mission.mission")
+    mode = LazyModule("control.mode")
+    motor = LazyModule("control.motor")
+    param = LazyModule("files.param")
+    param_files = LazyModule("files.param_files")
+    ping = LazyModule("messages.ping")
+    plan = LazyModule("mission.plan")
+    reboot = LazyModule("control.reboot")
+    record = LazyModule("messages.record")
+    ros1 = LazyModule("ros.ros1")
+    ros2 = LazyModule("ros.ros2")
+    send = LazyModule("messages.send")
+    sign = LazyModule("setup.sign")
+    sign_setup = LazyModule("setup.sign_setup")
+    status = LazyModule("messages.status")
+    stops = LazyModule("control.stops")
 
 
 _PATTERNS = ("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"})
@@ -85,16 +85,17 @@ PLANS = ("mission", "fence", "rally")
 
 
 def _plan_actions(name: str) -> dict[str, VerbAction]:
-    kind = LaterName("dialects.enums", f"MissionType.{name.upper()}")
+    kind = LazyAttribute("dialects.enums", f"MissionType.{name.upper()}")
     return {
-        "show": VerbAction(f"print the {name}", made(plan.show, kind), watches=True, many=True),
-        "get": VerbAction(f"download the {name} into a file: .plan or .waypoints", made(plan.get, kind),
+        "show": VerbAction(f"print the {name}", lazy_call(plan.show, kind), watches=True, many=True),
+        "get": VerbAction(f"download the {name} into a file: .plan or .waypoints", lazy_call(plan.get, kind),
                           (_FILE, _YES), watches=True),
-        "put": VerbAction(f"upload the {name} of a file", made(plan.put, kind), (_FILE,), aliases=("set",),
+        "put": VerbAction(f"upload the {name} of a file", lazy_call(plan.put, kind), (_FILE,), aliases=("set",),
                           takes_part=True, many=True),
-        "check": VerbAction(f"compare the {name} of the vehicle with a file", made(mission.check, kind), (_FILE,),
+        "check": VerbAction(f"compare the {name} of the vehicle with a file", lazy_call(mission.check, kind), (_FILE,),
                             watches=True, many=True),
-        "clear": VerbAction(f"clear the {name} on the vehicle", made(plan.clear, kind), takes_part=True, many=True),
+        "clear": VerbAction(f"clear the {name} on the vehicle", lazy_call(plan.clear, kind), takes_part=True,
+                            many=True),
         **_MORE_PLAN_ACTIONS.get(name, {}),
     }  # fmt: skip
 
@@ -109,8 +110,8 @@ _MORE_PLAN_ACTIONS: dict[str, dict[str, VerbAction]] = {
                            shows_neutral=True, many=True),
     },
     "fence": {
-        "on": VerbAction("enable the fence", made(mission.enable_fence, True), takes_part=True, many=True),
-        "off": VerbAction("disable the fence", made(mission.enable_fence, False), takes_part=True, many=True),
+        "on": VerbAction("enable the fence", lazy_call(mission.enable_fence, True), takes_part=True, many=True),
+        "off": VerbAction("disable the fence", lazy_call(mission.enable_fence, False), takes_part=True, many=True),
     },
 }  # fmt: skip
 """Plan -> its actions beside those of all plans."""

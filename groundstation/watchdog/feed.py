@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
 from dialects.messages import ManualControl, Message, RcChannelsOverride
-from groundstation.station.driving.driven import DEMAND_MEMORY, DrivenVehicle
+from groundstation.station.driving.driven import DEMAND_MEMORY, WatchdogTarget
 from groundstation.watchdog.process import fork_watchdog
 from groundstation.watchdog.report import MAX_OUTLETS, DemandRoute, StationReport, encode_report
 from link.signing.signing import Signing
@@ -76,7 +76,7 @@ class WatchdogFeed:
         """Set fields that all further reports have."""
         self._flags |= flags
 
-    def report(self, vehicles: Sequence[DrivenVehicle], now: float, *, rests: bool = False) -> bool:
+    def report(self, vehicles: Sequence[WatchdogTarget], now: float, *, rests: bool = False) -> bool:
         """Report that the station runs, and if it rests. Returns False once, when the watchdog's process has ended."""
         self._forget_old(now)
         routes: list[DemandRoute] = []

@@ -6,9 +6,9 @@ from dialects import codec
 from dialects.axes import NEUTRAL, axis_map, build_manual_control
 from dialects.enums import OperatorFlag
 from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, Message, RoverOperatorPresence, boot_ms
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.watchdog.report import DemandRoute
-from link.protocol.signing_guard import SigningWay
+from link.protocol.signing_guard import SigningContext
 from link.signing.signing import FrameSigner, Signing
 
 SEQUENCE_LEAD = 40
@@ -20,7 +20,7 @@ vehicle knows both by their session."""
 class _Signer:
     """Signs as the station did on one route."""
 
-    def __init__(self, signing: Signing, way: SigningWay) -> None:
+    def __init__(self, signing: Signing, way: SigningContext) -> None:
         self._signing = signing
         self._way = way
         self._signer = FrameSigner(signing.clock)
@@ -38,7 +38,7 @@ class NeutralFrames:
     """The frames for one vehicle on one route. `ids` are those of the station, `signing` what it signs with."""
 
     def __init__(
-        self, vehicle: DrivenVehicle, ids: tuple[int, int], route: DemandRoute, signing: Signing | None = None
+        self, vehicle: WatchdogTarget, ids: tuple[int, int], route: DemandRoute, signing: Signing | None = None
     ) -> None:
         self._vehicle = vehicle
         self._ids = ids

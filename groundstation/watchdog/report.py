@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import msgspec
 
-from groundstation.station.driving.driven import DrivenVehicle
-from link.protocol.signing_guard import SigningWay
+from groundstation.station.driving.driven import WatchdogTarget
+from link.protocol.signing_guard import SigningContext
 
 MAX_OUTLETS = 32
 """Descriptors in one report; more than any station has links. The kernel allows 253."""
@@ -26,7 +26,7 @@ class DemandRoute(msgspec.Struct, frozen=True):
     """The address for sendto(); None for a connected descriptor."""
     sequence: int
     """Packet sequence of the newest frame that was sent there."""
-    signing: SigningWay | None = None
+    signing: SigningContext | None = None
     """How frames are signed there; None: they are not."""
     version_1: bool = False
     """The vehicle takes MAVLink 1 only."""
@@ -37,7 +37,7 @@ class StationReport(msgspec.Struct, frozen=True, kw_only=True):
 
     ids: tuple[int, int] = (255, 190)
     """System and component id of the station."""
-    vehicles: tuple[DrivenVehicle, ...] = ()
+    vehicles: tuple[WatchdogTarget, ...] = ()
     routes: tuple[DemandRoute, ...] = ()
     keeps_descriptors: bool = False
     """The descriptors are those of the report before. Else they travel with this one."""

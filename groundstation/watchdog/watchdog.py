@@ -18,7 +18,7 @@ from dialects import codec
 from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, Message, RoverDriveStatus, VfrHud
 from groundstation.snapshot import StationOutage
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, NEUTRAL_PERIOD, SETTLE
 from groundstation.watchdog.neutral import NeutralFrames
@@ -59,7 +59,7 @@ _STATION = {
 class _Target(msgspec.Struct):
     """A vehicle that gets neutral."""
 
-    vehicle: DrivenVehicle
+    vehicle: WatchdogTarget
     sent: bool = False
     """The kernel has accepted a frame."""
     error: str = ""

@@ -20,7 +20,7 @@ Arrival = tuple[str, bytes, float]
 """Key, frame, and when it came."""
 
 
-class Told(IntEnum):
+class ArrivalState(IntEnum):
     """What the loop knows."""
 
     NOTHING = 0
@@ -36,7 +36,7 @@ class Arrivals:
         self.dropped = 0
         """Frames that were too many."""
         self._waiting: deque[Arrival] = deque()
-        self._told = Told.NOTHING
+        self._told = ArrivalState.NOTHING
 
     def put(self, key: str, data: bytes, now: float, *, may_wait: bool) -> bool:
         """Add a frame; return whether the loop must be told to take it."""
@@ -44,19 +44,19 @@ class Arrivals:
         if len(self._waiting) > MAX_WAITING:
             self._waiting.popleft()
             self.dropped += 1
-        if self._told is Told.NOW or (may_wait and self._told is Told.LATER):
+        if self._told is ArrivalState.NOW or (may_wait and self._told is ArrivalState.LATER):
             return False
-        self._told = Told.NOW
+        self._told = ArrivalState.NOW
         return True
 
     def take(self) -> list[Arrival]:
         """Return the oldest frames, TURN at most. From now on the loop is told again."""
-        self._told = Told.NOTHING  # before anything is taken: what comes after that tells the loop
+        self._told = ArrivalState.NOTHING  # before anything is taken: what comes after that tells the loop
         return [self._waiting.popleft() for _ in range(min(TURN, len(self._waiting)))]
 
     def expect(self, *, now: bool) -> None:
         """Note that the loop will look again by itself: `now` without delay, else within PACE."""
-        self._told = Told.NOW if now else Told.LATER
+        self._told = ArrivalState.NOW if now else ArrivalState.LATER
 
     @property
     def is_empty(self) -> bool:

@@ -76,7 +76,7 @@ class FleetTransport:
         self._presence = Presence()
         self._brief = BriefTelemetry()
         self._circumstances = Circumstances()
-        self._looked_at: frozenset[int] | None = None
+        self._interesting: frozenset[int] | None = None
         self._unsent = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -113,9 +113,9 @@ class FleetTransport:
         frame = self._read(data) if self._role not in (None, Role.SET_UP) else None
         return None if frame is None else self._role_missing(frame)
 
-    def look_at(self, systems: frozenset[int] | None) -> None:
+    def set_interest(self, systems: frozenset[int] | None) -> None:
         """Let the vehicles with these system ids send all of their telemetry, and the others a little; None: all."""
-        self._looked_at = systems
+        self._interesting = systems
         self._ask_for_brief()
 
     def outlet(self, address: Hashable) -> Outlet | None:
@@ -301,7 +301,7 @@ class FleetTransport:
             self._presence.remove(address, self._loop.time())
             return
         if self._keys.me:
-            if self._looked_at is not None and address not in self._presence.find_owners(self._looked_at):
+            if self._interesting is not None and address not in self._presence.find_owners(self._interesting):
                 self._session.show_token(self._keys.brief_token(address))  # before it can send anything
             self._session.show_token(self._keys.token(address))
         if self._presence.add(address):
@@ -312,7 +312,7 @@ class FleetTransport:
         """Tell each vehicle whether this ground station looks at it."""
         if not self._keys.me:
             return
-        whole = None if self._looked_at is None else self._presence.find_owners(self._looked_at)
+        whole = None if self._interesting is None else self._presence.find_owners(self._interesting)
         for address in self._presence.present:
             tell = self._session.hide_token if whole is None or address in whole else self._session.show_token
             tell(self._keys.brief_token(address))

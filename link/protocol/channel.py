@@ -32,7 +32,7 @@ from link.protocol.peer import ONE, PeerState, count_sources, find_signing, find
 from link.protocol.peer_table import MAX_PEERS, PeerTable
 from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
-from link.protocol.signing_guard import Passed, SigningGuard, SigningWay, best_key
+from link.protocol.signing_guard import Passed, SigningContext, SigningGuard, best_key
 from link.protocol.stops import find_stops
 from link.signing.role import Role
 
@@ -106,7 +106,7 @@ class Channel:
         self._untimely: list[Peer] = []
         self._proven: set[int] = set()
         """Ids of messages that have arrived damaged and whole, so that the damage is not a mismatch of dialects."""
-        self._looked_at: frozenset[int] | None = None
+        self._interesting: frozenset[int] | None = None
         if target is not None:
             self._peers.add_fixed(target)
 
@@ -157,16 +157,16 @@ class Channel:
         """
         self._peers.end_connection(address)
 
-    def look_at(self, systems: frozenset[int] | None, now: float) -> None:
+    def set_interest(self, systems: frozenset[int] | None, now: float) -> None:
         """Set the system ids that send everything; what others leave out is not lost. None: all do."""
-        self._looked_at = systems
+        self._interesting = systems
         for state in self._peers:
             for (system, _), source in state.sources.items():
                 source.expect_gaps(self._gaps_until(system, now + LOOK_WITHIN))
 
     def _gaps_until(self, system: int, otherwise: float) -> float:
         """Return until when the numbers of a system have gaps: always while it is not looked at."""
-        return math.inf if self._looked_at is not None and system not in self._looked_at else otherwise
+        return math.inf if self._interesting is not None and system not in self._interesting else otherwise
 
     def reserve(self, ids: tuple[int, int] | None) -> None:
         """Keep places for the system and component id of the ground station in control; None: for nobody."""
@@ -365,7 +365,7 @@ class Channel:
         signs = self.guard is not None and state is not None and self.guard.signs_to(state)
         return state is not None and not signs and state.versions(ManualControl.id, system) == ONE
 
-    def signing_way(self, address: Hashable, now: float) -> SigningWay | None:
+    def signing_way(self, address: Hashable, now: float) -> SigningContext | None:
         """Return how frames to an address are signed; None if they are not."""
         state = self._peers.get(address)
         return None if self.guard is None or state is None else self.guard.way_to(state, now)

@@ -57,7 +57,7 @@ class SigningPolicy(msgspec.Struct, frozen=True):
     so. False, for vehicles: beyond a day it is refused by who knows the right time, and followed by who does not."""
 
 
-class SigningWay(NamedTuple):
+class SigningContext(NamedTuple):
     """How frames to one peer are signed by another process in our place."""
 
     key: str
@@ -156,11 +156,11 @@ class SigningGuard:
     def _is_pinned(self, system: int, component: int, now: float) -> bool:
         return self._signing.verifier.is_pinned(system, component, now, self.policy.pinned_for)
 
-    def way_to(self, state: PeerState, now: float) -> SigningWay:
+    def way_to(self, state: PeerState, now: float) -> SigningContext:
         """Return how frames to a peer are signed, for the watchdog, which goes on in our place."""
         key = self._key_for(state)
         lead = self._lead(state, key, now)
-        return SigningWay("" if key is None else key.name, lead, WATCHDOG_LANE + self._first_id // LANES)
+        return SigningContext("" if key is None else key.name, lead, WATCHDOG_LANE + self._first_id // LANES)
 
     def note_sender(self, state: PeerState, passed: Sequence[Passed], now: float) -> None:
         """Remember which key a peer uses, and the clock of that key."""

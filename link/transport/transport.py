@@ -82,7 +82,7 @@ class RoleTransport(Protocol):
 class SelectiveTransport(Protocol):
     """A transport whose vehicles send less to a ground station that does not look at them."""
 
-    def look_at(self, systems: frozenset[int] | None) -> None:
+    def set_interest(self, systems: frozenset[int] | None) -> None:
         """Set the system ids whose whole telemetry is needed; None: that of all vehicles, as at the start."""
 
 
@@ -97,7 +97,7 @@ class Link(msgspec.Struct):
     bytes_sent: int = 0
     refusal: Callable[[bytes], str | None] | None = None
     """That of a RoleTransport, for a core that wants to know."""
-    look_at: Callable[[frozenset[int] | None], None] | None = None
+    set_interest: Callable[[frozenset[int] | None], None] | None = None
     """That of a SelectiveTransport, for a core that says what it looks at."""
 
     def send(self, data: bytes, address: Hashable) -> str | None:

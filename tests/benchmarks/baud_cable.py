@@ -26,7 +26,7 @@ from typing import Any
 from dialects import codec
 from dialects.messages import RoverOperatorPresence
 from link.protocol.framer import Framer
-from tests.benchmarks.line_load import Asker
+from tests.benchmarks.line_load import Requester
 
 BITS_PER_BYTE = 10
 """8 data bits, one start and one stop bit."""
@@ -167,12 +167,12 @@ class BaudCable:
         self._down, self._up = (
             Direction(*ends, rate, lambda: chance.random() < noise) for ends in ((vehicle, ground), (ground, vehicle))
         )
-        self._asker: Asker | None = None
+        self._asker: Requester | None = None
 
     def toggle(self) -> None:
         """Turn the second station on or off; print the time in ns and what passed since the last time: the bytes down
         and up, and the most of copies up within a second."""
-        self._asker = None if self._asker else Asker()
+        self._asker = None if self._asker else Requester()
         print("passed", time.monotonic_ns(), self._down.passed, self._up.passed, self._up.copies.most, flush=True)
         self._down.passed = self._up.passed = self._up.copies.most = 0
 

@@ -15,7 +15,7 @@ PERIOD = 0.5
 FILE = b"@PARAM/param.pck"
 
 
-class Asker:
+class Requester:
     """The bytes of the second station, as they become due."""
 
     def __init__(self) -> None:

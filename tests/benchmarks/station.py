@@ -53,7 +53,7 @@ class Station:
         self._clients: list[Client] = [self.params, self.missions, self.files]
         self._outgoing: list[Outgoing] = []
         self._heartbeat_due = 0.0
-        self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
     # ---- core ----
 
@@ -100,7 +100,7 @@ class Station:
     async def until(self, condition: Callable[[], bool], what: str, within: float) -> None:
         """Wait until `condition`, checked with each message and each tick. Raises BenchmarkError."""
         found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._looks.append((condition, found))
+        self._waiters.append((condition, found))
         try:
             await asyncio.wait_for(found, within)
         except TimeoutError:
@@ -134,10 +134,10 @@ class Station:
         return isinstance(ack, m.CommandAck) and ack.command == command and ack.result == Result.ACCEPTED
 
     def _look(self) -> None:
-        for condition, found in self._looks:
+        for condition, found in self._waiters:
             if not found.done() and condition():
                 found.set_result(None)
-        self._looks = [each for each in self._looks if not each[1].done()]
+        self._waiters = [each for each in self._waiters if not each[1].done()]
 
 
 async def connected(endpoint: str, script: Callable[[Station], Awaitable[None]]) -> None:

@@ -50,7 +50,7 @@ def in_control(seen: Snapshot) -> bool:
 
 
 def test_a_twin_is_told_of_the_driver_and_its_keys_move_nothing(twins: Twins) -> None:
-    seen = twins.twin.see(lambda seen: seen.vehicle is not None and seen.vehicle.twin)
+    seen = twins.twin.see(lambda seen: seen.vehicle is not None and seen.vehicle.duplicate_gcs)
     assert not in_control(seen)
     twins.twin.client.send(ReportKeyReleases(), FORWARD)
     blocked = twins.twin.see(lambda seen: "another program with our id 255" in seen.operator.gate_reason)
@@ -62,7 +62,7 @@ def test_a_twin_is_told_of_the_driver_and_its_keys_move_nothing(twins: Twins) ->
 
 
 def test_a_twin_drives_after_the_driver_is_killed_by_a_fresh_key(twins: Twins) -> None:
-    twins.twin.see(lambda seen: seen.vehicle is not None and seen.vehicle.twin)
+    twins.twin.see(lambda seen: seen.vehicle is not None and seen.vehicle.duplicate_gcs)
     twins.twin.client.send(ReportKeyReleases(), FORWARD)
     os.kill(twins.driver.client.pid, signal.SIGKILL)
     wait_until(twins.vehicle.stands)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from groundstation.disk.desk import run_job
+from groundstation.disk.file_jobs import run_job
 from groundstation.intents.services import ServiceIntent
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.requests import RequestLine, RequestsRequest

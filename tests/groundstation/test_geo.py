@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from groundstation.geo import LocalFrame, Place, bearing, find_way, is_on_earth, keep_on_earth
+from groundstation.geo import LocalFrame, Place, bearing, find_separation, is_on_earth, keep_on_earth
 
 
 @pytest.mark.parametrize(
@@ -20,20 +20,20 @@ from groundstation.geo import LocalFrame, Place, bearing, find_way, is_on_earth,
     ],
 )
 def test_ways(end: Place, distance: float, bearing: float) -> None:
-    way = find_way(Place(10.0, 20.0), end)
+    way = find_separation(Place(10.0, 20.0), end)
     assert way is not None
     assert tuple(way) == pytest.approx((distance, bearing), abs=0.1)
 
 
 def test_across_the_date_line_the_way_is_short() -> None:
-    way = find_way(Place(0.0, 179.9995), Place(0.0, -179.9995))
+    way = find_separation(Place(0.0, 179.9995), Place(0.0, -179.9995))
     assert way is not None
     assert tuple(way) == pytest.approx((111.3, 90.0), abs=0.1)
 
 
 def test_without_both_places_there_is_no_way() -> None:
-    assert find_way(None, Place(1.0, 1.0)) is None
-    assert find_way(Place(1.0, 1.0), None) is None
+    assert find_separation(None, Place(1.0, 1.0)) is None
+    assert find_separation(Place(1.0, 1.0), None) is None
 
 
 def test_metres_around_a_place_and_back() -> None:

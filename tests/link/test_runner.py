@@ -473,7 +473,7 @@ class Looking(Recorder):
     """A core that looks at one vehicle after the other."""
 
     @property
-    def looked_at(self) -> frozenset[int] | None:
+    def interesting_systems(self) -> frozenset[int] | None:
         return frozenset((len(self.ticks) // 10,))
 
 
@@ -481,8 +481,8 @@ async def test_a_link_that_can_choose_is_told_the_selected_vehicles() -> None:
     runner, told, late = list[Runner](), list[object](), list[object]()
     core = Looking(lambda core: len(core.ticks) >= 25, runner)
     links = open_links([f"udpin:127.0.0.1:{free_port()}" for _ in range(3)], system=1, component=1)
-    links[0].transport.look_at = told.append  # type: ignore[attr-defined]
-    links[1].transport.look_at = late.append  # type: ignore[attr-defined]
+    links[0].transport.set_interest = told.append  # type: ignore[attr-defined]
+    links[1].transport.set_interest = late.append  # type: ignore[attr-defined]
     runner.append(Runner(core, [links[0], links[2]], period=0.01))
     added = asyncio.get_running_loop().call_later(0.05, lambda: runner[0].add(links[1]))
     async with asyncio.timeout(60):

@@ -44,7 +44,7 @@ class StrictMonkey(Monkey):
         """s; the same, counted from its sending."""
         self._before = 0.0
         self._reports = 0
-        self._looks = 0
+        self._waiters = 0
         super().__init__(style, SESSION)
         self.world.step = STEP
 
@@ -64,7 +64,7 @@ class StrictMonkey(Monkey):
             assert age <= OBEYED + SLACK, f"power rose by a demand of {age:.3f} s"
         self._before = power
         self._check_reports()
-        if now >= self._looks * LOOKS and not self.world.near.frozen:
+        if now >= self._waiters * LOOKS and not self.world.near.frozen:
             self._look(now)
 
     def _check_reports(self) -> None:
@@ -81,7 +81,7 @@ class StrictMonkey(Monkey):
 
     def _look(self, now: float) -> None:
         """Do what the station process does for its screen."""
-        self._looks = int(now / LOOKS) + 1
+        self._waiters = int(now / LOOKS) + 1
         self.station.snapshot(now, now)
-        self.station.views.watch([WATCHED[self._looks % len(WATCHED)]])
+        self.station.views.watch([WATCHED[self._waiters % len(WATCHED)]])
         self.station.views.send_due(lambda view: True, now, now)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from link.core import Outgoing, Peer, PlaceKeeper, TimeTeller
+from link.core import Outgoing, Peer, PeerReservation, TimeTeller
 from tests.vehicle.script import AHEAD, HEARTBEAT, MESSAGE, OFF, TURN, Script, driving, machine
 from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.drive.gate import Outputs
@@ -80,7 +80,7 @@ def test_passes_on_what_the_rover_says() -> None:
 def test_the_links_reserve_places_for_the_driver_of_the_rover() -> None:
     """The runner asks the loop, not the rover: without this the ids in control had no places."""
     body, mind, _ = machine()
-    assert isinstance(body, PlaceKeeper)
+    assert isinstance(body, PeerReservation)
     mind.reserved_ids = (255, 190)
     assert body.reserved_ids == (255, 190)
 

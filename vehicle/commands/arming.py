@@ -22,7 +22,7 @@ from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.roles import role_denial
 from vehicle.modes import describe_mode, parse_mode, standard_mode
-from vehicle.replies import Asker
+from vehicle.replies import Requester
 
 FORCE_VALUES = (21196, 2989)
 """COMPONENT_ARM_DISARM parameter 2 that skips soft checks: the specification's value and ArduPilot's second one."""
@@ -138,7 +138,7 @@ class ArmingCommands:
             return self._choose(mode, mode.name, request, now)
         return self._refuse("standard mode", request, f"{standard:g} is not offered", now, Severity.NOTICE)
 
-    def _choose(self, mode: Mode | None, description: str, asker: Asker, now: float) -> Result:
+    def _choose(self, mode: Mode | None, description: str, asker: Requester, now: float) -> Result:
         if mode is None:
             self._texts.reply(asker, Severity.WARNING, f"Refused: {description} is not offered", now)
             return Result.DENIED

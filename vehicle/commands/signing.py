@@ -24,7 +24,7 @@ OWN_COMPONENTS = (0, COMPONENT)
 
 
 class KeyStore(Protocol):
-    """Keeps keys beyond the end of the program: vehicle.runtime.key_keeper.KeyKeeper."""
+    """Keeps keys beyond the end of the program: vehicle.runtime.vehicle_keys.VehicleKeys."""
 
     @property
     def ring(self) -> KeyRing:

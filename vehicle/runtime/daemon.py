@@ -35,11 +35,11 @@ from vehicle.rover import Rover
 from vehicle.runtime.announcement import announce
 from vehicle.runtime.factory import build_accessories, build_control_loop, build_params, build_recorder
 from vehicle.runtime.host_info import HostMonitor, read_uid
-from vehicle.runtime.key_keeper import KeyKeeper
 from vehicle.runtime.link_guards import LinkGuards
 from vehicle.runtime.lock import lock_state_folder
 from vehicle.runtime.shutdown import CycleObserver, Shutdown
 from vehicle.runtime.systemd import Notifier
+from vehicle.runtime.vehicle_keys import VehicleKeys
 from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.plan_store import PlanStore
@@ -103,19 +103,19 @@ def _store(settings: RunSettings) -> Store | None:
     return None if settings.state is None else FileWriter(settings.state)
 
 
-def _open_keys(settings: RunSettings, opened: contextlib.ExitStack) -> KeyKeeper | None:
+def _open_keys(settings: RunSettings, opened: contextlib.ExitStack) -> VehicleKeys | None:
     """Return the keys in the state folder, None if there is none. Raises SettingsError."""
     if settings.state is None:
         return None
     try:
-        keeper = KeyKeeper(settings.state / FILE)
+        vehicle_keys = VehicleKeys(settings.state / FILE)
     except KeyFileError as error:
         raise SettingsError(str(error)) from None
-    opened.callback(keeper.close)
-    return keeper
+    opened.callback(vehicle_keys.close)
+    return vehicle_keys
 
 
-def _open_guards(settings: RunSettings, keys: KeyKeeper | None, now: float) -> LinkGuards:
+def _open_guards(settings: RunSettings, keys: VehicleKeys | None, now: float) -> LinkGuards:
     """Return what guards the links. Raises SettingsError."""
     memory = None if settings.state is None else settings.state / MEMORY_FILE
     try:
@@ -138,8 +138,8 @@ async def _serve(settings: RunSettings) -> int:
         param_store, plan_store = ParamStore(_store(settings)), PlanStore(_store(settings))
         opened.callback(param_store.close)
         opened.callback(plan_store.close)
-        keeper = _open_keys(settings, opened)
-        guards = _open_guards(settings, keeper, now)
+        vehicle_keys = _open_keys(settings, opened)
+        guards = _open_guards(settings, vehicle_keys, now)
         opened.callback(lambda: guards.close(loop.time()))
         params = build_params(settings, param_store)
         for damage in plan_store.damage.values():
@@ -155,14 +155,14 @@ async def _serve(settings: RunSettings) -> int:
             param_store=param_store,
             plan_store=plan_store,
             recording=recorder,
-            pairing=None if keeper is None else Pairing(keeper, _find_cables(settings.endpoints)),
+            pairing=None if vehicle_keys is None else Pairing(vehicle_keys, _find_cables(settings.endpoints)),
             arming_note=guards.arming_note,
             host=host,
             on_text=_log_status_text,
             rack=rack,
         )
         host_monitor = HostMonitor(host, lambda: loop.idle_time, time.time, now)
-        cycles = CycleObserver(rover, notifier, host_monitor, keeper, guards)
+        cycles = CycleObserver(rover, notifier, host_monitor, vehicle_keys, guards)
         control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
         log_tap = recorder.log_tap if recorder else None
         try:

@@ -7,15 +7,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from link.endpoint import parse_endpoint
+from link.link_signing import LinkSigning
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.keys import KeyRing
 from link.signing.role import Role
-from link.signing_keeper import SigningKeeper
 from link.transport.reach import find_trust, missing_interfaces
 from link.transport.transport import Link
 from vehicle.config.run_settings import SettingsError
 from vehicle.config.signing import SigningSettings, build_policy
-from vehicle.runtime.key_keeper import KeyKeeper
+from vehicle.runtime.vehicle_keys import VehicleKeys
 
 log = logging.getLogger(__name__)
 
@@ -39,7 +39,7 @@ class LinkGuards:
         self,
         settings: SigningSettings,
         endpoints: Sequence[str],
-        keys: KeyKeeper | None,
+        keys: VehicleKeys | None,
         memory: Path | None,
         now: float,
     ) -> None:
@@ -55,7 +55,7 @@ class LinkGuards:
         self._required = settings.required
         self._missing = missing_interfaces(settings.private)
         self._allowed = settings.allow_unsigned
-        self._keeper = SigningKeeper(ring, memory, now)
+        self._link_signing = LinkSigning(ring, memory, now)
         self._links: Sequence[Link] = ()
         self._due = now
         if keys is not None:
@@ -83,7 +83,7 @@ class LinkGuards:
         if not self._open:
             return None
         place = ", ".join(self._open)
-        known = bool(self._keeper.signing.ring.keys)
+        known = bool(self._link_signing.signing.ring.keys)
         if self._allowed:
             first = "" if known else f"{self._new_key} and "
             return f"{place}: everybody in the network may drive; to close it, {first}remove allow_unsigned"
@@ -99,21 +99,21 @@ class LinkGuards:
 
     def poll(self, now: float) -> None:
         """Follow the clock of the computer and store what is due. Call it in each control cycle."""
-        if now >= self._due and self._keeper.signing.ring.keys:
+        if now >= self._due and self._link_signing.signing.ring.keys:
             self._due = now + PERIOD
-            self._keeper.update(now)
+            self._link_signing.update(now)
 
     def close(self, now: float) -> None:
         """Store for the last time."""
-        if self._keeper.signing.ring.keys:
-            self._keeper.close(now)
+        if self._link_signing.signing.ring.keys:
+            self._link_signing.close(now)
 
     def _guard(self, link: Link, policy: SigningPolicy) -> SigningGuard | None:
-        if not self._keeper.signing.ring.keys and policy.unsigned is Role.SET_UP:
+        if not self._link_signing.signing.ring.keys and policy.unsigned is Role.SET_UP:
             return None
-        return SigningGuard(self._keeper.signing, policy, link.channel.index)
+        return SigningGuard(self._link_signing.signing, policy, link.channel.index)
 
     def _take_keys(self, ring: KeyRing) -> None:
         """Use other keys from now on. The last one may be gone: then unsigned senders have what the file grants."""
-        self._keeper.signing.set_ring(ring)
+        self._link_signing.signing.set_ring(ring)
         self.attach(self._links)

@@ -13,9 +13,9 @@ from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError
 from vehicle.rover import Rover
 from vehicle.runtime.host_info import HostMonitor
-from vehicle.runtime.key_keeper import KeyKeeper
 from vehicle.runtime.link_guards import LinkGuards
 from vehicle.runtime.systemd import Notifier
+from vehicle.runtime.vehicle_keys import VehicleKeys
 
 log = logging.getLogger(__name__)
 
@@ -80,7 +80,7 @@ class CycleObserver:
         rover: Rover,
         notifier: Notifier,
         host_monitor: HostMonitor,
-        keys: KeyKeeper | None = None,
+        keys: VehicleKeys | None = None,
         guards: LinkGuards | None = None,
     ) -> None:
         self.shutdown: Shutdown | None = None

@@ -27,7 +27,7 @@ from groundstation.vehicles.demand.stop_commands import (
     shows_hold,
 )
 from groundstation.vehicles.state.message_log import MessageLog
-from groundstation.vehicles.state.senders import Sender
+from groundstation.vehicles.state.senders import HeartbeatSender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -46,7 +46,7 @@ class _Stop(msgspec.Struct):
     vehicle: VehicleState
     label: str
     stop: StopCommand
-    is_done: Callable[[Sender], bool]
+    is_done: Callable[[HeartbeatSender], bool]
     due: float
     until: float
     tries: int = 1
@@ -262,7 +262,12 @@ class Commander:
         self._client.send(command, *params, target_system=system, target_component=component, now=now)
 
     def _stop(
-        self, vehicle: VehicleState, label: str, stop: StopCommand, is_done: Callable[[Sender], bool], now: float
+        self,
+        vehicle: VehicleState,
+        label: str,
+        stop: StopCommand,
+        is_done: Callable[[HeartbeatSender], bool],
+        now: float,
     ) -> None:
         key = vehicle.system, stop.command
         self._stops[key] = _Stop(vehicle, label, stop, is_done, now + STOP_RETRY, now + STOP_TIMEOUT)

@@ -14,7 +14,7 @@ DEMAND_MEMORY = 3.0
 neutral."""
 
 
-class DrivenVehicle(msgspec.Struct, frozen=True, kw_only=True):
+class WatchdogTarget(msgspec.Struct, frozen=True, kw_only=True):
     """A vehicle that got a demand from us within DEMAND_MEMORY."""
 
     system: int
@@ -30,7 +30,7 @@ class DrivenVehicle(msgspec.Struct, frozen=True, kw_only=True):
     """It signs with a key of ours: what is not signed is not of it."""
 
     @classmethod
-    def of(cls, state: VehicleState, session: int, *, verified: bool = False) -> DrivenVehicle:
+    def of(cls, state: VehicleState, session: int, *, verified: bool = False) -> WatchdogTarget:
         """Return what the watchdog must know of a vehicle."""
         return cls(
             system=state.system,

@@ -7,7 +7,7 @@ import math
 from dialects.axes import NEUTRAL, Axes, build_manual_control
 from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverOperatorPresence
 from groundstation.station.driving.commander import Commander
-from groundstation.station.driving.driven import DEMAND_MEMORY, DrivenVehicle
+from groundstation.station.driving.driven import DEMAND_MEMORY, WatchdogTarget
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.station.driving.permission import Permission
 from groundstation.station.links.link_stats import LinkStats
@@ -124,10 +124,10 @@ class DrivingController:
         if contact is not None:
             contact.demanded_at = now
 
-    def driven_vehicles(self, now: float) -> tuple[DrivenVehicle, ...]:
+    def driven_vehicles(self, now: float) -> tuple[WatchdogTarget, ...]:
         """Return the vehicles that may still hold a demand of ours."""
         return tuple(
-            DrivenVehicle.of(contact.state, self._operator.session, verified=contact.verified)
+            WatchdogTarget.of(contact.state, self._operator.session, verified=contact.verified)
             for contact in self._fleet
             if now - contact.demanded_at <= DEMAND_MEMORY and contact.state.model.is_driven
         )
@@ -152,7 +152,7 @@ class DrivingController:
         accepted = self._commander.is_claimed(state.system)
         return state.control.is_program(self._ids, self._operator.session, accepted=accepted)
 
-    def is_driven_by_twin(self, contact: Contact) -> bool:
+    def is_driven_by_duplicate_gcs(self, contact: Contact) -> bool:
         """Return whether another program with our system id controls this vehicle."""
         return contact.state.driver == self._system and not self.is_in_control(contact)
 

@@ -85,7 +85,9 @@ class Handover:
             return
         self._send_request(vehicle, now)
         contact = self._fleet.get(vehicle.system)
-        if contact is not None and not self._driving.is_driven_by_twin(contact):  # which the vehicle would never ask
+        if contact is not None and not self._driving.is_driven_by_duplicate_gcs(
+            contact
+        ):  # which the vehicle would never ask
             self._asked = _Asked(contact, now + ANSWER_WITHIN, now + REPEAT_PERIOD)
 
     def release(self, vehicle: VehicleState, now: float, *, station: int = 0) -> None:

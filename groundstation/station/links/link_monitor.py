@@ -9,7 +9,7 @@ from dialects.enums import Severity
 from groundstation.station.links.ground_stations import GroundStations, IdConflict
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.links.surroundings import Surroundings
+from groundstation.station.links.station_info import StationInfo
 from groundstation.vehicles.state.message_log import MessageLog
 from link.core import LinkReport, Received
 from link.protocol.link_events import LinkEvents
@@ -37,7 +37,7 @@ class LinkMonitor:
 
     def __init__(self, endpoints: Sequence[str], log: MessageLog, system: int, now: float) -> None:
         self._log = log
-        self.surroundings = Surroundings(endpoints)
+        self.station_info = StationInfo(endpoints)
         self.stats = LinkStats()
         self.timesync = TimesyncClient(system)
         self.heartbeat = HeartbeatSender(now)

@@ -56,9 +56,9 @@ class CrashNeutral:
         return None if self._active else self._station.rest_period
 
     @property
-    def looked_at(self) -> frozenset[int] | None:
+    def interesting_systems(self) -> frozenset[int] | None:
         """The vehicles that the station looks at; after an exception it is not asked."""
-        return frozenset(self._driven) if self._active else self._station.looked_at
+        return frozenset(self._driven) if self._active else self._station.interesting_systems
 
     # ---- Core ----
 

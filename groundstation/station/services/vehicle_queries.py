@@ -10,7 +10,7 @@ from dialects.enums import Command, Severity
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.services.service_desk import ServiceDesk
+from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.probes.stream_requests import stream_rate
@@ -30,7 +30,7 @@ class VehicleQueries:
     """Queries each vehicle, one command of a kind at a time, because they are acknowledged one at a time."""
 
     def __init__(
-        self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog, services: ServiceDesk
+        self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog, services: ServiceRequests
     ) -> None:
         self._services = services
         self._fleet = fleet

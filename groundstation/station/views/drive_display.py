@@ -63,7 +63,7 @@ class DriveDisplay:
         settings: Mapping[str, float] = contact.settings_check.values if contact.settings_check else {}
         facts = drive.build_facts(settings, age, self._quiet(contact, now), self._input_age(contact, now), now)
         return {
-            "without_link": contact.without_link,
+            "link_loss_action": contact.link_loss_action,
             "obeys": contact.settings_check.obeys if contact.settings_check else None,
             "warnings": contact.warnings,
             "command_age": age[0],

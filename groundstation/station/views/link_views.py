@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from dialects.enums import state_name
-from groundstation.geo import Place, find_way
+from groundstation.geo import Place, find_separation
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact
@@ -60,7 +60,7 @@ class LinkViews:
     def _vehicle(self, contact: Contact, now: float) -> VehicleRow:
         state, details = contact.state, contact.details
         view = state.build_view(now)
-        way = find_way(self._origin(contact), details.place)
+        way = find_separation(self._origin(contact), details.place)
         signing = self._fleet.signing_of(contact, now)
         return VehicleRow(
             system=state.system,

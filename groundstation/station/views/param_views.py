@@ -14,7 +14,7 @@ from groundstation.formats.param_docs import ParamDocs
 from groundstation.formats.param_file import format_params, split_unset, unset_text
 from groundstation.formats.param_form import ParamForm
 from groundstation.natural_order import natural_key
-from groundstation.station.services.service_desk import ServiceDesk
+from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.station.view_feed import ViewSource
 from groundstation.station.views.param_filter import ParamRanks, choose, count_groups, groups_of, is_changed
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -106,9 +106,9 @@ class ParamSummary:
 class ParamViews:
     """Builds the views of the selected vehicle. `files` are texts that the user has for vehicles without their own."""
 
-    def __init__(self, fleet: Fleet, desk: ServiceDesk, files: tuple[DocsFile, ...] = ()) -> None:
+    def __init__(self, fleet: Fleet, services: ServiceRequests, files: tuple[DocsFile, ...] = ()) -> None:
         self._fleet = fleet
-        self._desk = desk
+        self._services = services
         self._files = files
         self._made_of = _Sources(None, 0, ParamDocs(), {})
         self._summary = ParamSummary({}, self._made_of.docs, self._made_of.file)
@@ -137,7 +137,7 @@ class ParamViews:
         summary = self._summarize(contact, docs)
         page = summary.page(request)
         system = contact.state.system
-        requests = self._desk.requests_of("params", system)
+        requests = self._services.requests_of("params", system)
         return ParamPage(
             system=system,
             rows=page.rows,

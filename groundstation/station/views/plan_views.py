@@ -7,7 +7,7 @@ from typing import Any
 
 from dialects.enums import MissionType
 from groundstation.formats.plan import from_vehicle, keeps_home
-from groundstation.station.services.service_desk import ServiceDesk
+from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.services import VehicleServices
@@ -36,9 +36,9 @@ NO_MISSION = 0xFFFF
 class PlanViews:
     """Builds the views, only while a screen watches them."""
 
-    def __init__(self, fleet: Fleet, desk: ServiceDesk) -> None:
+    def __init__(self, fleet: Fleet, services: ServiceRequests) -> None:
         self._fleet = fleet
-        self._desk = desk
+        self._services = services
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -54,7 +54,7 @@ class PlanViews:
         if contact is None:
             return None
         state, details = contact.state, contact.details
-        requests = self._desk.build_requests(RequestsRequest(), now, wall)
+        requests = self._services.build_requests(RequestsRequest(), now, wall)
         return PlanView(
             system=state.system,
             name=state.name,

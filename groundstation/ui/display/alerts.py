@@ -127,7 +127,7 @@ def _silence(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.alive:
         silence = f"{vehicle.silence:.0f} s" if vehicle.silence < MAX_SILENCE else "minutes"
-        stops = vehicle.without_link or "not known whether it stops"
+        stops = vehicle.link_loss_action or "not known whether it stops"
         if vehicle.emergency_progress in (EmergencyProgress.SENT, EmergencyProgress.UNANSWERED):
             stops = "EMERGENCY STOP NOT acknowledged"
         yield Alert(AlertLevel.DANGER, f"no heartbeat from {vehicle.name} for {silence}: {stops}")
@@ -225,7 +225,7 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     if vehicle is None or vehicle.undriven:
         return
     if not vehicle.in_control and (vehicle.driver or vehicle.armed):
-        if vehicle.twin:
+        if vehicle.duplicate_gcs:
             text = f"another program with our id {vehicle.driver} drives: start with --system {now.snapshot.free_id}"
             yield Alert(AlertLevel.WARNING, text)
             return

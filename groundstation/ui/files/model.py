@@ -19,7 +19,7 @@ from groundstation.intents.files import (
 from groundstation.intents.services import ServiceIntent
 from groundstation.ui.base.local_files import LocalFile
 from groundstation.ui.display.task_list import TaskList
-from groundstation.ui.files.here import FilesHere
+from groundstation.ui.files.local_folder import LocalFolder
 from groundstation.ui.files.tree import ROOT, TreeRow, build_tree
 from groundstation.views.files import FilesRequest, FilesView, VehicleLog
 
@@ -44,7 +44,7 @@ class FilesModel:
 
     def __init__(self, take_number: Callable[[], int], folder: Path) -> None:
         self._take_number = take_number
-        self.disk = FilesHere(folder)
+        self.disk = LocalFolder(folder)
         self.view: FilesView | None = None
         self.tasks = TaskList()
         self.chosen = Panel.LOGS

@@ -22,7 +22,7 @@ from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
 from groundstation.ui.drive.panes import SPEED_CHART, PaneInput, speed_samples
 from groundstation.ui.files.export import ChosenLog, FileExport
 from groundstation.ui.files.exports import Exports
-from groundstation.ui.files.here import FilesHere
+from groundstation.ui.files.local_folder import LocalFolder
 from groundstation.ui.replay.events import events_value, logs_value
 from groundstation.ui.replay.model import ReplayModel, event_time, part_text, short_summary, summary
 from groundstation.ui.replay.timeline import AXIS, ReplayTimeline, TimelineValue
@@ -73,7 +73,7 @@ class ReplayScreen(ConsoleScreen):
         self._events = RowTable(events_value(self._model), id="events")
         self._timeline = ReplayTimeline(TimelineValue(), id="timeline")
         self._logs = RowTable(logs_value((), {}), id="logs")
-        self._disk = FilesHere(context.folder)
+        self._disk = LocalFolder(context.folder)
         self._disk.scan()
         self._cursor = 0
         self._views: dict[type[View], View] = {}

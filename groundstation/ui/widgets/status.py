@@ -154,7 +154,7 @@ def driver_part(vehicle: VehicleView, *, station_runs: bool, watches: bool) -> P
     if vehicle.in_control:
         return _own_part(vehicle, watches=watches)
     if vehicle.driver:
-        who = f"another {vehicle.driver}" if vehicle.twin else f"{vehicle.driver}"
+        who = f"another {vehicle.driver}" if vehicle.duplicate_gcs else f"{vehicle.driver}"
         return (f"driven by {who}", style(AMBER, bold=True))
     return ("" if vehicle.driver is None else "no GCS in control", style(DIM))
 

@@ -9,7 +9,7 @@ import msgspec
 
 from dialects import messages as m
 from dialects.enum_names import enum_names
-from groundstation.geo import Place, find_way
+from groundstation.geo import Place, find_separation
 from groundstation.snapshot.drive import MissionProgress
 from groundstation.vehicles.state.vehicle_details import to_place
 from link.services.mission.items import GLOBAL_FRAMES, Items, MissionItem
@@ -75,7 +75,7 @@ class MissionMessages:
         if plan is not self._plan:
             self._plan, self._route = plan, _Route.of(plan)
         goal, rest = self._route.ahead(current.seq)
-        way = find_way(here, goal)
+        way = find_separation(here, goal)
         distance = way.distance if way is not None else self._reported_distance(now) if navigates else None
         left = distance + rest if distance is not None and goal is not None else None
         return MissionProgress(
@@ -107,5 +107,5 @@ def _place(item: MissionItem) -> Place | None:
 
 
 def _distance(one: Place, other: Place) -> float:
-    way = find_way(one, other)
+    way = find_separation(one, other)
     return 0.0 if way is None else way.distance

@@ -39,7 +39,7 @@ def _station_system(value: float, system: int) -> str | None:
     return f"obeys ground station {wanted} only and we are {system}: use --system {wanted}"
 
 
-def _without_link(values: Mapping[str, float]) -> str | None:
+def _link_loss_action(values: Mapping[str, float]) -> str | None:
     override, throttle = values.get("RC_OVERRIDE_TIME"), values.get("FS_THR_ENABLE")
     if override is None or throttle is None:
         return None
@@ -62,6 +62,6 @@ ARDUPILOT = AutopilotSettings(
         "SYSID_MYGCS": _station_system,
     },
     former_names=FORMER_NAMES,
-    without_link=_without_link,
+    link_loss_action=_link_loss_action,
     obeyed=("MAV_GCS_SYSID", "SYSID_MYGCS"),
 )

@@ -15,7 +15,7 @@ class AutopilotSettings(msgspec.Struct, frozen=True):
 
     checks: Mapping[str, ParamCheck]
     """Parameter -> its check."""
-    without_link: Callable[[Mapping[str, float]], str | None]
+    link_loss_action: Callable[[Mapping[str, float]], str | None]
     """Takes the known values; returns what the vehicle does when it loses us, or None if that is not known."""
     former_names: Mapping[str, str] = msgspec.field(default_factory=dict)
     """Parameter -> its name in older versions; a vehicle has one of them. Both are in `checks`."""

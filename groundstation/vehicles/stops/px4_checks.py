@@ -84,7 +84,7 @@ _WITHOUT_LINK: dict[int, str] = {
 """NAV_RCL_ACT -> what a lost link means."""
 
 
-def _without_link(values: Mapping[str, float]) -> str | None:
+def _link_loss_action(values: Mapping[str, float]) -> str | None:
     after, hold, action = (values.get(name) for name in ("COM_RC_LOSS_T", "COM_FAIL_ACT_T", "NAV_RCL_ACT"))
     if after is None or action is None:
         return None
@@ -112,7 +112,7 @@ PX4 = AutopilotSettings(
         "NAV_DLL_ACT": _described("NAV_DLL_ACT", _STATION_LOST, _DISARM),
         "CA_AIRFRAME": _frame,
     },
-    without_link=_without_link,
+    link_loss_action=_link_loss_action,
     bytewise=True,
     frame="CA_AIRFRAME",
 )

@@ -98,9 +98,9 @@ class SettingsCheck:
         return self._values
 
     @property
-    def without_link(self) -> str | None:
+    def link_loss_action(self) -> str | None:
         """What these settings make of a lost link; None until those that decide are known."""
-        return self._settings.without_link(self._values)
+        return self._settings.link_loss_action(self._values)
 
     @property
     def frame(self) -> int | None:

@@ -18,7 +18,7 @@ from link.core import Received
 
 async def show(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Print who is in control."""
-    await session.take_part()
+    await session.prove_session()
     # Also if it is known: another verb may just have changed it.
     await session.request_message(m.ControlStatus, DRIVER_WITHIN)
     control, takeover = session.vehicle.control, session.contact.details.takeover

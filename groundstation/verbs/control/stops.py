@@ -86,7 +86,7 @@ async def _begin(
         more = 0.0 if session.core.has_heard_all else ALONE_AFTER
     else:
         more = max(0.0, session.began + min(options.wait, options.timeout or REPEAT_FOR) - session.now)
-    return await session.look_for(lambda: len(session.core.contacts) > count, more)
+    return await session.wait_until_true(lambda: len(session.core.contacts) > count, more)
 
 
 def _begin_blind(session: VerbSession, kind: StopKind, vehicle: int | None) -> BlindStop:
@@ -161,7 +161,7 @@ async def estop(session: VerbSession, options: argparse.Namespace, output: Outpu
         return await _emergency_stop(session, options, output)
     await session.find_vehicle(options.wait, options.vehicle, session.where)
     await session.need_only_vehicle(options.vehicle)
-    await session.take_part()
+    await session.prove_session()
     commands = session.services.commands
     report = await session.request(
         lambda number, now: commands.send(

@@ -13,7 +13,7 @@ from groundstation.station.view_feed import ViewSource
 from groundstation.views.line import RUNNING, LineRequest, LineView
 
 if TYPE_CHECKING:
-    from groundstation.verbs.line.desk import LineDesk
+    from groundstation.verbs.line.line_commands import LineCommands
 
 PERIOD = 0.1
 """s between two views."""
@@ -24,7 +24,7 @@ class LineLoader:
 
     def __init__(self, station: Station, flush: Callable[[], None]) -> None:
         self._station, self._flush = station, flush
-        self._desk: LineDesk | None = None
+        self._commands: LineCommands | None = None
         self._loading: asyncio.Task[None] | None = None
         self._waiting: list[RunLine] = []
         station.views.add(LineRequest, ViewSource(self._build, period=PERIOD))
@@ -36,24 +36,24 @@ class LineLoader:
         self._run_waiting(now)
 
     def _build(self, request: LineRequest, now: float, wall: float) -> LineView:
-        if self._desk is None:
+        if self._commands is None:
             self._load()
             return LineView(request.number, RUNNING, "", request.text)
-        return self._desk.build(request)
+        return self._commands.build(request)
 
     def _run_waiting(self, now: float) -> None:
-        if self._desk is None:
+        if self._commands is None:
             self._load()
             return
         waiting, self._waiting = self._waiting, []
         for intent in waiting:
-            self._desk.run(intent, now)
+            self._commands.run(intent, now)
 
     def _load(self) -> None:
         if self._loading is None:
             self._loading = asyncio.get_running_loop().create_task(self._import())
 
     async def _import(self) -> None:
-        module = await asyncio.to_thread(import_module, "groundstation.verbs.line.desk")
-        self._desk = module.LineDesk(self._station, self._flush)
+        module = await asyncio.to_thread(import_module, "groundstation.verbs.line.line_commands")
+        self._commands = module.LineCommands(self._station, self._flush)
         self._run_waiting(asyncio.get_running_loop().time())

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from groundstation.vehicles.state.vehicle_state import VehicleState
-from groundstation.verbs.line import own
+from groundstation.verbs.line import overrides
 from groundstation.verbs.line.session import LineOutput, LineSession
 
 Own = Callable[[LineSession, argparse.Namespace, LineOutput], Awaitable[int]]
@@ -50,16 +50,16 @@ def _on(screen: str) -> LineRule:
 LINE_RULES: Mapping[str, LineRule] = {
     "status": _on("the Drive screen (F1)"), "vehicles": _on(_LINKS), "links": _on(_LINKS),
     "arm": LineRule(elsewhere=f"{_HOLD_KEY}: r"),
-    "disarm": LineRule(own=own.disarm), "stop": LineRule(own=own.stop),
-    "estop": LineRule(own=own.emergency_stop),
-    "control show": LineRule(own=own.show_control), "control request": LineRule(own=own.request_control),
-    "control release": LineRule(own=own.release_control),
+    "disarm": LineRule(own=overrides.disarm), "stop": LineRule(own=overrides.stop),
+    "estop": LineRule(own=overrides.emergency_stop),
+    "control show": LineRule(own=overrides.show_control), "control request": LineRule(own=overrides.request_control),
+    "control release": LineRule(own=overrides.release_control),
     "control give": LineRule(elsewhere="Y on Drive gives control to the ground station that asks for it"),
     "goto": _ASK, "home": _ASK, "speed": _RUN,
     "drive": LineRule(elsewhere="the keys of the Drive screen (F1) drive"),
     "messages": _on(_MESSAGES), "watch": _on(_MESSAGES), "ping": _on(_LINKS),
     "send": LineRule(elsewhere="use `groundstation send` in a shell, over another link of the vehicle"),
-    "command": _ASK, "request": LineRule(own=own.request_message), "rate": LineRule(own=own.set_rate),
+    "command": _ASK, "request": LineRule(own=overrides.request_message), "rate": LineRule(own=overrides.set_rate),
     "param get": _RUN, "param set": _ASK, "param store": _ASK, "param reset": _ASK,
     "param save": _on(_PARAMS), "param load": _on(_PARAMS), "param diff": _on(_PARAMS),
     **{f"{plan} {action}": _RUN for plan in ("mission", "fence", "rally") for action in ("show",)},

@@ -53,7 +53,7 @@ class LineSession(StationVerbSession):
         """Return nothing: the header of each screen says how the vehicle signs."""
         return ""
 
-    async def take_part(self) -> None:
+    async def prove_session(self) -> None:
         """Do nothing: the station proves its session."""
 
     async def request(self, start: RequestStart, interrupted: Interrupted | None = None) -> RequestReport:

@@ -83,7 +83,7 @@ def check_watch(options: argparse.Namespace) -> None:
 async def watch(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Print each message of a kind, until a condition holds or the time is over."""
     watcher = _Watcher(session, options, output)
-    ended = asyncio.ensure_future(session.core.add_look(lambda: watcher.reached))
+    ended = asyncio.ensure_future(session.core.add_waiter(lambda: watcher.reached))
     session.core.taps.append(watcher.handle)
     try:
         await asyncio.wait({ended, watcher.broken}, timeout=options.timeout, return_when=asyncio.FIRST_COMPLETED)

@@ -78,7 +78,7 @@ def _warn_of_no_effect(session: VerbSession, output: Output) -> None:
 
 async def _send_demand(session: VerbSession, options: argparse.Namespace) -> int:
     """Send neutral, the demand, and neutral in any case."""
-    await session.take_part()
+    await session.prove_session()
     contact, state = session.contact, session.vehicle
     if contact.other_driver is not None and not contact.state.control.silent:
         raise VerbError(ExitCode.NOT_IN_CONTROL, f"GCS {contact.other_driver} is in control of {state.name}")

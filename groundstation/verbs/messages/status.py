@@ -126,7 +126,7 @@ async def links(session: VerbSession, options: argparse.Namespace, output: Outpu
 async def _compare_senders(session: VerbSession, output: Output) -> None:
     """Say if several vehicles use the id of this one; senders that differ are heard until a late link is none."""
     senders = session.vehicle.senders
-    await session.look_for(
+    await session.wait_until_true(
         lambda: not senders.differ(session.now) or bool(senders.describe_twins(session.now)), DIFFERS_FOR + PERIOD
     )
     if twins := senders.describe_twins(session.now):
@@ -144,7 +144,7 @@ class _Asker:
         """Request what was not heard lately; `every`: also what is asked for once only, until COMPLETE_WITHIN."""
         until = self._session.now + COMPLETE_WITHIN
         while await self._ask_round(until, every=every) and every and self._missing() and self._session.now < until:
-            await self._session.look_for(lambda: not self._missing(), ASK_PERIOD)
+            await self._session.wait_until_true(lambda: not self._missing(), ASK_PERIOD)
 
     async def _ask_round(self, until: float, *, every: bool) -> bool:
         """Request each message once, as long as the vehicle takes requests; return whether it answers at all."""

@@ -10,7 +10,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, MissionType, command_name
 from dialects.mode_tables import HOLD
 from dialects.modes import Mode
-from groundstation.geo import LocalFrame, Place, find_way, is_on_earth
+from groundstation.geo import LocalFrame, Place, find_separation, is_on_earth
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.arguments import finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -149,7 +149,7 @@ def _returns(session: VerbSession) -> bool:
 
 def _holds_at_home(session: VerbSession) -> bool:
     """Return whether it stands at home: it has arrived between two heartbeats, or was there already."""
-    way = find_way(session.contact.details.place, session.contact.details.home)
+    way = find_separation(session.contact.details.place, session.contact.details.home)
     return way is not None and way.distance <= AT_HOME and session.vehicle.mode == HOLD
 
 

@@ -16,7 +16,7 @@ from groundstation.station.operator_core import OperatorCore
 from groundstation.station_socket.verb_run import FileAnswered, FileAsked, Printed, RunVerb, VerbEnded
 from groundstation.verbs.action import VerbAction
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.common.later import LaterName, LaterResult
+from groundstation.verbs.common.lazy import LazyAttribute, LazyCall
 from groundstation.verbs.line.parser import LineParser
 from groundstation.verbs.main import build_parser, check_options, choose_action
 from groundstation.verbs.performing import perform
@@ -94,7 +94,7 @@ class ShellVerb:
         kept = KeptSession(self._station.operator.session, follows=self._follows)
         session = StationVerbSession(core, core.flush, output.progress)
         session.files = self._files
-        session.where = " ".join(self._station.surroundings.endpoints)
+        session.where = " ".join(self._station.station_info.endpoints)
         core.join()
         verb = asyncio.ensure_future(perform(session, action, options, output, group, kept, self._note_vehicle))
         try:
@@ -120,6 +120,6 @@ def _parse(words: tuple[str, ...]) -> tuple[VerbAction, argparse.Namespace]:
     options = build_parser(words[0], LineParser).parse_args(words[1:])
     action = choose_action(words[0], options)
     check_options(action, options)
-    if isinstance(action.run, LaterName | LaterResult):
+    if isinstance(action.run, LazyAttribute | LazyCall):
         action = replace(action, run=action.run.resolve())
     return action, options

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from dialects import messages as m
 from dialects.enums import Command
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog, VehicleText
@@ -75,9 +75,9 @@ class VehicleContact:
         return self.state.driver == self.ids[0] and not self.in_control and not self.state.control.silent
 
     @property
-    def driven(self) -> DrivenVehicle:
+    def driven(self) -> WatchdogTarget:
         """What the watchdog must know."""
-        return DrivenVehicle.of(self.state, self.session, verified=self.verified)
+        return WatchdogTarget.of(self.state, self.session, verified=self.verified)
 
     def start(self, job: Job, now: float) -> None:
         """Begin a job."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from dialects import messages as m
 from dialects.kinds import AUTOPILOT_COMPONENT
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.vehicles.demand.drive_gate import drive_refusal
 from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
@@ -63,7 +63,7 @@ class VerbCore:
         self._wanted = wanted
         self._session = session
         self._heartbeat = HeartbeatSender(0.0)
-        self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message; the HEARTBEAT of a vehicle begins the conversation."""
@@ -128,15 +128,15 @@ class VerbCore:
             return ""
         return f"; {SIGNS}"
 
-    def driven(self) -> tuple[DrivenVehicle, ...]:
+    def driven(self) -> tuple[WatchdogTarget, ...]:
         """Return what the watchdog must know. It sends no neutral to a kind that is not driven: it may fall by it."""
         chosen = self.chosen
         return (chosen.driven,) if chosen is not None and chosen.state.model.is_driven else ()
 
-    def add_look(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
+    def add_waiter(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
         """Return a future that is done once `condition` holds, checked after each message and tick."""
         found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._looks.append((condition, found))
+        self._waiters.append((condition, found))
         return found
 
     def _add(self, received: Received, now: float) -> None:
@@ -169,7 +169,7 @@ class VerbCore:
                 return
 
     def _look(self) -> None:
-        for condition, found in self._looks:
+        for condition, found in self._waiters:
             if not found.done() and condition():
                 found.set_result(None)
-        self._looks = [each for each in self._looks if not each[1].done()]
+        self._waiters = [each for each in self._waiters if not each[1].done()]

@@ -7,7 +7,7 @@ import socket
 from collections.abc import Callable, Hashable, Sequence
 
 from dialects.messages import Message
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.stall import StallMonitor
 from groundstation.watchdog.feed import WatchdogFeed
 from link.signing.signing import Signing
@@ -44,7 +44,7 @@ class DemandGuard:
         """Forget it: what was demanded before is withdrawn, and a new demand may follow."""
         self._stall = None
 
-    async def run(self, driven: Callable[[], Sequence[DrivenVehicle]]) -> None:
+    async def run(self, driven: Callable[[], Sequence[WatchdogTarget]]) -> None:
         """Report what is driven until cancelled."""
         loop = asyncio.get_running_loop()
         while True:

@@ -43,7 +43,7 @@ class DoctorSession:
     ) -> None:
         self._core, self._feed, self._request, self._runner = core, feed, request, runner
         self._numbers = 0
-        self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
     def take_number(self) -> int:
         """Return the number of the next request."""
@@ -69,7 +69,7 @@ class DoctorSession:
     async def until(self, condition: Callable[[], bool], within: float) -> bool:
         """Wait until a condition holds, `within` s at most; return whether it does."""
         found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._looks.append((condition, found))
+        self._waiters.append((condition, found))
         self.look()
         try:
             async with asyncio.timeout(within):
@@ -80,10 +80,10 @@ class DoctorSession:
 
     def look(self) -> None:
         """Check what the verb waits for."""
-        for condition, found in self._looks:
+        for condition, found in self._waiters:
             if not found.done() and condition():
                 found.set_result(None)
-        self._looks = [each for each in self._looks if not each[1].done()]
+        self._waiters = [each for each in self._waiters if not each[1].done()]
 
     async def find_vehicle(self, wait: float, wanted: int | str | None) -> bool:
         """Wait for a vehicle and select it; return whether it is there."""

@@ -26,8 +26,8 @@ from link.protocol.log_tap import LogTap
 
 if TYPE_CHECKING:
     from groundstation.verbs.session.demand_guard import DemandGuard
+    from link.link_signing import LinkSigning
     from link.runner import Runner
-    from link.signing_keeper import SigningKeeper
 
 PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
@@ -141,7 +141,7 @@ class VerbSession:
             return
         await asyncio.sleep(max(0.0, self.began + seconds - self.now))
 
-    async def take_part(self) -> None:
+    async def prove_session(self) -> None:
         """Prove this session, so that the vehicle accepts commands that need control.
 
         A vehicle that says neither that it has our dialect nor that it has not is treated as one without.
@@ -169,17 +169,17 @@ class VerbSession:
         """Wait until `condition` holds; return whether it does. Raises VerbError if a message may not be sent."""
         if condition():
             return True
-        await self.look_for(lambda: condition() or bool(self._refusal), seconds)
+        await self.wait_until_true(lambda: condition() or bool(self._refusal), seconds)
         self.need_sent()
         return condition()
 
-    async def look_for(self, condition: Callable[[], bool], seconds: float) -> bool:
+    async def wait_until_true(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Wait until `condition`, which is about all vehicles, holds; return whether it does."""
         if condition():
             return True
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(seconds):  # wait_for() may lose a cancellation
-                await self.core.add_look(condition)
+                await self.core.add_waiter(condition)
         return condition()
 
     def explain_silence(self) -> str:
@@ -217,7 +217,7 @@ class VerbSession:
         start(number, self.now)
         self.flush()
         try:
-            await self.core.add_look(lambda: self._collect(number) or bool(self._refusal))
+            await self.core.add_waiter(lambda: self._collect(number) or bool(self._refusal))
         except asyncio.CancelledError:
             if interrupted is not None:
                 interrupted(number)
@@ -265,7 +265,7 @@ async def run_session(
     session: int,
     station: StationLink | None = None,
     log_tap: LogTap | None = None,
-    signing: SigningKeeper | None = None,
+    signing: LinkSigning | None = None,
     patience: float = math.inf,
 ) -> int:
     """Open the links, run the script, and return its exit code. Raises EndpointError, LinkError, VerbError.

@@ -199,7 +199,7 @@ class StationVerbSession(VerbSession):
         self.flush()
         try:
             if not ended:
-                await self.core.add_look(lambda: bool(ended) or bool(self._refusal))
+                await self.core.add_waiter(lambda: bool(ended) or bool(self._refusal))
         except asyncio.CancelledError:
             if interrupted is not None:
                 interrupted(number)

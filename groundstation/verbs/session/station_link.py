@@ -13,10 +13,10 @@ from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.relay import (
     MAX_RELAYED,
     DemandRefused,
-    Heard,
     HeardMessage,
     LinksReport,
     MessageRefused,
+    ReceivedBatch,
     ToSend,
     decode_from_station,
     encode,
@@ -136,7 +136,7 @@ class StationRunner:
 
     def _handle(self, packet: bytes, now: float) -> None:
         match decode_from_station(packet):
-            case Heard(messages):
+            case ReceivedBatch(messages):
                 for heard in messages:
                     self._take(heard, now)
             case LinksReport() as links:

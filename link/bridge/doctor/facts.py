@@ -32,7 +32,7 @@ class Route(msgspec.Struct, frozen=True):
     """Other endpoints on which the same system and component was heard."""
 
 
-class Heard(msgspec.Struct, frozen=True):
+class TrafficSample(msgspec.Struct, frozen=True):
     """What arrived on one endpoint."""
 
     received: int = 0
@@ -62,7 +62,7 @@ class EndpointFacts(msgspec.Struct, frozen=True):
     """Why it does not open or work, and what to do; without the name of the endpoint."""
     holders: tuple[str, ...] = ()
     """Programs that have its port."""
-    heard: Heard = Heard()
+    heard: TrafficSample = TrafficSample()
     routes: tuple[Route, ...] = ()
     alone: bool = False
     """No other endpoint was given."""

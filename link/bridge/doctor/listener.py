@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from dialects import codec
 from dialects.messages import Heartbeat
-from link.bridge.doctor.facts import Heard, Route, Source
+from link.bridge.doctor.facts import Route, Source, TrafficSample
 from link.protocol.frame import MAX_UNKNOWN, Frame, FramerCounts, find_mismatches
 from link.protocol.framer import Framer
 from link.routing.router import Router
@@ -56,12 +56,12 @@ class EndpointListener:
         """Handle the end of the connection to `address`."""
         self._router.table.handle_disconnect(link, address)
 
-    def heard(self, link: int) -> Heard:
+    def heard(self, link: int) -> TrafficSample:
         """Return what has arrived on a link."""
         endpoint, counts = self._endpoints[link], FramerCounts()
         for framer in endpoint.framers.values():
             counts.add(framer.counts)
-        return Heard(
+        return TrafficSample(
             received=endpoint.received,
             addresses=len(endpoint.framers),
             frames=counts.frames,

@@ -17,7 +17,7 @@ from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing
 from link.services.mission.items import Items
 from link.services.mission.plans import PlanSet
-from link.services.mission.upload import Sender
+from link.services.mission.upload import MissionPeer
 
 WRITE_TIMEOUT = 8.0
 """s for a disk: as long as the vehicle waits for an item. Clients repeat their last message, or give up before."""
@@ -57,7 +57,7 @@ class PlanChange(msgspec.Struct):
     longer than a proof of the sender is valid. Checked before the write and again after it."""
     build_reply: Callable[[MissionResult, float], list[Outgoing]] = lambda verdict, now: []
     """Builds the reply."""
-    sender: Sender | None = None
+    sender: MissionPeer | None = None
     cause: m.Message | None = None
     """The sender's last message, which has no reply yet."""
     verdict: MissionResult | None = None

@@ -15,7 +15,7 @@ from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing, Peer, Received
 from link.services.mission.items import to_message
 from link.services.mission.plans import PlanSet
-from link.services.mission.upload import Sender, ack, sender_of
+from link.services.mission.upload import MissionPeer, ack, sender_of
 from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 
 MAX_CLIENTS = 8
@@ -55,14 +55,14 @@ class PlanDownloads:
                 del self._under_way[peer]
         return outgoing
 
-    def _count(self, message: m.MissionRequestList, sender: Sender) -> Outgoing:
+    def _count(self, message: m.MissionRequestList, sender: MissionPeer) -> Outgoing:
         kind = self._plans.kind(message.mission_type)
         if kind is None:
             return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
         count, plan_id = len(self._plans[kind]), self._plans.get_id(kind)
         return Outgoing(m.MissionCount(sender.system, sender.component, count, kind, plan_id), sender.peer)
 
-    def _item(self, message: m.MissionRequestInt | m.MissionRequest, sender: Sender) -> Outgoing:
+    def _item(self, message: m.MissionRequestInt | m.MissionRequest, sender: MissionPeer) -> Outgoing:
         kind = self._plans.kind(message.mission_type)
         if kind is None:
             return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
@@ -70,7 +70,7 @@ class PlanDownloads:
             return ack(sender, kind, MissionResult.INVALID_SEQUENCE)
         return self._build_item(message.seq, kind, sender)
 
-    def _begin_partial(self, message: m.MissionRequestPartialList, sender: Sender) -> list[Outgoing]:
+    def _begin_partial(self, message: m.MissionRequestPartialList, sender: MissionPeer) -> list[Outgoing]:
         kind = self._plans.kind(message.mission_type)
         if kind is None:
             return [ack(sender, message.mission_type, MissionResult.UNSUPPORTED)]
@@ -83,7 +83,7 @@ class PlanDownloads:
         self._under_way[sender.peer] = deque(self._build_item(index, kind, sender) for index in range(first, last + 1))
         return []
 
-    def _build_item(self, index: int, kind: MissionType, sender: Sender) -> Outgoing:
+    def _build_item(self, index: int, kind: MissionType, sender: MissionPeer) -> Outgoing:
         current = kind is MissionType.MISSION and self._current() == index
         target = (sender.system, sender.component)
         return Outgoing(to_message(self._plans[kind][index], index, kind, target, current=current), sender.peer)

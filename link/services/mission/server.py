@@ -18,7 +18,7 @@ from link.services.mission.commit import PlanBackend, PlanChange, PlanChanges
 from link.services.mission.download import PlanDownloads
 from link.services.mission.items import ItemRequest, Items, MissionItem, PlanRules, from_message, item_request
 from link.services.mission.plans import PlanSet
-from link.services.mission.upload import EndedUpload, PlanUpload, Sender, ack, sender_of
+from link.services.mission.upload import EndedUpload, MissionPeer, PlanUpload, ack, sender_of
 from link.services.pacing import BulkPacer
 
 _Begin = m.MissionCount | m.MissionWritePartialList | m.MissionClearAll
@@ -183,7 +183,7 @@ class MissionServer:
             case _:
                 return [self._begin_partial_upload(message, sender, kinds[0], now)]
 
-    def _is_saving(self, kind: MissionType, message: _Begin, sender: Sender) -> bool:
+    def _is_saving(self, kind: MissionType, message: _Begin, sender: MissionPeer) -> bool:
         """Return whether the sender's last change is still being written; it will repeat this request.
 
         A reply to that change would look like one to this request, so there is none any more, unless this one repeats
@@ -216,7 +216,7 @@ class MissionServer:
         return [upload.request_item(now)]
 
     def _begin_partial_upload(
-        self, message: m.MissionWritePartialList, sender: Sender, kind: MissionType, now: float
+        self, message: m.MissionWritePartialList, sender: MissionPeer, kind: MissionType, now: float
     ) -> Outgoing:
         items, first, last = self.plan(kind), message.start_index, message.end_index
         if not 0 <= first <= last < len(items):
@@ -267,7 +267,7 @@ class MissionServer:
         )
         return self._changes.begin(change, now)
 
-    def _handle_ack(self, message: m.MissionAck, sender: Sender, now: float) -> list[Outgoing]:
+    def _handle_ack(self, message: m.MissionAck, sender: MissionPeer, now: float) -> list[Outgoing]:
         """Handle an error from the uploader: it cancels, or wants requests of the other kind."""
         kind = self._plans.kind(message.mission_type)
         upload = None if kind is None else self._uploads.get(kind)

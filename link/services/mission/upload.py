@@ -23,7 +23,7 @@ REPEAT_WINDOW = 10.0
 """s in which the last item, repeated because our MISSION_ACK was lost, is acknowledged again."""
 
 
-class Sender(NamedTuple):
+class MissionPeer(NamedTuple):
     """The sender of a message."""
 
     peer: Peer
@@ -31,12 +31,12 @@ class Sender(NamedTuple):
     component: int
 
 
-def sender_of(received: Received) -> Sender:
+def sender_of(received: Received) -> MissionPeer:
     """Return the sender to reply to."""
-    return Sender(received.peer, received.system, received.component)
+    return MissionPeer(received.peer, received.system, received.component)
 
 
-def ack(sender: Sender, kind: int, verdict: MissionResult, plan_id: int = 0) -> Outgoing:
+def ack(sender: MissionPeer, kind: int, verdict: MissionResult, plan_id: int = 0) -> Outgoing:
     """Return MISSION_ACK. `plan_id`: id of the new plan at the end of an upload."""
     return Outgoing(m.MissionAck(sender.system, sender.component, verdict, kind, plan_id), sender.peer)
 
@@ -44,13 +44,13 @@ def ack(sender: Sender, kind: int, verdict: MissionResult, plan_id: int = 0) -> 
 class EndedUpload(msgspec.Struct, frozen=True):
     """The end of an upload, to be acknowledged again when the MISSION_ACK got lost."""
 
-    sender: Sender
+    sender: MissionPeer
     last: int
     """Number of the item that ended it."""
     at: float
     ack: Outgoing
 
-    def repeat_ack(self, sequence: int, sender: Sender, now: float) -> list[Outgoing]:
+    def repeat_ack(self, sequence: int, sender: MissionPeer, now: float) -> list[Outgoing]:
         """Return the MISSION_ACK again if the sender of the upload has repeated its last item."""
         repeated = (sender, sequence) == (self.sender, self.last) and now - self.at <= REPEAT_WINDOW
         return [self.ack] if repeated else []
@@ -61,7 +61,7 @@ class PlanUpload:
 
     def __init__(
         self,
-        sender: Sender,
+        sender: MissionPeer,
         kind: MissionType,
         rules: PlanRules,
         *,

@@ -69,10 +69,10 @@ def taken(station: StationSigning, now: float) -> str:
 
 def test_a_running_station_adopts_keys_made_chosen_and_forgotten(keys: Path) -> None:
     station = StationSigning(0.0)
-    assert station.keeper.guard(0) is None, "without keys nothing is computed"
+    assert station.link_signing.guard(0) is None, "without keys nothing is computed"
     first = make_key(keys, "first", Role.SET_UP)
     assert taken(station, 1.0) == f"keys changed: first ({first.fingerprint}); first signs"
-    assert station.keeper.guard(0) is not None
+    assert station.link_signing.guard(0) is not None
     make_key(keys, "second", Role.SET_UP)
     use_key(keys, "second")
     while not taken(station, 100.0).endswith("second signs"):
@@ -81,7 +81,7 @@ def test_a_running_station_adopts_keys_made_chosen_and_forgotten(keys: Path) -> 
     remove_key(keys, "second")
     while "there is none; nothing is signed" not in taken(station, 200.0):
         pass
-    assert station.keeper.guard(0) is None
+    assert station.link_signing.guard(0) is None
     assert station.version >= 3
     station.close()
 
@@ -102,10 +102,10 @@ def test_a_chosen_key_that_is_gone_and_a_broken_file_are_told(keys: Path) -> Non
     assert taken(station, 1.0).endswith("first signs; --sign-key second is gone")
     break_file(keys)
     assert "the keys of before stay in force" in taken(station, 100.0)
-    assert station.keeper.signing.ring.find("first") is not None
+    assert station.link_signing.signing.ring.find("first") is not None
     keys.unlink()
     assert "nothing unsigned is taken" in taken(station, 200.0)
-    assert station.keeper.guard(0) is not None, "who requires signing does not get less by losing the keys"
+    assert station.link_signing.guard(0) is not None, "who requires signing does not get less by losing the keys"
     station.close()
 
 
@@ -114,10 +114,10 @@ def test_another_process_reads_changed_keys_at_once(keys: Path) -> None:
     watchdog = StationSigning(0.0)
     make_key(keys, "first", Role.SET_UP)
     watchdog.reload()
-    assert watchdog.keeper.signing.ring.find("first") is not None
+    assert watchdog.link_signing.signing.ring.find("first") is not None
     break_file(keys)
     watchdog.reload()
-    assert watchdog.keeper.signing.ring.find("first") is not None
+    assert watchdog.link_signing.signing.ring.find("first") is not None
 
 
 @pytest.mark.parametrize("required", [False, True])

@@ -16,13 +16,13 @@ class Clock:
         self.now = 100.0
         self._count = 0
 
-    def run(self, seconds: float, *, rests: bool, decisive: Hashable = 0) -> list[float]:
+    def run(self, seconds: float, *, rests: bool, urgent_state: Hashable = 0) -> list[float]:
         """Return when snapshots were due."""
         sent = []
         for _ in range(round(seconds / SLOT)):
             self._count += 1
             self.now = 100.0 + self._count * SLOT + (0.003 if self._count % 2 else 0.0)
-            if self.pace.is_due(self.now, rests=rests, decisive=decisive):
+            if self.pace.is_due(self.now, rests=rests, urgent_state=urgent_state):
                 sent.append(self.now)
         return sent
 
@@ -57,8 +57,8 @@ def test_the_end_of_a_rest_shows_within_the_steady_period() -> None:
 def test_what_a_driver_must_see_shows_in_the_next_call_each_time() -> None:
     clock = Clock()
     clock.run(2.5, rests=False)
-    assert len([each for each in range(1, 21) if clock.run(SLOT, rests=False, decisive=each)]) == 20
-    assert len(clock.run(5.0, rests=False, decisive=20)) == 25
+    assert len([each for each in range(1, 21) if clock.run(SLOT, rests=False, urgent_state=each)]) == 20
+    assert len(clock.run(5.0, rests=False, urgent_state=20)) == 25
 
 
 def test_what_a_screen_has_done_ends_the_rest_for_a_while() -> None:
@@ -71,7 +71,7 @@ def test_what_a_screen_has_done_ends_the_rest_for_a_while() -> None:
 
 def test_a_new_log_line_is_in_the_next_call_and_ends_the_rest() -> None:
     clock = Clock()
-    clock.run(2.5, rests=True, decisive=4)
-    (first, *_) = clock.run(0.3, rests=True, decisive=5)
+    clock.run(2.5, rests=True, urgent_state=4)
+    (first, *_) = clock.run(0.3, rests=True, urgent_state=5)
     assert first == clock.now - 2 * SLOT or clock.now - first > 1.5 * SLOT
-    assert len(clock.run(LIVELY, rests=True, decisive=5)) >= 4
+    assert len(clock.run(LIVELY, rests=True, urgent_state=5)) >= 4

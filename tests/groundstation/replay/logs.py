@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, ModeFlag
-from groundstation.replay.desk import ReplayDesk
 from groundstation.replay.log_index import LogIndex
+from groundstation.replay.log_replay import LogReplay
 from groundstation.station.station import Station
 from link.tlog.tlog import encode_record
 
@@ -105,14 +105,14 @@ def build_station(system: int, now: float) -> Station:
     return Station(("test.tlog",), system=system, now=now)
 
 
-def open_desk(data: bytes, *, at: str = "", build: Callable[[int, float], Station] = build_station) -> ReplayDesk:
+def open_desk(data: bytes, *, at: str = "", build: Callable[[int, float], Station] = build_station) -> LogReplay:
     """Return a desk whose work is done."""
-    desk = ReplayDesk("test.tlog", BytesSource(data), build, at=at)
+    desk = LogReplay("test.tlog", BytesSource(data), build, at=at)
     finish(desk)
     return desk
 
 
-def finish(desk: ReplayDesk) -> None:
+def finish(desk: LogReplay) -> None:
     """Do all work."""
     for _ in range(10_000):
         if not desk.work():

@@ -23,7 +23,7 @@ from groundstation.export.exporter import ExportError
 from groundstation.host.replay_process import ReplayError, open_log
 from groundstation.intents import replay as r
 from groundstation.replay import log_index
-from groundstation.replay.desk import ReplayDesk
+from groundstation.replay.log_replay import LogReplay
 from tests.groundstation.replay.logs import GCS_TYPE, NO_AUTOPILOT, NOON, finish, open_desk
 from tests.link.frames import frame, version_1
 from tests.link.signing.signed import signed
@@ -116,7 +116,7 @@ def test_it_opens_without_damage_in_even_time(name: str) -> None:
     assert vehicle.speed == pytest.approx(15, abs=0.2)
 
 
-def go_to(desk: ReplayDesk, time: str) -> None:
+def go_to(desk: LogReplay, time: str) -> None:
     """Move to a time."""
     desk.handle(r.ReplayGoTo(time))
     finish(desk)

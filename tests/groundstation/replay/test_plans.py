@@ -11,7 +11,7 @@ from dialects.enums import MissionType
 from groundstation.intents import replay as r
 from groundstation.intents.watch import Watch
 from groundstation.replay import log_index
-from groundstation.replay.desk import ReplayDesk
+from groundstation.replay.log_replay import LogReplay
 from groundstation.replay.plans import MAX_OPEN
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.plan import PlanPage, PlanPageRequest, PlanRequest, PlanView
@@ -100,7 +100,7 @@ def plan_log() -> PlanLog:
 class MapScreen:
     """What the Map screen gets of a desk."""
 
-    def __init__(self, desk: ReplayDesk) -> None:
+    def __init__(self, desk: LogReplay) -> None:
         self._desk = desk
         self._now = 0.0
         self._views: list[View] = []

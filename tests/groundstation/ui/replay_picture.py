@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.replay.desk import ReplayDesk
+from groundstation.replay.log_replay import LogReplay
 from tests.groundstation.recorded_station import RECORDINGS
 from tests.groundstation.replay.logs import BytesSource, build_station, finish
 from tests.groundstation.ui import frames
@@ -14,7 +14,7 @@ MOMENT = "1:12"
 async def replay(size: tuple[int, int]) -> dict[str, frames.Picture]:
     """Return the picture of a moment in the recording."""
     data = (RECORDINGS / "ardurover.tlog").read_bytes()
-    desk = ReplayDesk("ardurover.tlog", BytesSource(data), build_station, at=MOMENT)
+    desk = LogReplay("ardurover.tlog", BytesSource(data), build_station, at=MOMENT)
     finish(desk)
     async with replay_console(desk, size) as screen:
         await screen.press("m", "shift+right", "m")

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.union import AnyIntent
-from groundstation.replay.desk import ReplayDesk
+from groundstation.replay.log_replay import LogReplay
 from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import Look
@@ -24,7 +24,7 @@ from tests.waits import until
 class ReplayStation:
     """A replay behind `screen`. Time passes in `run` only."""
 
-    def __init__(self, desk: ReplayDesk) -> None:
+    def __init__(self, desk: LogReplay) -> None:
         self.desk = desk
         self.screen = Recorder(self._handle)
         self._now = 0.0
@@ -71,7 +71,7 @@ class ReplayConsole:
 
 @contextlib.asynccontextmanager
 async def replay_console(
-    desk: ReplayDesk, size: tuple[int, int], *, first: str = "replay", look: Look | None = None, folder: Path = Path()
+    desk: LogReplay, size: tuple[int, int], *, first: str = "replay", look: Look | None = None, folder: Path = Path()
 ) -> AsyncIterator[ReplayConsole]:
     """The app at work with a replay on a screen."""
     station = ReplayStation(desk)

@@ -10,7 +10,7 @@ import pytest
 
 from groundstation.intents.driving import DriveKeyDown, SetStyle
 from groundstation.intents.vehicle import Arm
-from groundstation.replay.desk import ReplayDesk
+from groundstation.replay.log_replay import LogReplay
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, REPLAY
 from groundstation.ui.look.appearance import Look
 from tests.groundstation.replay.logs import drive_log, open_desk
@@ -35,7 +35,7 @@ def damaged(data: bytes) -> bytes:
     return data[:9000] + bytes(300) + data[9300:-7]
 
 
-def open_drive(*, hurt: bool = False) -> ReplayDesk:
+def open_drive(*, hurt: bool = False) -> LogReplay:
     """Return a replay at 35 s of a drive, in AUTO."""
     data = bytes(drive_log().data)
     return open_desk(damaged(data) if hurt else data, at="35")

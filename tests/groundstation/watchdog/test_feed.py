@@ -11,14 +11,14 @@ from contextlib import ExitStack
 import pytest
 
 from dialects.messages import Heartbeat, ManualControl, RcChannelsOverride
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.watchdog.feed import WatchdogFeed
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
 from link.endpoint import Side
 from link.links import open_links
 from link.transport.transport import Link
 
-ROVER = DrivenVehicle(system=1, component=1, name="rover 1", autopilot=3)
+ROVER = WatchdogTarget(system=1, component=1, name="rover 1", autopilot=3)
 DEMAND = ManualControl(target=1, x=600, y=0, z=0, r=0, buttons=0)
 
 
@@ -142,7 +142,7 @@ def test_overrides_are_demands_and_other_messages_are_not(rig: Rig) -> None:
 
 
 def test_a_route_is_that_of_its_own_vehicle(rig: Rig) -> None:
-    other = DrivenVehicle(system=2, component=1, name="rover 2", autopilot=3)
+    other = WatchdogTarget(system=2, component=1, name="rover 2", autopilot=3)
     assert rig.feed.report([other, ROVER], rig.now)
     data, descriptors, _, _ = socket.recv_fds(rig.theirs, MAX_REPORT, MAX_OUTLETS)
     assert [route.vehicle for route in decode_report(data).routes] == [1]

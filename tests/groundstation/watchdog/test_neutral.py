@@ -8,20 +8,20 @@ from pymavlink.dialects.v10 import ardupilotmega as mavlink
 from dialects import codec
 from dialects.enums import Autopilot, OperatorFlag
 from dialects.messages import ManualControl, Message, RoverOperatorPresence
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.watchdog.neutral import NeutralFrames
 from groundstation.watchdog.report import DemandRoute
 from link.protocol.framer import Framer
-from link.protocol.signing_guard import SigningWay
+from link.protocol.signing_guard import SigningContext
 from link.signing.keys import KeyRing
 from link.signing.signature import is_signed, link_and_stamp
 from tests.link.signing.signed import DRIVER, NOW, keep
 
-ROVER = DrivenVehicle(system=4, component=9, name="Rover 4", autopilot=Autopilot.GENERIC, session=77, boot_time=5000)
-WAY = SigningWay(DRIVER.name, 250, 128)
+ROVER = WatchdogTarget(system=4, component=9, name="Rover 4", autopilot=Autopilot.GENERIC, session=77, boot_time=5000)
+WAY = SigningContext(DRIVER.name, 250, 128)
 
 
-def frames(vehicle: DrivenVehicle = ROVER, way: SigningWay | None = None, sequence: int = 0) -> NeutralFrames:
+def frames(vehicle: WatchdogTarget = ROVER, way: SigningContext | None = None, sequence: int = 0) -> NeutralFrames:
     return NeutralFrames(vehicle, (252, 191), DemandRoute(0, None, sequence, way), keep(DRIVER))
 
 

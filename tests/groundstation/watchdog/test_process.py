@@ -24,7 +24,7 @@ from dialects.messages import Heartbeat, ManualControl
 from groundstation.intents.session import Quit, RenewLease
 from groundstation.ipc import IntentBatch, decode_from_station, encode
 from groundstation.snapshot import StationOutage
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.watchdog.process import WatchdogProcess, fork_watchdog
 from groundstation.watchdog.report import DemandRoute, StationReport, encode_report
 from groundstation.watchdog.terminal_reset import RESET, TerminalReset
@@ -32,7 +32,7 @@ from link.protocol.framer import Framer
 from tests.groundstation.watchdog.test_terminal_guard import ignores_hangup
 from tests.waits import wait_until
 
-ARDUROVER = DrivenVehicle(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
+ARDUROVER = WatchdogTarget(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
 DRIVING = StationReport(vehicles=(ARDUROVER,), routes=(DemandRoute(0, None, 10),))
 ENDED = "station process ended: "
 

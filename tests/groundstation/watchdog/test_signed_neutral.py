@@ -7,17 +7,17 @@ import pytest
 
 from dialects.enums import Autopilot
 from dialects.messages import Heartbeat, RoverOperatorPresence
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.watchdog.report import DemandRoute, StationReport, decode_report, encode_report
 from groundstation.watchdog.watchdog import Watchdog
 from link.protocol.framer import Framer
-from link.protocol.signing_guard import SigningWay
+from link.protocol.signing_guard import SigningContext
 from link.signing.clock import TICKS
 from link.signing.signature import is_signed, link_and_stamp
 from tests.link.frames import frame as unsigned
 from tests.link.signing.signed import DAY, DRIVER, HERE, NOW, STRANGER, THERE, keep, send, signed, station, vehicle
 
-ROVER = DrivenVehicle(system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, session=7, boot_time=1000)
+ROVER = WatchdogTarget(system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, session=7, boot_time=1000)
 
 DISARMED = Heartbeat(10, 0, 0, 0, 3, 3)
 
@@ -65,7 +65,7 @@ def test_only_the_vehicle_itself_ends_the_neutral(frame: bytes, believed: bool) 
     """A forged or recorded HEARTBEAT that says disarmed neither ends it nor calms the driver."""
     rover = msgspec.structs.replace(ROVER, verified=True)
     watchdog = Watchdog(keep(DRIVER))
-    way = SigningWay(DRIVER.name, 0, 128)
+    way = SigningContext(DRIVER.name, 0, 128)
     watchdog.handle_report(StationReport(vehicles=(rover,), routes=(DemandRoute(0, None, 3, way),)), 0.1)
     watchdog.handle_end(0.2)
     for _, target, _ in watchdog.tick(0.2):

@@ -8,18 +8,18 @@ from dialects import codec
 from dialects import messages as m
 from dialects.enums import Autopilot, ModeFlag, OperatorFlag, VehicleType
 from groundstation.snapshot import StationOutage
-from groundstation.station.driving.driven import DrivenVehicle
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.stall import REST_STALL_TIMEOUT, STALL_TIMEOUT, StallMonitor
 from groundstation.watchdog.report import DemandRoute, StationReport
 from groundstation.watchdog.watchdog import SEND_FOR, Watchdog
 from link.protocol.framer import Framer
 
 STEP = 0.005
-ROVER = DrivenVehicle(system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, session=7, boot_time=1000)
-ARDUROVER = DrivenVehicle(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
+ROVER = WatchdogTarget(system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, session=7, boot_time=1000)
+ARDUROVER = WatchdogTarget(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
 
 
-def watching(*vehicles: DrivenVehicle) -> Watchdog:
+def watching(*vehicles: WatchdogTarget) -> Watchdog:
     """A watchdog with the report of a station that drives these, at 100 s; packet 10 was the newest."""
     watchdog = Watchdog()
     routes = tuple(DemandRoute(index, None, 10) for index in range(len(vehicles)))

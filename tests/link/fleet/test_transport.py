@@ -176,13 +176,13 @@ async def test_only_selected_vehicles_send_all_of_their_telemetry(port: int) -> 
             assert time.monotonic() < deadline
 
     await until_it_sends(20, 20)
-    station.transport.look_at(frozenset())
+    station.transport.set_interest(frozenset())
     await until_it_sends(0, 1)
-    station.transport.look_at(frozenset((1,)))
+    station.transport.set_interest(frozenset((1,)))
     await until_it_sends(20, 20)
-    station.transport.look_at(frozenset((2,)))
+    station.transport.set_interest(frozenset((2,)))
     await until_it_sends(0, 1)
-    station.transport.look_at(None)
+    station.transport.set_interest(None)
     await until_it_sends(20, 20)
     assert rover.transport.dropped == 0
     for each in (station, rover):
@@ -200,7 +200,7 @@ async def test_without_a_router_the_link_says_why_and_connects_later() -> None:
         await until(lambda: station.received and rover.received)
         assert station.transport.problem is None
     await until(lambda: "connection to the router lost; no router at" in (station.transport.problem or ""))
-    station.transport.look_at(frozenset())
+    station.transport.set_interest(frozenset())
     station.transport.send(heartbeat(0), "rover1")
     assert station.transport.dropped == 2
     with open_router(port):

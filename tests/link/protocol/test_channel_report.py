@@ -258,11 +258,11 @@ def test_missing_numbers_are_lost_only_of_system_that_sends_all() -> None:
             channel.receive(heartbeat(first, system, 1) + heartbeat(first + 2, system, 1), f"rover{system}", now)
         return [channel.report().sources[system, 1].lost for system in (1, 2)]
 
-    channel.look_at(frozenset((1,)), 0.0)
+    channel.set_interest(frozenset((1,)), 0.0)
     assert lost(0, 0.0) == [1, 0]
-    channel.look_at(frozenset((2,)), 0.1)
+    channel.set_interest(frozenset((2,)), 0.1)
     assert lost(3, 0.1) == [1, 0], "both: what was asked for takes 2 s at most to come"
     assert lost(6, 2.05) == [1, 0]
     assert lost(9, 2.15) == [1, 1]
-    channel.look_at(None, 2.3)
+    channel.set_interest(None, 2.3)
     assert lost(12, 4.35) == [2, 2]

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from link.link_signing import STORE_PERIOD, LinkSigning
 from link.signing.memory_file import FILE, MemoryFileError, load_memory, save_memory
 from link.signing.signing import SigningMemory
 from link.signing.streams import MAX_STREAMS, Span, Stream
 from link.signing.verifier import Refusal
-from link.signing_keeper import STORE_PERIOD, SigningKeeper
 from tests.link.signing.signed import ARM, DRIVER, NOON, NOW, keep, signed
 
 MEMORY = SigningMemory(
@@ -101,41 +101,41 @@ def test_a_file_of_root_belongs_to_the_owner_of_its_folder(tmp_path: Path) -> No
 def test_a_restart_replays_nothing(tmp_path: Path) -> None:
     path, frame = tmp_path / FILE, signed(ARM)
     for run in range(2):
-        keeper = SigningKeeper(keep(DRIVER).ring, path, 0.0, wall=lambda: NOON)
-        refused = keeper.signing.verifier.check(frame, 255, 190, 0.0) is Refusal.REPLAYED
+        link_signing = LinkSigning(keep(DRIVER).ring, path, 0.0, wall=lambda: NOON)
+        refused = link_signing.signing.verifier.check(frame, 255, 190, 0.0) is Refusal.REPLAYED
         assert refused is bool(run)
-        keeper.close(1.0)
+        link_signing.close(1.0)
 
 
 def test_killed_program_has_stored_at_first_frame_and_each_30_s(tmp_path: Path) -> None:
     path = tmp_path / FILE
-    keeper = SigningKeeper(keep(DRIVER).ring, path, 0.0, wall=lambda: NOON)
+    link_signing = LinkSigning(keep(DRIVER).ring, path, 0.0, wall=lambda: NOON)
     stored = []
     for now, stamp in ((1.0, NOW), (2.0, NOW + 1), (STORE_PERIOD + 1.0, NOW + 2)):
-        keeper.signing.verifier.check(signed(stamp=stamp), 255, 190, now)
-        keeper.update(now)
-        drain(keeper)
+        link_signing.signing.verifier.check(signed(stamp=stamp), 255, 190, now)
+        link_signing.update(now)
+        drain(link_signing)
         stored.append(max(load_memory(path).newest.values()))
     assert stored == [NOW, NOW, NOW + 2]
 
 
 def test_a_disk_that_is_full_is_told_once_and_stops_nothing(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "file").write_text("")
-    keeper = SigningKeeper(keep(DRIVER).ring, None, 0.0, wall=lambda: NOON)
-    keeper._path = tmp_path / "file" / FILE
+    link_signing = LinkSigning(keep(DRIVER).ring, None, 0.0, wall=lambda: NOON)
+    link_signing._path = tmp_path / "file" / FILE
     with caplog.at_level(logging.ERROR):
-        keeper.update(STORE_PERIOD)
-        keeper.update(2 * STORE_PERIOD)
-        keeper.close(2 * STORE_PERIOD)
+        link_signing.update(STORE_PERIOD)
+        link_signing.update(2 * STORE_PERIOD)
+        link_signing.close(2 * STORE_PERIOD)
     assert len(caplog.records) == 1
     assert "after a restart old signed frames may be accepted again" in caplog.text
-    assert keeper.signing.verifier.check(signed(), 255, 190, 61.0)
+    assert link_signing.signing.verifier.check(signed(), 255, 190, 61.0)
 
 
-def drain(keeper: SigningKeeper) -> None:
+def drain(link_signing: LinkSigning) -> None:
     """Wait for the writes that were submitted."""
-    keeper._worker.close(5.0)
-    keeper._worker._thread = None
+    link_signing._worker.close(5.0)
+    link_signing._worker._thread = None
 
 
 def test_a_file_that_cannot_be_read_is_one_line(tmp_path: Path) -> None:

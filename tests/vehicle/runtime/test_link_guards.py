@@ -18,11 +18,11 @@ from vehicle.cli.main import main
 from vehicle.config.config import ConfigError, parse_config
 from vehicle.config.run_settings import SettingsError
 from vehicle.config.signing import SigningSettings, build_policy
-from vehicle.runtime.key_keeper import KeyKeeper
 from vehicle.runtime.link_guards import NO_STATE, NOBODY, LinkGuards
+from vehicle.runtime.vehicle_keys import VehicleKeys
 
 
-def guards(settings: SigningSettings, endpoint: str, keys: KeyKeeper | None = None) -> LinkGuards:
+def guards(settings: SigningSettings, endpoint: str, keys: VehicleKeys | None = None) -> LinkGuards:
     return LinkGuards(settings, [endpoint], keys, None, 0.0)
 
 
@@ -60,7 +60,7 @@ def test_signing_that_is_required_without_a_key_does_not_start() -> None:
 def test_what_it_says_to_do_closes_the_network(tmp_path: Path) -> None:
     """The key of the advice is one that this vehicle reads; with allow_unsigned a key alone closes nothing."""
     place = "udpin:0.0.0.0:14550"
-    keys = KeyKeeper(tmp_path / FILE)
+    keys = VehicleKeys(tmp_path / FILE)
     try:
         advice = f"make a key with `vehicle key new NAME --state {tmp_path}`"
         assert f"nobody may drive: {advice}" in str(guards(SigningSettings(), place, keys).warning)
@@ -69,7 +69,7 @@ def test_what_it_says_to_do_closes_the_network(tmp_path: Path) -> None:
     finally:
         keys.close()
     assert main(["key", "new", "NAME", "--state", str(tmp_path)]) == 0
-    keys = KeyKeeper(tmp_path / FILE)
+    keys = VehicleKeys(tmp_path / FILE)
     try:
         assert guards(SigningSettings(), place, keys).warning is None
         allowed = guards(SigningSettings(allow_unsigned=True), place, keys)
@@ -105,7 +105,7 @@ def test_a_section_that_cannot_hold_is_one_line(text: str, problem: str) -> None
 
 def test_a_trusted_link_is_free_until_the_first_key_guards_it(tmp_path: Path) -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
-    keys = KeyKeeper(tmp_path / FILE)
+    keys = VehicleKeys(tmp_path / FILE)
     made = LinkGuards(SigningSettings(), [endpoint], keys, tmp_path / "signing.json", 0.0)
     links = open_links([endpoint], system=1, component=1)
     try:

@@ -24,7 +24,7 @@ from groundstation.ui.look.colours import (
     YELLOW,
     style,
 )
-from groundstation.ui.map.draw.plan_map_value import Leg, MapOutline, MapShape, PlanMapValue
+from groundstation.ui.map.draw.plan_map_value import LegState, MapOutline, MapShape, PlanMapValue
 from groundstation.ui.map.draw.window import MapWindow, ring_spacing
 from groundstation.ui.widgets.canvas import Canvas
 
@@ -48,7 +48,7 @@ MARKS: dict[str, tuple[str, str]] = {
     "other": (AMBER, FAINT),
 }
 """How a mark is drawn -> colour of its text and of its ground."""
-LEGS = {Leg.DONE: (GREEN, 2, 2), Leg.NOW: (YELLOW, 1, 0), Leg.TO_GO: (TEXT, 1, 1)}
+LEGS = {LegState.DONE: (GREEN, 2, 2), LegState.NOW: (YELLOW, 1, 0), LegState.TO_GO: (TEXT, 1, 1)}
 """Colour, dots and gap."""
 
 _LEGEND = (

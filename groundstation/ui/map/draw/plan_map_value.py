@@ -11,7 +11,7 @@ from groundstation.geo import Point
 from groundstation.ui.map.draw.window import MapWindow
 
 
-class Leg(Enum):
+class LegState(Enum):
     """How a leg of the mission is drawn: by line style, not by colour alone."""
 
     DONE = "done"
@@ -24,7 +24,7 @@ class MapLeg(msgspec.Struct, frozen=True):
 
     start: Point
     end: Point
-    look: Leg = Leg.TO_GO
+    look: LegState = LegState.TO_GO
 
 
 class MapMark(msgspec.Struct, frozen=True):

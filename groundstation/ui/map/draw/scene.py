@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import msgspec
 
 from groundstation.geo import LocalFrame, Place, Point
-from groundstation.ui.map.draw.plan_map_value import Leg, MapLeg, MapMark, MapOutline
+from groundstation.ui.map.draw.plan_map_value import LegState, MapLeg, MapMark, MapOutline
 from groundstation.ui.map.plan.checks import fence_shapes
 from groundstation.ui.map.plan.commands import CIRCLES, POLYGONS, RETURN_POINT, RTL
 from groundstation.ui.map.plan.geometry import place_of
@@ -63,7 +63,7 @@ def build_legs(route: Route, start: Point | None, current: int | None, reached: 
     for number, (index, point) in enumerate(zip(indices, points, strict=True)):
         if number % thin and number != len(points) - 1:
             continue
-        look = Leg.NOW if index == current else Leg.DONE if index in reached else Leg.TO_GO
+        look = LegState.NOW if index == current else LegState.DONE if index in reached else LegState.TO_GO
         if before is not None:
             legs.append(MapLeg(before, point, look))
         before = point

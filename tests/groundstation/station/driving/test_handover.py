@@ -220,7 +220,7 @@ def test_a_program_with_our_id_is_not_waited_for() -> None:
     cockpit = cockpit_with(vehicle)
     vehicle.send(m.RoverControl(77, OURS, 190, 0))
     cockpit.run(0.1)
-    assert cockpit.view.twin
+    assert cockpit.view.duplicate_gcs
     cockpit.do(RequestControl())
     cockpit.run(0.5)
     assert len(vehicle.commands(CONTROL)) == 1

@@ -20,7 +20,7 @@ from groundstation.views.params import (
     ParamPageRequest,
 )
 from link.services.param.client import Param
-from tests.groundstation.station.services.test_service_desk import connected, end_of
+from tests.groundstation.station.services.test_service_requests import connected, end_of
 from tests.test_stops import Drive
 from vehicle.params import PARAMETERS
 

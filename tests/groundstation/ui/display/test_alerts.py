@@ -89,13 +89,13 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (snapshot(vehicle=vehicle(failsafes=("gcs loss",))), {}, AlertLevel.DANGER, "failsafe: gcs loss"),
     (snapshot(vehicle=vehicle(failsafes=("a",), failsafe_in=3.4)), {}, AlertLevel.DANGER, "next step in 3 s"),
     (
-        snapshot(vehicle=vehicle(alive=False, silence=4.0, without_link="it stops by itself")),
+        snapshot(vehicle=vehicle(alive=False, silence=4.0, link_loss_action="it stops by itself")),
         {},
         AlertLevel.DANGER,
         "no heartbeat from Rover 1 for 4 s: it stops by itself",
     ),
     (
-        snapshot(vehicle=vehicle(alive=False, silence=math.inf, without_link="it stops by itself")),
+        snapshot(vehicle=vehicle(alive=False, silence=math.inf, link_loss_action="it stops by itself")),
         {},
         AlertLevel.DANGER,
         "for minutes: it stops by itself",
@@ -121,7 +121,7 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         "ground station 254 drives: g requests control",
     ),
     (
-        snapshot(vehicle=vehicle(in_control=False, driver=255, twin=True), free_id=253),
+        snapshot(vehicle=vehicle(in_control=False, driver=255, duplicate_gcs=True), free_id=253),
         {},
         AlertLevel.WARNING,
         "another program with our id 255 drives: start with --system 253",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.export.log_time import parse_log_time
-from groundstation.replay.desk import ReplayDesk
+from groundstation.replay.log_replay import LogReplay
 from groundstation.ui.files.exports import ExportRequest, Exports, parse_request
 from groundstation.ui.replay.model import part_text
 from groundstation.ui.widgets.line_field import LineField
@@ -105,7 +105,7 @@ async def test_replay_exports_the_part_between_the_marks(tmp_path: Path) -> None
     log = tmp_path / "logs" / "drive.tlog"
     log.parent.mkdir()
     log.write_bytes(bytes(drive_log().data))
-    desk = ReplayDesk(str(log), BytesSource(log.read_bytes()), build_station, at="35")
+    desk = LogReplay(str(log), BytesSource(log.read_bytes()), build_station, at="35")
     finish(desk)
     async with replay_console(desk, WIDE, folder=tmp_path) as screen:
         await screen.press("m", "shift+right", "m")

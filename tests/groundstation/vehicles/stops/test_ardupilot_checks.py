@@ -59,4 +59,4 @@ def test_what_a_lost_link_means(override: float | None, throttle: float | None, 
     for name, number in (("RC_OVERRIDE_TIME", override), ("FS_THR_ENABLE", throttle)):
         if number is not None:
             check.receive(value(name, number), 0.0)
-    assert check.without_link == words
+    assert check.link_loss_action == words

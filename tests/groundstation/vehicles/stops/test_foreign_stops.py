@@ -205,7 +205,7 @@ def test_only_of_our_own_vehicle_it_is_known_that_it_stops(vehicle: FakeVehicle,
     cockpit.world.cut()
     cockpit.run(3.0)
     assert not cockpit.view.alive
-    assert cockpit.view.without_link == words
+    assert cockpit.view.link_loss_action == words
 
 
 def test_in_an_autonomous_mode_stopping_is_not_known() -> None:
@@ -213,4 +213,4 @@ def test_in_an_autonomous_mode_stopping_is_not_known() -> None:
     vehicle.armed = True
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
-    assert cockpit.view.without_link is None
+    assert cockpit.view.link_loss_action is None

@@ -102,14 +102,14 @@ def test_what_a_lost_link_means(
 ) -> None:
     known = {"COM_RC_LOSS_T": after, "NAV_RCL_ACT": action, "COM_FAIL_ACT_T": hold}
     check = check_with(**{name: number for name, number in known.items() if number is not None})
-    assert check.without_link == words
+    assert check.link_loss_action == words
 
 
 def test_a_rover_with_default_settings_is_read_and_warned_of() -> None:
     cockpit = Cockpit(px4())
     cockpit.run(2.0)
     assert [warning.split(":")[0] for warning in cockpit.view.warnings] == ["NAV_RCL_ACT 2", "NAV_DLL_ACT 0"]
-    assert cockpit.view.without_link == "by its settings it holds a place after 0.5 s, and drives home 5 s later"
+    assert cockpit.view.link_loss_action == "by its settings it holds a place after 0.5 s, and drives home 5 s later"
 
 
 def test_unreadable_settings_are_named_and_requested_again() -> None:
@@ -118,7 +118,7 @@ def test_unreadable_settings_are_named_and_requested_again() -> None:
     cockpit = Cockpit(vehicle)
     cockpit.run(5.0)
     assert list(cockpit.view.warnings) == ["could not read, trying again: COM_RC_LOSS_T"]
-    assert cockpit.view.without_link is None
+    assert cockpit.view.link_loss_action is None
     vehicle.params["COM_RC_LOSS_T"] = 0.5
     cockpit.run(15.0)
     assert not cockpit.view.warnings

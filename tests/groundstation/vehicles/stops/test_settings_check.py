@@ -100,5 +100,5 @@ def test_a_restart_reads_everything_again() -> None:
     check.restart()
     assert not check.warnings
     assert [check.obeys] == [None]
-    assert check.without_link is None
+    assert check.link_loss_action is None
     assert set(requests(check, 1.0, 2.0)) == set(ARDUPILOT.checks)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from groundstation.ui.map.draw.plan_map import PlanMap
-from groundstation.ui.map.draw.plan_map_value import Leg, MapLeg, MapMark, PlanMapValue
+from groundstation.ui.map.draw.plan_map_value import LegState, MapLeg, MapMark, PlanMapValue
 from groundstation.ui.map.draw.window import MapWindow
 from groundstation.ui.map.pane import build_pane
 from groundstation.ui.map.plan.copies import PlanCopies
@@ -22,7 +22,7 @@ def test_the_pane_shows_the_plans_of_the_vehicle() -> None:
     for view in (plan_view(), *pages(), track()):
         copies.show_view(view)
     value = build_pane(copies, picture().vehicle)
-    assert [leg.look for leg in value.legs].count(Leg.NOW) == 1
+    assert [leg.look for leg in value.legs].count(LegState.NOW) == 1
     assert (value.cursor, value.window, len(value.outlines)) == (None, None, 2)
     text = "\n".join(drawn(value))
     assert all(label in text for label in ("⌂", " 6 ", " R ", " 2 ", "✗", "N", "m"))
@@ -39,7 +39,7 @@ def test_a_finished_mission_has_no_leg_to_go() -> None:
     copies = PlanCopies()
     for view in (plan_view(state=5, current=0), *pages()):
         copies.show_view(view)
-    assert {leg.look for leg in build_pane(copies, None).legs} == {Leg.DONE}
+    assert {leg.look for leg in build_pane(copies, None).legs} == {LegState.DONE}
 
 
 def test_what_is_far_outside_costs_nothing_and_is_cut() -> None:

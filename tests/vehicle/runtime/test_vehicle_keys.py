@@ -1,4 +1,4 @@
-"""KeyKeeper: a running vehicle takes over keys that are added and revoked beside it."""
+"""VehicleKeys: a running vehicle takes over keys that are added and revoked beside it."""
 
 from __future__ import annotations
 
@@ -12,44 +12,44 @@ from link.signing.key_actions import make_key, remove_key
 from link.signing.key_file import KeyFileError
 from link.signing.keys import KeyRing, new_key
 from link.signing.role import Role
-from vehicle.runtime.key_keeper import KeyKeeper
+from vehicle.runtime.vehicle_keys import VehicleKeys
 
 PATIENCE = 10.0
 
 
-def until(keeper: KeyKeeper, condition: Callable[[], bool]) -> None:
+def until(vehicle_keys: VehicleKeys, condition: Callable[[], bool]) -> None:
     deadline, now = time.monotonic() + PATIENCE, 0.0
     while not condition():
         assert time.monotonic() < deadline
         now += 0.5
-        keeper.poll(now)
+        vehicle_keys.poll(now)
         time.sleep(0.001)
 
 
 def test_a_key_made_beside_it_is_adopted_and_a_revoked_one_ends(tmp_path: Path) -> None:
     path = tmp_path / "keys.toml"
-    keeper = KeyKeeper(path)
+    vehicle_keys = VehicleKeys(path)
     heard: list[KeyRing] = []
-    keeper.listeners.append(heard.append)
+    vehicle_keys.listeners.append(heard.append)
     key = make_key(path, "laptop", Role.DRIVE)
-    until(keeper, lambda: keeper.ring.find("laptop") == key)
+    until(vehicle_keys, lambda: vehicle_keys.ring.find("laptop") == key)
     remove_key(path, "laptop")
-    until(keeper, lambda: not keeper.ring.keys)
+    until(vehicle_keys, lambda: not vehicle_keys.ring.keys)
     assert [len(ring.keys) for ring in heard] == [1, 0]
-    keeper.close()
+    vehicle_keys.close()
 
 
 def test_a_key_is_added_and_a_second_time_refused(tmp_path: Path) -> None:
-    keeper = KeyKeeper(tmp_path / "keys.toml")
+    vehicle_keys = VehicleKeys(tmp_path / "keys.toml")
     key = new_key("cable", Role.SET_UP)
-    first = keeper.add(key)
-    until(keeper, lambda: first.done)
+    first = vehicle_keys.add(key)
+    until(vehicle_keys, lambda: first.done)
     assert first.problem is None
-    until(keeper, lambda: keeper.ring.find("cable") == key)
-    second = keeper.add(key)
-    until(keeper, lambda: second.done)
+    until(vehicle_keys, lambda: vehicle_keys.ring.find("cable") == key)
+    second = vehicle_keys.add(key)
+    until(vehicle_keys, lambda: second.done)
     assert second.problem == "see the log of the vehicle"
-    keeper.close()
+    vehicle_keys.close()
 
 
 def test_keys_of_a_file_that_is_broken_meanwhile_stay_in_force(
@@ -57,10 +57,10 @@ def test_keys_of_a_file_that_is_broken_meanwhile_stay_in_force(
 ) -> None:
     path = tmp_path / "keys.toml"
     make_key(path, "laptop", Role.DRIVE)
-    keeper = KeyKeeper(path)
+    vehicle_keys = VehicleKeys(path)
     path.write_text("[[key]\n")
-    until(keeper, lambda: "stay in force" in caplog.text)
-    assert keeper.ring.find("laptop") is not None
-    keeper.close()
+    until(vehicle_keys, lambda: "stay in force" in caplog.text)
+    assert vehicle_keys.ring.find("laptop") is not None
+    vehicle_keys.close()
     with pytest.raises(KeyFileError):
-        KeyKeeper(path)
+        VehicleKeys(path)

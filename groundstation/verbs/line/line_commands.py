@@ -1,4 +1,4 @@
-"""LineDesk: runs the lines of the screens one after the other, and answers for each how it stands."""
+"""LineCommands: runs the lines of the screens one after the other, and answers for each how it stands."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ KEPT = 16
 """Lines whose end a screen can still read."""
 
 
-class LineDesk:
+class LineCommands:
     """The lines for `station`. `flush` sends what the station has queued."""
 
     def __init__(self, station: Station, flush: Callable[[], None]) -> None:

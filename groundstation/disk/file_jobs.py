@@ -1,4 +1,4 @@
-"""DiskDesk: runs the core's disk jobs in a thread, because a card may take a second to write."""
+"""FileJobs: runs the core's disk jobs in a thread, because a card may take a second to write."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def run_job(job: DiskJob) -> DiskResult:
     return DiskResult(job.number, job.work, data)
 
 
-class DiskDesk:
+class FileJobs:
     """Runs the jobs of a station in their order. `flush` sends what follows from their results."""
 
     def __init__(self, station: Station, flush: Callable[[], None]) -> None:

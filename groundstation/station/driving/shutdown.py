@@ -17,7 +17,7 @@ DISARM_TIMEOUT = 2.0
 """s for the HEARTBEAT to report disarmed: two heartbeats."""
 
 
-class Departure:
+class StationShutdown:
     """The end of the session, as far as vehicles are concerned."""
 
     def __init__(self, fleet: Fleet, commander: Commander, driving: DrivingController) -> None:

@@ -10,7 +10,7 @@ from groundstation.intents.session import RenewLease
 from groundstation.station.component import COMPONENT
 from groundstation.station.station import Station
 from groundstation.vehicles.state.vehicle_state import VehicleState
-from groundstation.verbs.line.desk import LABEL
+from groundstation.verbs.line.line_commands import LABEL
 from groundstation.verbs.line.loader import LineLoader
 from groundstation.views.line import ASKS, DONE, FAILED, RUNNING, LineRequest, LineView
 from groundstation.views.log import LogRequest

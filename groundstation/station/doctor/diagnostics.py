@@ -1,4 +1,4 @@
-"""Doctor desk: examines the chain once a second, builds its view, and carries out what the Setup screen wants."""
+"""Diagnostics: examines the chain once a second, builds its view, and carries out what the Setup screen wants."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from groundstation.station.driving.motor_test import THROTTLE_MAX, MotorTester
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.services.service_calls import SETUP
-from groundstation.station.services.service_desk import ServiceDesk
+from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.station.services.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -51,13 +51,13 @@ QUICK = 0.2
 CHECKS = "pre-arm checks"
 
 
-class DoctorDesk:
+class Diagnostics:
     """What the Setup screen and the verb `doctor` need. `ids` are our system and component id."""
 
     def __init__(
         self,
         fleet: Fleet,
-        services: ServiceDesk,
+        services: ServiceRequests,
         queries: VehicleQueries,
         links: LinkStats,
         operator: OperatorSession,

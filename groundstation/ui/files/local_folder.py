@@ -1,4 +1,4 @@
-"""FilesHere: the files of a folder of this machine, what is in the logs, and how comparisons with a vehicle ended."""
+"""LocalFolder: the files of a folder of this machine, what is in the logs, and how comparisons with a vehicle ended."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SUMMARIZED = ".tlog"
 ACCEPTED = "accepted"
 
 
-class FilesHere:
+class LocalFolder:
     """Lives as long as the app. A file that has changed is another one: what was known of it is forgotten."""
 
     def __init__(self, folder: Path) -> None:

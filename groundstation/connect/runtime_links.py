@@ -1,4 +1,4 @@
-"""LinkKeeper: opens and closes links while the station runs, without a pause for the links that are open.
+"""RuntimeLinks: opens and closes links while the station runs, without a pause for the links that are open.
 
 Opening may take seconds (a host name is looked up, a port is configured), so a thread does it.
 """
@@ -54,7 +54,7 @@ class _Attempt(msgspec.Struct):
     backoff: Backoff = msgspec.field(default_factory=lambda: Backoff(FIRST_RETRY, LONGEST_RETRY))
 
 
-class LinkKeeper:
+class RuntimeLinks:
     """The links of a runner, as the operator wants them. `ids` are our system and component id."""
 
     def __init__(self, runner: Runner, station: Station, ids: tuple[int, int], sent: SentFrames) -> None:
@@ -194,7 +194,7 @@ class LinkKeeper:
             LinkReport(each.endpoint, each.index, down=each.problem or "connecting", retry_in=_wait(each, now))
             for each in self._waiting()
         ]
-        self._station.surroundings.set_links(self._texts(), reports)
+        self._station.station_info.set_links(self._texts(), reports)
 
 
 def _wait(attempt: _Attempt, now: float) -> float | None:

@@ -8,7 +8,7 @@ from operator import attrgetter
 from typing import Any
 
 
-class LaterName:
+class LazyAttribute:
     """Stand-in for a function, sequence or class attribute of a module that is imported on first use."""
 
     def __init__(self, module: str, name: str) -> None:
@@ -28,18 +28,18 @@ class LaterName:
         return iter(self.resolve())
 
 
-class LaterModule:
+class LazyModule:
     """Stand-in for a module of groundstation.verbs that is imported on first use."""
 
     def __init__(self, name: str) -> None:
         self._name = f"groundstation.verbs.{name}"
 
-    def __getattr__(self, name: str) -> LaterName:
+    def __getattr__(self, name: str) -> LazyAttribute:
         """Return one of its names, which is not looked up yet."""
-        return LaterName(self._name, name)
+        return LazyAttribute(self._name, name)
 
 
-class LaterResult:
+class LazyCall:
     """A call of a function of the table, made on first use."""
 
     def __init__(self, factory: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
@@ -47,7 +47,7 @@ class LaterResult:
 
     def resolve(self) -> Any:
         """Import the module of the factory, and return what it makes. Raises ImportError, AttributeError."""
-        known = (each.resolve() if isinstance(each, LaterName) else each for each in self._arguments)
+        known = (each.resolve() if isinstance(each, LazyAttribute) else each for each in self._arguments)
         return self._factory(*known)
 
     def __call__(self, *arguments: Any) -> Any:
@@ -55,6 +55,6 @@ class LaterResult:
         return self.resolve()(*arguments)
 
 
-def made(factory: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
+def lazy_call(factory: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
     """Return the function that `factory` makes of the arguments; it is made when it is called."""
-    return LaterResult(factory, arguments)
+    return LazyCall(factory, arguments)

@@ -1,4 +1,4 @@
-"""ChartDesk: connects the recorder of series with the messages, the selected vehicle and the operator's keys."""
+"""ChartRecorder: connects the recorder of series with the messages, the selected vehicle and the operator's keys."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FIELDS_PERIOD = 0.3
 TAPS = "charts"
 
 
-class ChartDesk:
+class ChartRecorder:
     """Records what is pinned or was drawn last; marks are kept at all times."""
 
     def __init__(

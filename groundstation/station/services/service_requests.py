@@ -35,7 +35,7 @@ SLOW_LINE = 20_000.0
 """Bytes/s below which transfers wait while the operator drives: a telemetry radio has 5.8 k, 115200 baud 11.5 k."""
 
 
-class TransferHold:
+class TransferPause:
     """Decides whether parameters, plans, files and logs wait: on a slow line they would delay a driver's demands."""
 
     def __init__(self, fleet: Fleet, operator: OperatorSession, links: LinkStats) -> None:
@@ -58,7 +58,7 @@ KEPT_REPORTS = 16
 _SEVERITIES = {RequestState.REFUSED: Severity.WARNING, RequestState.NO_ANSWER: Severity.WARNING}
 
 
-class ServiceDesk:
+class ServiceRequests:
     """The services of all vehicles. `system` and `component` are our ids; `texts`: see VehicleServices."""
 
     def __init__(

@@ -10,7 +10,7 @@ from link.core import LinkReport
 NO_LINK = "no link yet: Connect opens one"
 
 
-class Surroundings:
+class StationInfo:
     """The newest of each; set by the station process."""
 
     def __init__(self, endpoints: Sequence[str]) -> None:

@@ -94,7 +94,7 @@ class ManyVehicles:
             quiet = max(quiet, self._session.began + self._options.wait - now)
         if known >= MAX_VEHICLES:
             return False
-        return await self._session.look_for(lambda: len(core.contacts) > known, quiet)
+        return await self._session.wait_until_true(lambda: len(core.contacts) > known, quiet)
 
     @property
     def _missing(self) -> set[int]:
@@ -130,7 +130,7 @@ class ManyVehicles:
 
     async def _perform(self, session: VerbSession, options: argparse.Namespace, output: Any) -> int:
         if self._action.takes_part:
-            await session.take_part()
+            await session.prove_session()
         if self._action.shows_neutral:
             await session.show_neutral()
         return await self._action.run(session, options, output)

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from groundstation.verbs.common.later import LaterModule, LaterName
+from groundstation.verbs.common.lazy import LazyAttribute, LazyModule
 from groundstation.verbs.table import VERBS
 
 NAMES = [
@@ -15,7 +15,7 @@ NAMES = [
     for actions in VERBS.values()
     for action in actions.values()
     for value in (action.run, action.check, action.guarded, action.arguments)
-    if isinstance(value, LaterName)
+    if isinstance(value, LazyAttribute)
 ]
 HEAVY = ("textual", "groundstation.station.station", "groundstation.config.settings",
          "groundstation.verbs.mission.plan",
@@ -27,13 +27,13 @@ HEAVY = ("textual", "groundstation.station.station", "groundstation.config.setti
 
 
 @pytest.mark.parametrize("name", NAMES, ids=lambda name: f"{name._module.rpartition('.')[2]}.{name._name}")
-def test_every_name_exists(name: LaterName) -> None:
+def test_every_name_exists(name: LazyAttribute) -> None:
     assert name.resolve() is not None
 
 
 def test_a_name_that_is_missing_is_found_out() -> None:
     with pytest.raises(AttributeError):
-        LaterModule("messages.status").nothing.resolve()
+        LazyModule("messages.status").nothing.resolve()
 
 
 def test_a_verb_loads_neither_a_screen_nor_other_verbs() -> None:

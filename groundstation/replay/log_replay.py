@@ -1,4 +1,4 @@
-"""ReplayDesk: one open log. Intents of the screen move in it; snapshots and views show it. Real time is an argument."""
+"""LogReplay: one open log. Intents of the screen move in it; snapshots and views show it. Real time is an argument."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FIRST_VEHICLE = 10.0
 """s from the start within which the first picture waits for a vehicle."""
 
 
-class ReplayDesk:
+class LogReplay:
     """A log with its index, its player and its search. `path`: of the file."""
 
     def __init__(self, path: str, source: LogSource, build: BuildStation, *, at: str = "", speed: float = 1.0) -> None:
@@ -230,23 +230,23 @@ class ReplayDesk:
             self.player.playing = False
 
 
-_HANDLERS: dict[type[Any], Callable[[ReplayDesk, Any], None]] = {
-    Watch: lambda desk, intent: desk._watch(intent.requests),
-    PinSeries: lambda desk, intent: desk.player.pin(intent.fields),
-    SelectVehicle: lambda desk, intent: desk.player.select(intent),
-    SelectNextVehicle: lambda desk, intent: desk.player.select(intent),
-    Stop: ReplayDesk._stop,
-    EmergencyStop: ReplayDesk._stop,
-    r.ReplayPlay: lambda desk, intent: desk._play(intent.playing),
-    r.ReplayReverse: lambda desk, intent: desk._reverse(),
-    r.ReplayMove: lambda desk, intent: desk._move(intent.seconds),
-    r.ReplayStep: lambda desk, intent: desk.player.step(intent.messages),
-    r.ReplayNextEvent: lambda desk, intent: desk._next_event(intent.step),
-    r.ReplayShowEvent: lambda desk, intent: desk._show_event(intent.number),
-    r.ReplayGoTo: lambda desk, intent: desk._go_to(intent.text),
-    r.ReplaySpeed: lambda desk, intent: desk.player.change_speed(intent.step),
-    r.ReplayMark: lambda desk, intent: desk._mark(),
-    r.ReplayLoop: lambda desk, intent: desk._loop(),
-    r.ReplaySearch: lambda desk, intent: desk._search(intent.text),
+_HANDLERS: dict[type[Any], Callable[[LogReplay, Any], None]] = {
+    Watch: lambda replay, intent: replay._watch(intent.requests),
+    PinSeries: lambda replay, intent: replay.player.pin(intent.fields),
+    SelectVehicle: lambda replay, intent: replay.player.select(intent),
+    SelectNextVehicle: lambda replay, intent: replay.player.select(intent),
+    Stop: LogReplay._stop,
+    EmergencyStop: LogReplay._stop,
+    r.ReplayPlay: lambda replay, intent: replay._play(intent.playing),
+    r.ReplayReverse: lambda replay, intent: replay._reverse(),
+    r.ReplayMove: lambda replay, intent: replay._move(intent.seconds),
+    r.ReplayStep: lambda replay, intent: replay.player.step(intent.messages),
+    r.ReplayNextEvent: lambda replay, intent: replay._next_event(intent.step),
+    r.ReplayShowEvent: lambda replay, intent: replay._show_event(intent.number),
+    r.ReplayGoTo: lambda replay, intent: replay._go_to(intent.text),
+    r.ReplaySpeed: lambda replay, intent: replay.player.change_speed(intent.step),
+    r.ReplayMark: lambda replay, intent: replay._mark(),
+    r.ReplayLoop: lambda replay, intent: replay._loop(),
+    r.ReplaySearch: lambda replay, intent: replay._search(intent.text),
 }
 """Intent -> what it does. Every intent that is not here is dropped."""

@@ -14,7 +14,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.intents.watch import Watch
 from groundstation.replay import log_index
-from groundstation.replay.desk import ReplayDesk
+from groundstation.replay.log_replay import LogReplay
 from groundstation.snapshot import VehicleView
 from groundstation.station.station import Station
 from groundstation.views.base import View
@@ -31,26 +31,26 @@ def small_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def desk() -> ReplayDesk:
+def desk() -> LogReplay:
     """Return an open drive."""
     return open_desk(bytes(drive_log().data))
 
 
-def vehicle(desk: ReplayDesk) -> VehicleView:
+def vehicle(desk: LogReplay) -> VehicleView:
     """Return the vehicle of this moment."""
     found = desk.snapshot().vehicle
     assert found is not None
     return found
 
 
-def press(desk: ReplayDesk, *intents: AnyIntent) -> None:
+def press(desk: LogReplay, *intents: AnyIntent) -> None:
     """Send intents and finish what they start."""
     for intent in intents:
         desk.handle(intent)
         finish(desk)
 
 
-def run(desk: ReplayDesk, seconds: float, start: float = 100.0) -> None:
+def run(desk: LogReplay, seconds: float, start: float = 100.0) -> None:
     """Let real time pass in steps of 25 ms."""
     for step in range(round(seconds / 0.025) + 1):
         desk.advance(start + step * 0.025)
@@ -59,7 +59,7 @@ def run(desk: ReplayDesk, seconds: float, start: float = 100.0) -> None:
 @pytest.mark.parametrize(
     ("at", "mode", "armed"), [(5, "MANUAL", False), (15, "MANUAL", True), (35, "AUTO", True), (55, "MANUAL", False)]
 )
-def test_a_seek_shows_the_state_of_that_moment(desk: ReplayDesk, at: float, mode: str, armed: bool) -> None:
+def test_a_seek_shows_the_state_of_that_moment(desk: LogReplay, at: float, mode: str, armed: bool) -> None:
     press(desk, r.ReplayMove(at + 0.05))
     shown = vehicle(desk)
     assert (shown.mode, shown.armed, shown.alive) == (mode, armed, True)
@@ -70,7 +70,7 @@ def test_a_seek_shows_the_state_of_that_moment(desk: ReplayDesk, at: float, mode
     assert desk.snapshot().operator.throttle == (0.5 if 10 <= at < 50 else 0.0)
 
 
-def test_playing_and_seeking_show_the_same(desk: ReplayDesk) -> None:
+def test_playing_and_seeking_show_the_same(desk: LogReplay) -> None:
     press(desk, r.ReplayPlay(playing=True))
     run(desk, 33.0)
     played, status = vehicle(desk), desk.snapshot().replay
@@ -83,7 +83,7 @@ def test_playing_and_seeking_show_the_same(desk: ReplayDesk) -> None:
     )
 
 
-def test_playing_ends_at_the_end_and_begins_anew(desk: ReplayDesk) -> None:
+def test_playing_ends_at_the_end_and_begins_anew(desk: LogReplay) -> None:
     press(desk, r.ReplayGoTo("55"), *[r.ReplaySpeed(1)] * 3, r.ReplayPlay(playing=True))
     run(desk, 3.0)
     assert not desk.player.playing
@@ -92,7 +92,7 @@ def test_playing_ends_at_the_end_and_begins_anew(desk: ReplayDesk) -> None:
     assert (desk.player.playing, desk.player.position) == (True, 0.0)
 
 
-def test_backwards_shows_earlier_moments(desk: ReplayDesk) -> None:
+def test_backwards_shows_earlier_moments(desk: LogReplay) -> None:
     press(desk, r.ReplayGoTo("41"), r.ReplayReverse())
     run(desk, 5.0)
     assert desk.player.position == pytest.approx(36.0, abs=0.5)
@@ -102,14 +102,14 @@ def test_backwards_shows_earlier_moments(desk: ReplayDesk) -> None:
 
 
 @pytest.mark.parametrize("speed", [0.25, 2.0, 32.0])
-def test_the_speed_is_that_of_the_log(desk: ReplayDesk, speed: float) -> None:
+def test_the_speed_is_that_of_the_log(desk: LogReplay, speed: float) -> None:
     desk.player.speed = speed
     press(desk, r.ReplayPlay(playing=True))
     run(desk, 1.0)
     assert desk.player.position == pytest.approx(speed, rel=0.01)
 
 
-def test_steps_go_message_by_message_both_ways(desk: ReplayDesk) -> None:
+def test_steps_go_message_by_message_both_ways(desk: LogReplay) -> None:
     press(desk, r.ReplayGoTo("20"))
     offsets = [desk.player.offset]
     for _ in range(50):
@@ -121,7 +121,7 @@ def test_steps_go_message_by_message_both_ways(desk: ReplayDesk) -> None:
         assert desk.player.offset == offset
 
 
-def test_events_are_visited_in_order_and_back(desk: ReplayDesk) -> None:
+def test_events_are_visited_in_order_and_back(desk: LogReplay) -> None:
     seen = []
     for _ in range(7):
         press(desk, r.ReplayNextEvent(1))
@@ -142,7 +142,7 @@ def test_events_are_visited_in_order_and_back(desk: ReplayDesk) -> None:
         ("disarmed", 50.0),
     ],
 )  # fmt: skip
-def test_search_finds_texts_messages_and_conditions(desk: ReplayDesk, text: str, at: float) -> None:
+def test_search_finds_texts_messages_and_conditions(desk: LogReplay, text: str, at: float) -> None:
     press(desk, r.ReplayMove(0.05), r.ReplaySearch(text))
     assert desk.player.position == pytest.approx(at, abs=0.01), desk.note
     assert desk.note == f"found: {text}"
@@ -156,19 +156,19 @@ def test_search_finds_texts_messages_and_conditions(desk: ReplayDesk, text: str,
         ("batt<inf", "'inf' is not a number"), ("   ", "type a text"),
     ],
 )  # fmt: skip
-def test_a_search_in_vain_says_why_and_moves_nothing(desk: ReplayDesk, text: str, note: str) -> None:
+def test_a_search_in_vain_says_why_and_moves_nothing(desk: LogReplay, text: str, note: str) -> None:
     press(desk, r.ReplayGoTo("33"), r.ReplaySearch(text))
     assert desk.note.startswith(note)
     assert desk.player.position == pytest.approx(33.0)
 
 
-def test_a_search_goes_on_from_the_start(desk: ReplayDesk) -> None:
+def test_a_search_goes_on_from_the_start(desk: LogReplay) -> None:
     press(desk, r.ReplayGoTo("45"), r.ReplaySearch("MODE==AUTO"))
     assert desk.player.position == pytest.approx(30.0)
     assert desk.note == "found from the start again: MODE==AUTO"
 
 
-def test_times_as_people_write_them(desk: ReplayDesk) -> None:
+def test_times_as_people_write_them(desk: LogReplay) -> None:
     clock = time.strftime("%H:%M:%S", time.localtime(NOON + 42))
     for text, at in ((clock, 42.0), ("0:15", 15.0), ("+10", 25.0), (":-5.5", 19.5), ("7", 7.0), ("-100", 0.0)):
         press(desk, r.ReplayGoTo(text))
@@ -179,14 +179,14 @@ def test_times_as_people_write_them(desk: ReplayDesk) -> None:
 
 
 def test_a_time_waits_for_the_index() -> None:
-    desk = ReplayDesk("x.tlog", open_desk(bytes(drive_log().data)).source, build_station, at="50")
+    desk = LogReplay("x.tlog", open_desk(bytes(drive_log().data)).source, build_station, at="50")
     desk.work()
     assert desk.player.position < 5
     finish(desk)
     assert desk.player.position == pytest.approx(50.0)
 
 
-def test_marks_and_the_loop(desk: ReplayDesk) -> None:
+def test_marks_and_the_loop(desk: LogReplay) -> None:
     press(desk, r.ReplayLoop())
     assert desk.note == "mark A and B first: m"
     press(desk, r.ReplayGoTo("20"), r.ReplayMark(), r.ReplayGoTo("22"), r.ReplayMark(), r.ReplayLoop())
@@ -202,7 +202,7 @@ def test_marks_and_the_loop(desk: ReplayDesk) -> None:
     assert not desk.player.loop
 
 
-def test_a_stop_key_pauses_and_nothing_else_has_an_effect(desk: ReplayDesk) -> None:
+def test_a_stop_key_pauses_and_nothing_else_has_an_effect(desk: LogReplay) -> None:
     press(
         desk, r.ReplayPlay(playing=True), DriveKeyDown("i", 1, 0), Arm(), SetMode(mode="AUTO"), Stop("another screen")
     )
@@ -232,7 +232,7 @@ def test_nothing_that_a_station_would_send_is_kept() -> None:
 # ---- views ----
 
 
-def views_of(desk: ReplayDesk, now: float) -> list[View]:
+def views_of(desk: LogReplay, now: float) -> list[View]:
     """Return the views that are sent."""
     sent: list[View] = []
 
@@ -244,7 +244,7 @@ def views_of(desk: ReplayDesk, now: float) -> list[View]:
     return sent
 
 
-def test_view_has_the_timeline_and_the_events_near_the_position(desk: ReplayDesk) -> None:
+def test_view_has_the_timeline_and_the_events_near_the_position(desk: LogReplay) -> None:
     press(desk, r.ReplayGoTo("35"), Watch((ReplayRequest(60, 3),)))
     (view,) = (each for each in views_of(desk, 1.0) if isinstance(each, ReplayView))
     assert [(span.text, round(span.start), round(span.end)) for span in view.timeline.modes] == [
@@ -260,7 +260,7 @@ def test_view_has_the_timeline_and_the_events_near_the_position(desk: ReplayDesk
     assert (view.damaged, view.lost, view.tail, view.stations, view.vehicles) == (0, 0, 0, (255,), (1,))
 
 
-def test_views_are_sent_while_the_log_stands_still(desk: ReplayDesk) -> None:
+def test_views_are_sent_while_the_log_stands_still(desk: LogReplay) -> None:
     press(desk, r.ReplayGoTo("35"), Watch((LogRequest(0),)))
     (page,) = (each for each in views_of(desk, 1.0) if isinstance(each, LogPage))
     texts = [line.text for line in page.lines]
@@ -270,7 +270,7 @@ def test_views_are_sent_while_the_log_stands_still(desk: ReplayDesk) -> None:
     assert views_of(desk, 1.2)
 
 
-def test_charts_show_the_time_before_a_seek(desk: ReplayDesk) -> None:
+def test_charts_show_the_time_before_a_seek(desk: LogReplay) -> None:
     field = FieldId(1, 1, False, "VFR_HUD", "groundspeed")
     press(desk, Watch((SeriesRequest((field,)),)), r.ReplayGoTo("35"))
     (page,) = (each for each in views_of(desk, 1.0) if isinstance(each, SeriesPage))

@@ -27,7 +27,7 @@ PATIENCE = 2.0
 """s for the last store; a slower disk is broken."""
 
 
-class SigningKeeper:
+class LinkSigning:
     """Owns the signing of one program. `wall` returns Unix time in s."""
 
     def __init__(

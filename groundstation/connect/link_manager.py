@@ -1,4 +1,4 @@
-"""ConnectDesk: the shell's part of the Connect screen: links, listening, serial ports and simulators."""
+"""LinkManager: the shell's part of the Connect screen: links, listening, serial ports and simulators."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import math
 
 from dialects.enums import Severity
 from groundstation.connect.discovery import Discovery
-from groundstation.connect.keeper import LinkKeeper
 from groundstation.connect.listener import VehicleListener
 from groundstation.connect.port_scan import PortScan
+from groundstation.connect.runtime_links import RuntimeLinks
 from groundstation.intents.links import AddLink, CloseLink
 from groundstation.intents.session import StartSimulator
 from groundstation.sitl.sitl import SimulatorControl, free_port
@@ -30,7 +30,7 @@ LISTEN_FOR = 2.0
 """s after the last view for which the station goes on listening."""
 
 
-class ConnectDesk:
+class LinkManager:
     """Handles AddLink, CloseLink and StartSimulator, and builds the view. `ids` are our system and component id."""
 
     def __init__(
@@ -44,7 +44,7 @@ class ConnectDesk:
         """Take over `simulators`, which may run already."""
         self._runner = runner
         self._station = station
-        self._keeper = LinkKeeper(runner, station, ids, sent)
+        self._runtime_links = RuntimeLinks(runner, station, ids, sent)
         self._listener = VehicleListener(ids)
         self._ports = PortScan()
         self._discovery = Discovery()
@@ -57,10 +57,10 @@ class ConnectDesk:
 
     def _add_link(self, intent: AddLink, now: float) -> None:
         self._release_port(intent.endpoint)
-        self._keeper.add(intent, now)
+        self._runtime_links.add(intent, now)
 
     def _close_link(self, intent: CloseLink, now: float) -> None:
-        self._keeper.close(intent.link, now)
+        self._runtime_links.close(intent.link, now)
 
     def _handle_simulator(self, intent: StartSimulator, now: float) -> None:
         if (problem := self._start_simulator(intent.kind)) is not None:
@@ -68,7 +68,7 @@ class ConnectDesk:
 
     def tick(self, now: float) -> None:
         """Open and close what is due, and notice the end of a simulator."""
-        self._keeper.tick(now)
+        self._runtime_links.tick(now)
         if now >= self._listen_until:
             self._listener.close()
             self._discovery.pause()
@@ -77,7 +77,7 @@ class ConnectDesk:
             text, output = exited
             self._warn(now, text)
             log.error("output of the simulator:\n%s", output)
-        around = self._station.surroundings
+        around = self._station.station_info
         around.simulator, around.simulated = self._simulators.state, self._simulators.systems
 
     def close(self) -> None:
@@ -95,7 +95,7 @@ class ConnectDesk:
             return None
         if not any(_takes_simulator(link) for link in self._runner.links):
             try:
-                self._keeper.open_now(f"udpin:127.0.0.1:{free_port()}")
+                self._runtime_links.open_now(f"udpin:127.0.0.1:{free_port()}")
             except LinkError as error:
                 return f"simulator did not start: {error}"
         return self._simulators.start([link.endpoint for link in self._runner.links if _takes_simulator(link)], kind)
@@ -118,7 +118,7 @@ class ConnectDesk:
 
     def _build_view(self, request: ConnectRequest, now: float, wall: float) -> ConnectView:
         self._listen_until = now + LISTEN_FOR
-        attempts = self._keeper.attempts(now)
+        attempts = self._runtime_links.attempts(now)
         coming = [each.endpoint for each in attempts if each.state in ("opening", "failed")]
         ends = [*(link.endpoint for link in self._runner.links), *map(parse_endpoint, coming)]
         self._listener.listen({each.port for each in ends if _is_udpin(each)})

@@ -1,4 +1,4 @@
-"""KeyKeeper: the key file of a running vehicle. It notices changes, and adds keys, in a thread of its own."""
+"""VehicleKeys: the key file of a running vehicle. It notices changes, and adds keys, in a thread of its own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vehicle.storage.store import PendingWrite
 log = logging.getLogger(__name__)
 
 
-class KeyKeeper:
+class VehicleKeys:
     """A vehicle.commands.signing.KeyStore. Call `poll` in each control cycle."""
 
     def __init__(self, path: Path) -> None:
