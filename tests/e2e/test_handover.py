@@ -25,7 +25,8 @@ class Pair:
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         port = free_port()
-        self.vehicle = Vehicle(folder, f"udpin:127.0.0.1:{port}")
+        # With 1.5 s a late machine is a failsafe; how a handover at the default goes is tested in virtual time.
+        self.vehicle = Vehicle(folder, f"udpin:127.0.0.1:{port}", "--param", "FS_TIMEOUT=10")
         stack.callback(self.vehicle.end)
         endpoint = f"udpout:127.0.0.1:{port}"
         self.driver = stack.enter_context(Screen(endpoint, system=255))

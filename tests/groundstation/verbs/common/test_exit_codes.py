@@ -43,6 +43,12 @@ def vehicle(request: pytest.FixtureRequest) -> Iterator[ForeignVehicle]:
         yield running
 
 
+def without_endpoint(words: list[str]) -> list[str]:
+    """Return the words of an example without its endpoint: a network may lack a route to that address."""
+    at = words.index("-e") if "-e" in words else len(words)
+    return words[:at] + words[at + 2 :]
+
+
 def test_no_vehicle(capsys: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("a.lua").touch()
@@ -51,7 +57,7 @@ def test_no_vehicle(capsys: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyP
     Path("run.keys").write_text("0.5 press i\n0.6 release i\n")
     where = ("-e", f"udpin:127.0.0.1:{free_port()}", "--wait", "0.02")
     codes = {}
-    for words in RUN:
+    for words in map(without_endpoint, RUN):
         found = run_verb(capsys, *words, *where)
         codes[" ".join(words)] = found.code if "Traceback" not in found.err else found.err
     assert {words: code for words, code in codes.items() if code != ExitCode.NO_VEHICLE} == {}

@@ -127,19 +127,32 @@ def start_driving(verb: Run, vehicle: Vehicle) -> subprocess.Popen[str]:
 
 def test_a_demand_drives_and_a_killed_or_stopped_verb_is_neutral(verb: Run, vehicle: Vehicle, station: int) -> None:
     for number, code in ((signal.SIGKILL, -9), (signal.SIGINT, 130), (signal.SIGSTOP, 6)):
-        wait_until(lambda: not vehicle.turning(), "the wheels turn still")
-        process = start_driving(verb, vehicle)
-        waits, at = Waits(process.pid, station, vehicle.process.pid), time.monotonic()
-        process.send_signal(number)
-        wait_until(lambda: not vehicle.turning(), f"the wheels turn after {number.name}")
-        fell, _ = vehicle.falls_and_stops_after(at)
-        assert fell < 0.45 + NOISE + waits.total(), number
-        process.send_signal(signal.SIGCONT)
-        _, said = process.communicate(timeout=PATIENCE)
-        assert process.returncode == code, said
+        ended, said = end_a_drive(verb, vehicle, station, number)
+        while number != signal.SIGSTOP and "stood still for" in said:  # a late machine had ended it before the signal
+            ended, said = end_a_drive(verb, vehicle, station, number)
+        assert ended == code, said
         if number == signal.SIGSTOP:
             assert "stood still for" in said
             assert "its demand has ended" in said
+
+
+def end_a_drive(verb: Run, vehicle: Vehicle, station: int, number: signal.Signals) -> tuple[int, str]:
+    """Send a signal to a verb that drives; return its code and what it said. The wheels stand in time."""
+    wait_until(lambda: not vehicle.turning(), "the wheels turn still")
+    process = start_driving(verb, vehicle)
+    waits, at = Waits(process.pid, station, vehicle.process.pid), time.monotonic()
+    process.send_signal(number)
+
+    def stand() -> bool:
+        waits.total()  # of a process that has ended, only what was read before is known
+        return not vehicle.turning()
+
+    wait_until(stand, f"the wheels turn after {number.name}")
+    fell, _ = vehicle.falls_and_stops_after(at)
+    assert fell < 0.45 + NOISE + waits.total(), number
+    process.send_signal(signal.SIGCONT)
+    _, said = process.communicate(timeout=PATIENCE)
+    return process.returncode, said
 
 
 def test_driving_screen_keeps_out_demands_of_verbs_but_not_stops(verb: Run, vehicle: Vehicle, station: int) -> None:
