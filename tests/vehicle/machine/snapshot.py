@@ -7,9 +7,10 @@ from the start keep their identity; only their attributes are saved and set agai
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from copy import copy
 from enum import Enum
+from functools import partial
 from typing import Any
 
 PARTS = (
@@ -42,8 +43,8 @@ def is_part(kind: type) -> bool:
     return kind.__module__.startswith(PARTS) and not kind.__module__.startswith(WITHOUT_STATE)
 
 
-Saved = list[tuple[dict[str, Any], list[tuple[str, Any]]]]
-"""For each object what never changes by itself, and what must be copied."""
+Saved = list[tuple[dict[str, Any], list[tuple[str, Callable[[], Any]]]]]
+"""For each object what never changes by itself, and what makes a copy of the rest."""
 
 
 class Snapshots:
@@ -64,18 +65,27 @@ class Snapshots:
         """Set all attributes as they were at `save`."""
         for values, (plain, copied) in zip(self._values, saved, strict=True):
             values.update(plain)
-            for name, value in copied:
-                values[name] = self._copy(value)
+            for name, make in copied:
+                values[name] = make()
 
     def _save_one(self, values: dict[str, Any]) -> tuple[dict[str, Any], list[tuple[str, Any]]]:
-        plain, copied = {}, []
+        plain: dict[str, Any] = {}
+        copied: list[tuple[str, Callable[[], Any]]] = []
         for name, value in values.items():
             twin = self._copy(value)
             if twin is value:
                 plain[name] = value
             else:
-                copied.append((name, twin))
+                copied.append((name, self._copier(twin)))
         return plain, copied
+
+    def _copier(self, twin: Any) -> Callable[[], Any]:
+        """Return what copies a saved value again. Most are tables of plain values, which copy themselves fast."""
+        if type(twin) in (dict, list, deque):
+            values = twin.values() if type(twin) is dict else twin
+            if all(self._copy(each) is each for each in values):
+                return twin.copy  # type: ignore[no-any-return]
+        return partial(self._copy, twin)
 
     def _find(self, item: object) -> None:
         """Collect the long-lived objects."""
