@@ -24,7 +24,7 @@ from link.protocol.framer import Framer
 from link.transport.transports import open_transports
 from tests.e2e.programs import PATIENT_LOOP, Vehicle
 from tests.ports import free_port
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 STEP = 0.02
 
@@ -60,9 +60,9 @@ class RouterProcess:
             command = [*python, "-m", "link.bridge", "router", str(self._fleet / "fleet.toml"), *self._link]
             environment = {name: value for name, value in os.environ.items() if name != THREADS_VARIABLE}  # of an end
             self.process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, env=environment)
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience(PATIENCE, self.process.pid)
         while "ready" not in self.log.read_text():
-            assert time.monotonic() < deadline, self.log.read_text()
+            assert not patience.ended, self.log.read_text()
             assert self.process.poll() is None, self.log.read_text()
             time.sleep(STEP)
 
@@ -127,9 +127,9 @@ class FleetWires:
 
     def until(self, condition: Callable[[], bool], each: Callable[[float], None], within: float = PATIENCE) -> None:
         """Let programs speak until `condition`."""
-        deadline = self.now + within
+        patience = Patience(within, self.vehicle.process.pid)
         while not condition():
-            assert self.now < deadline, self.vehicle.errors.read_text()
+            assert not patience.ended, self.vehicle.errors.read_text()
             self.wait(STEP, each)
 
     def transport(self, operator: Hashable) -> FleetTransport:

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.groundstation.held_key import DELAY, GAP
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 LET_GO = 1.2
 """s without a repeat after which a key counts as released, whatever the ground station has learned (1.1 s at most)."""
@@ -151,9 +151,9 @@ class GroundStation:
 
     def press_until(self, key: str, until: Callable[[], bool]) -> None:
         """Hold a key down until the condition, from time to time anew: a late machine may have closed the gate."""
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience(PATIENCE, self.process.pid)
         while not self.held(key, until, 5.0):
-            assert time.monotonic() < deadline, f"pressing {key!r} for {PATIENCE} s did not do it\n{self.drawn()}"
+            assert not patience.ended, f"pressing {key!r} for {PATIENCE} s did not do it\n{self.drawn()}"
             self.look(LET_GO)
 
     def held(self, key: str, until: Callable[[], bool], within: float) -> bool:
@@ -186,9 +186,9 @@ class GroundStation:
 
     def soon(self, condition: Callable[[], bool], within: float) -> bool:
         """Do the same; return False if the condition does not become true."""
-        deadline = time.monotonic() + within
+        patience = Patience(within, self.process.pid)
         while not condition():
-            if time.monotonic() > deadline:
+            if patience.ended:
                 return False
             self.look(0.02)
         return True
@@ -234,18 +234,18 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def drive(station: GroundStation, vehicle: Vehicle, armed: Callable[[], bool], key: str = "i") -> None:
     """Arm with keys and hold one until the wheels turn: every stop test starts like this."""
     station.wait_for(lambda: b"disarmed:" in station.screen, PATIENCE, "the drive screen says how to arm")
-    deadline = time.monotonic() + PATIENCE
+    patience = Patience(PATIENCE, station.process.pid, vehicle.process.pid)
     while not (_arms(station, armed) and station.held(key, vehicle.at_full, 5.0)):
-        assert time.monotonic() < deadline, f"it does not drive: {vehicle.errors.read_text()}\n{station.drawn()}"
+        assert not patience.ended, f"it does not drive: {vehicle.errors.read_text()}\n{station.drawn()}"
         _begin_anew(station)
 
 
 def drive_on(station: GroundStation, vehicle: Vehicle, key: str = "i") -> None:
     """Drive again, still armed, after the vehicle has stopped by itself and changed to HOLD."""
-    deadline = time.monotonic() + PATIENCE
+    patience = Patience(PATIENCE, station.process.pid, vehicle.process.pid)
     _begin_anew(station)
     while not station.held(key, vehicle.at_full, 5.0):
-        assert time.monotonic() < deadline, f"it does not drive again: {vehicle.errors.read_text()}\n{station.drawn()}"
+        assert not patience.ended, f"it does not drive again: {vehicle.errors.read_text()}\n{station.drawn()}"
         _begin_anew(station)
 
 

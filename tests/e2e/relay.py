@@ -16,6 +16,7 @@ from dialects.messages import Heartbeat, LocalPositionNed, ManualControl, Messag
 from link.protocol.framer import Framer
 from link.transport.memory import LossyPipe
 from tests.ports import free_port
+from tests.waits import Patience
 
 STEP = 0.005
 """s at most between two polls of the delayed frames."""
@@ -65,10 +66,10 @@ class Relay:
 
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> float:
         """Wait until `condition`; return when it became true (monotonic). An AssertionError names `what`."""
-        deadline = time.monotonic() + within
+        patience = Patience(within)
         with self._changed:
             while not condition():
-                assert time.monotonic() < deadline, f"not within {within} s: {what}; last texts: {self.texts()[-5:]}"
+                assert not patience.ended, f"not within {within} s: {what}; last texts: {self.texts()[-5:]}"
                 self._changed.wait(STEP)
         return time.monotonic()
 

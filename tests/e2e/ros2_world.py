@@ -15,7 +15,7 @@ from tests.e2e import ros2_peer
 from tests.e2e.programs import Vehicle
 from tests.e2e.ros2_peer import Peer
 from tests.ports import free_port
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 STEP = 0.02
 TRY = 5.0
@@ -62,9 +62,9 @@ class World:
         return process
 
     def until(self, condition: Callable[[], bool], missing: str, within: float = PATIENCE) -> None:
-        deadline = time.monotonic() + within
+        patience = Patience(within, self.vehicle.process.pid)
         while not condition():
-            assert time.monotonic() < deadline, f"{missing}\n{self.text}"
+            assert not patience.ended, f"{missing}\n{self.text}"
             time.sleep(STEP)
 
     @property

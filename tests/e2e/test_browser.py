@@ -27,7 +27,7 @@ from tests.e2e.relay import Relay
 from tests.groundstation.held_key import DELAY, GAP
 from tests.groundstation.screen import children, running
 from tests.ports import free_port
-from tests.waits import PATIENCE, Waits
+from tests.waits import PATIENCE, Patience, Waits
 
 pytestmark = [
     pytest.mark.e2e,
@@ -126,9 +126,9 @@ async def drive(rig: Rig, tab: SocketTab | Browser) -> None:
     async def hold(key: str, until: Callable[[], bool]) -> bool:
         return await (tab.hold(key, until) if isinstance(tab, SocketTab) else tab.hold(key, until, TRY))
 
-    deadline = time.monotonic() + PATIENCE
+    patience = Patience(PATIENCE, rig.process.pid, rig.vehicle.process.pid)
     while not (rig.relay.armed() or await hold("r", rig.relay.armed)) or not await hold("i", rig.vehicle.at_full):
-        assert time.monotonic() < deadline, rig.vehicle.errors.read_text()
+        assert not patience.ended, rig.vehicle.errors.read_text()
         if isinstance(tab, Browser):
             await tab.release("r")
             await tab.release("i")

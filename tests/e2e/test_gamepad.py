@@ -14,7 +14,7 @@ from groundstation.gamepad.child import missing_package
 from tests.e2e.programs import GroundStation, Vehicle
 from tests.e2e.relay import Relay
 from tests.groundstation.gamepad.pads import FULL, Hand
-from tests.waits import PATIENCE, Waits
+from tests.waits import PATIENCE, Patience, Waits
 
 pytestmark = [
     pytest.mark.e2e,
@@ -49,9 +49,9 @@ class Rig:
         """Plug the gamepad in and hold its button START."""
         self.hand.do("plug Virtual")
         self.sees("gamepad: hold START (Virtual)")
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience(PATIENCE, self.station.process.pid, self.vehicle.process.pid)
         while not self.relay.armed():  # again, if a busy machine made a hold of two presses
-            assert time.monotonic() < deadline, self.station.drawn()
+            assert not patience.ended, self.station.drawn()
             self.hand.do("button Virtual start 1")
             self.station.soon(self.relay.armed, TRY)
             self.hand.do("button Virtual start 0")
@@ -59,7 +59,8 @@ class Rig:
 
     def drive(self) -> None:
         """Hold the dead-man button, push the stick, and see the wheels turn."""
-        deadline, self.seen = time.monotonic() + PATIENCE, len(self.station.screen)
+        patience = Patience(PATIENCE, self.station.process.pid, self.vehicle.process.pid)
+        self.seen = len(self.station.screen)
         while True:
             self.hand.do("axis Virtual lefty 0", "button Virtual rightshoulder 0")
             self.station.look(0.3)
@@ -68,7 +69,7 @@ class Rig:
             self.hand.do(f"axis Virtual lefty {-FULL}")
             if self.station.soon(self.vehicle.at_full, TRY):
                 return
-            assert time.monotonic() < deadline, f"{self.station.drawn()}\n{self.vehicle.errors.read_text()}"
+            assert not patience.ended, f"{self.station.drawn()}\n{self.vehicle.errors.read_text()}"
 
     def drives_on(self, seconds: float) -> None:
         """See the wheels turn for so long without any event; again if the machine has delayed a program meanwhile."""

@@ -23,7 +23,7 @@ from link.protocol.framer import Framer
 from tests.e2e.programs import PATIENT_LOOP, Vehicle
 from tests.ports import free_port
 from tests.vehicle.wires import Program, SessionProgram
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 pytestmark = pytest.mark.slow
 
@@ -73,9 +73,9 @@ class SocketWires:
 
     def until(self, condition: Callable[[], bool], each: Callable[[float], None]) -> None:
         """Let programs speak until `condition`."""
-        deadline = self.now + PATIENCE
+        patience = Patience(PATIENCE, self.vehicle.process.pid)
         while not condition():
-            assert self.now < deadline, self.vehicle.errors.read_text()
+            assert not patience.ended, self.vehicle.errors.read_text()
             self.wait(0.1, each)
 
     def _socket(self, address: Hashable) -> socket.socket:

@@ -24,7 +24,7 @@ from tests.e2e.tmux_marks import IN_TMUX
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.wheel import modes, notch
 from tests.ports import free_port
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 pytestmark = IN_TMUX
 
@@ -63,9 +63,9 @@ class Tmux:
 
     def until(self, condition: Callable[[str], bool], within: float, holding: str | None = None) -> str:
         """Poll until the condition holds for the screen, with a key held meanwhile; return the screen."""
-        deadline = time.monotonic() + within
+        patience = Patience(within)
         while not condition(screen := self.screen()):
-            assert time.monotonic() < deadline, f"not within {within} s:\n{screen}"
+            assert not patience.ended, f"not within {within} s:\n{screen}"
             if holding:
                 self.press(holding)
             select.select([], [], [], PAUSE)
@@ -73,9 +73,9 @@ class Tmux:
 
     def hold_until(self, key: str, condition: Callable[[str], bool], within: float) -> None:
         """Hold a key for 2 s at a time until the condition holds for the screen."""
-        deadline = time.monotonic() + within
+        patience = Patience(within)
         while not condition(screen := self.screen()):
-            assert time.monotonic() < deadline, f"not within {within} s:\n{screen}"
+            assert not patience.ended, f"not within {within} s:\n{screen}"
             begun = time.monotonic()
             for at in event_times(2.0):
                 select.select([], [], [], max(0.0, begun + at - time.monotonic()))
@@ -84,12 +84,12 @@ class Tmux:
 
     def drive_until(self, condition: Callable[[str], bool]) -> None:
         """Hold `i` until the condition holds; in MANUAL and pressed anew where a late machine has stopped it."""
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience()
         while True:
             with suppress(AssertionError):
                 self.until(condition, HELD, holding="i")
                 return
-            assert time.monotonic() < deadline, self.screen()
+            assert not patience.ended, self.screen()
             select.select([], [], [], LET_GO)
             self.press("1")
 
@@ -220,9 +220,9 @@ class AttachedTmux:
 
     def until(self, condition: Callable[[], bool]) -> None:
         """Read what tmux draws until the condition holds."""
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience()
         while not condition():
-            assert time.monotonic() < deadline, self.drawn[-2000:]
+            assert not patience.ended, self.drawn[-2000:]
             if select.select([self._master], [], [], PAUSE)[0]:
                 self.drawn += os.read(self._master, 1 << 16)
 

@@ -18,6 +18,7 @@ from link.protocol.framer import Framer
 from link.protocol.sequence import SequenceTracker
 from tests.ports import free_port
 from tests.vehicle.ground import running
+from tests.waits import Patience
 
 pytestmark = [pytest.mark.e2e]
 
@@ -82,11 +83,11 @@ def stations(tmp_path: Path) -> Iterator[list[Listener]]:
         yield found
 
 
-def wait(stations: list[Listener], enough: int, within: float = 60.0) -> None:
+def wait(stations: list[Listener], enough: int) -> None:
     """Wait until each has received this number of ATTITUDE."""
-    deadline = time.monotonic() + within
+    patience = Patience()
     while any(each.heard.get(m.Attitude.id, 0) < enough for each in stations):
-        assert time.monotonic() < deadline, [each.heard.get(m.Attitude.id, 0) for each in stations]
+        assert not patience.ended, [each.heard.get(m.Attitude.id, 0) for each in stations]
         for each in stations:
             each.listen()
         select.select([each.socket for each in stations], [], [], 0.05)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
 
 from groundstation.intents.driving import HOLD_TIME
 
@@ -46,13 +47,20 @@ class HeldTime:
         self, press: Callable[[], Awaitable[object]], seconds: float = HELD, ended: Callable[[], object] = lambda: False
     ) -> None:
         """Press a key as one that is held for so long, or until `ended`, which is asked after each event."""
-        self._stands_at = begun = self()
-        try:
+        with self.stand():
+            begun = self()
             for at in event_times(seconds):
                 self._stands_at = begun + at
                 await press()
                 if ended():
                     return
+
+    @contextmanager
+    def stand(self) -> Iterator[None]:
+        """Let the time stand still: what is shown for a second after a key stays until the screen is drawn."""
+        self._stands_at = self()
+        try:
+            yield
         finally:
             self._offset = self._stands_at - self._clock()
             self._stands_at = None

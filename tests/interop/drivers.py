@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
@@ -17,7 +16,7 @@ from tests.interop import mavproxy, mavsdk_process
 from tests.interop.conversation import Conversation
 from tests.interop.qgroundcontrol import JOYSTICK, QGroundControl
 from tests.interop.script import Script
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 RELEASE, REQUEST = 0, 1
 """Parameter 1 of REQUEST_OPERATOR_CONTROL."""
@@ -203,9 +202,10 @@ class Loop:
             self._turn()
 
     def _wait(self, condition: Callable[[], bool], what: str) -> None:
-        deadline, tick = time.monotonic() + PATIENCE, threading.Event()
+        patience = Patience()
+        tick = threading.Event()
         while not condition():
-            assert time.monotonic() < deadline, f"GCS {self.system} never saw {what}; {self._texts[-5:]}"
+            assert not patience.ended, f"GCS {self.system} never saw {what}; {self._texts[-5:]}"
             tick.wait(0.02)
 
 

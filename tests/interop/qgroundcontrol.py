@@ -21,7 +21,7 @@ from dialects.enums import Command, Result
 from link.protocol.framer import Framer
 from link.services.ftp.protocol import crc32
 from tests.interop.qgc_files import LIMIT, Download, DownloadError
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 Kind = TypeVar("Kind", bound=m.Message)
 
@@ -222,10 +222,10 @@ class QGroundControl:
 
     def drive(self, throttle: int, until: Callable[[], bool]) -> None:
         """Send neutral, then the joystick, until `until`; again and in MANUAL, if a pause has ended in HOLD."""
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience()
         self.neutral()
         while not self.joystick(throttle, until, 5.0):
-            assert time.monotonic() < deadline
+            assert not patience.ended
             self.command(Command.DO_SET_MODE, 1, 0)
             self.neutral()
 

@@ -9,7 +9,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 os.environ["MAVLINK20"] = "1"  # read when mavutil is imported
 
@@ -62,16 +62,16 @@ class Script:
 
     def until(self, condition: Callable[[], bool], within: float = PATIENCE) -> None:
         """Receive until `condition`."""
-        deadline = time.monotonic() + within
+        patience = Patience(within)
         while not condition():
-            assert time.monotonic() < deadline
+            assert not patience.ended
             self.hear(within=0.1)
 
     def insist(self, act: Callable[[], object], condition: Callable[[], bool], within: float = PATIENCE) -> None:
         """Repeat an action each half second, until `condition`."""
-        deadline = time.monotonic() + within
+        patience = Patience(within)
         while not condition():
-            assert time.monotonic() < deadline
+            assert not patience.ended
             act()
             again = time.monotonic() + 0.5
             while not condition() and time.monotonic() < again:
@@ -100,9 +100,9 @@ class Script:
 
     def drive(self, throttle: int, until: Callable[[], bool]) -> None:
         """Send neutral, then the stick, until `until`; again and in MANUAL, if a pause has ended in HOLD."""
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience()
         while not until():
-            assert time.monotonic() < deadline
+            assert not patience.ended
             for _ in range(NEUTRALS):
                 self.link.mav.manual_control_send(1, 0, 0, 0, 0, 0)
                 self.hear(within=STICK)

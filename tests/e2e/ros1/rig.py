@@ -16,7 +16,7 @@ from pathlib import Path
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import children
 from tests.ports import free_port
-from tests.waits import PATIENCE, wait_until
+from tests.waits import PATIENCE, Patience, wait_until
 
 HERE = Path(__file__).parent
 COMMAND_NODE = HERE.parents[2] / "docs" / "examples" / "command_node.py"
@@ -154,9 +154,9 @@ class Rig:
 
     def presses(self, node: CommandNode, key: str, until: Callable[[], bool]) -> None:
         """Press a key again until a condition holds: command_node loses keys, as the article's does."""
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience()
         while not until():
-            assert time.monotonic() < deadline, f"{key}\n{self.station.said}\n{self.vehicle.errors.read_text()}"
+            assert not patience.ended, f"{key}\n{self.station.said}\n{self.vehicle.errors.read_text()}"
             node.press(key)
             again = time.monotonic() + TRY
             while not until() and time.monotonic() < again:

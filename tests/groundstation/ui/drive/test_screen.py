@@ -22,9 +22,10 @@ STOPPED = snapshot(vehicle=vehicle(armed=False, emergency_stop=True))
 async def test_arming_shows_a_bar_and_needs_the_key_held() -> None:
     async with console(picture=DISARMED) as screen:
         begun = screen.clock()
-        await screen.press("r")
-        assert screen.station.of(Arm) == []
-        await until(lambda: "Arm: hold r" in screen.text)
+        with screen.clock.stand():
+            await screen.press("r")
+            assert screen.station.of(Arm) == []
+            await until(lambda: "Arm: hold r" in screen.text)
         await screen.hold("r", lambda: screen.station.of(Arm))
         (arm,) = screen.station.of(Arm)
         assert HOLD_TIME <= arm.held <= screen.clock() - begun
@@ -32,8 +33,9 @@ async def test_arming_shows_a_bar_and_needs_the_key_held() -> None:
 
 async def test_the_bar_ends_by_itself_and_a_late_answer_does_nothing() -> None:
     async with console(picture=DISARMED) as screen:
-        await screen.press("r")
-        await until(lambda: "Arm: hold r" in screen.text)
+        with screen.clock.stand():
+            await screen.press("r")
+            await until(lambda: "Arm: hold r" in screen.text)
         await until(lambda: "disarmed: hold r to arm" in screen.text)
         await screen.press("y", "r", "y")
         assert screen.station.of(Arm) == []
@@ -42,9 +44,10 @@ async def test_the_bar_ends_by_itself_and_a_late_answer_does_nothing() -> None:
 @pytest.mark.parametrize("key", ["n", "space", "i", "escape", "y"])
 async def test_another_key_cancels(key: str) -> None:
     async with console(picture=DISARMED) as screen:
-        await screen.press("r")
-        await until(lambda: screen.app.gate.hold is not None)
-        await screen.press(key)
+        with screen.clock.stand():
+            await screen.press("r")
+            assert screen.app.gate.hold is not None
+            await screen.press(key)
         assert screen.app.gate.hold is None
         assert screen.station.of(Arm) == []
 
@@ -110,8 +113,9 @@ async def test_on_strip_keys_drive_and_the_driver_sees_what_matters(size: tuple[
         words = ("0.84 m/s", "you drive", "hold i to drive", "stops when you let go", "! E-STOP")
         await until(lambda: all(map(screen.text.__contains__, words)))  # drawn one after the other
         await screen.show(DISARMED)
-        await screen.press("r")
-        await until(lambda: "? Arm: hold r" in screen.text)
+        with screen.clock.stand():
+            await screen.press("r")
+            await until(lambda: "? Arm: hold r" in screen.text)
         await screen.hold("r", lambda: screen.station.of(Arm))
         assert screen.text.startswith(" DISARMED  MANUAL")
 

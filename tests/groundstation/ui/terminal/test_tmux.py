@@ -25,7 +25,7 @@ from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.held_key import GAP, event_times
 from tests.groundstation.ui.ptys import attach_pty
-from tests.waits import PATIENCE
+from tests.waits import PATIENCE, Patience
 
 FOLDER = Path(__file__).parents[4]
 
@@ -141,9 +141,9 @@ class Session:
 
     def until(self, condition: Callable[[], bool], what: str) -> None:
         """Wait."""
-        deadline = time.monotonic() + PATIENCE
+        patience = Patience()
         while not condition():
-            assert time.monotonic() < deadline, f"not within {PATIENCE} s: {what}\n{self.screen()}"
+            assert not patience.ended, f"not within {PATIENCE} s: {what}\n{self.screen()}"
             self.look(GAP)
 
     def hold(self, key: bytes, condition: Callable[[], bool], what: str) -> None:
