@@ -74,9 +74,23 @@ LONG = (
     "groundstation/vehicles/state/test_vehicle_state.py::test_no_message_breaks",
     "groundstation/verbs",
     "groundstation/watchdog/test_freezes.py::test_after_a_neutral_of_the_watchdog",
+    "groundstation/formats/test_geojson_layer.py::test_10000",
+    "groundstation/recent/test_recent_file.py::test_programs",
+    "groundstation/station/charts/test_recorder.py::test_a_page_fits",
+    "groundstation/station/messages/test_message_detail.py::test_a_fast_message",
+    "groundstation/station/views/test_drive_display.py::test_speed_and_demand",
+    "groundstation/station/views/test_link_views.py::test_vehicles_beyond",
+    "groundstation/ui/files/test_log_summary.py::test_a_log_says",
+    "groundstation/ui/terminal/test_drawn_lines.py::test_a_divided", "groundstation/web/test_door.py",
+    "link/services/ftp/test_client.py::test_any_answer", "link/test_runner.py::test_frames_returned",
+    "vehicle/cli/test_pi_guide.py", "vehicle/cli/test_without_libraries.py",
+    "vehicle/telemetry/test_schedule.py::test_54", "vehicle/telemetry/test_schedule.py::test_newer_messages",
+    "vehicle/telemetry/test_schedule.py::test_nor_does",
+    "vehicle/telemetry/test_schedule.py::test_request_for_everything",
 )  # fmt: skip
-"""Folders, files and tests below tests/ that are not in the short suite either: they take seconds each, such as the
-properties that drive a whole rover, test the tests, or need programs and packages that a clone alone does not have."""
+"""Folders, files and tests below tests/ that are not in the short suite either: they take half a second of CPU or more
+each, such as the properties that drive a whole rover, test the tests, or need programs and packages that a clone alone
+does not have."""
 
 MAIN_JOB = (
     "groundstation/sitl/test_sitl.py::test_sitl_starts",
