@@ -181,14 +181,16 @@ class GroundStation:
                 return  # the program has closed its end
 
     def wait_for(self, condition: Callable[[], bool], within: float, what: str) -> None:
-        """Read the screen until `condition`."""
-        assert self.soon(condition, within), f"not within {within} s: {what}\n{self.drawn()}"
+        """Read the screen until `condition`; the delays of the program are added to `within`."""
+        patience = Patience(within, self.process.pid)
+        while not self.soon(condition, 1.0):
+            assert not patience.ended, f"not within {within} s: {what}\n{self.drawn()}"
 
     def soon(self, condition: Callable[[], bool], within: float) -> bool:
-        """Do the same; return False if the condition does not become true."""
-        patience = Patience(within, self.process.pid)
+        """Read the screen until `condition`; return False if it is not true within so many s by the clock."""
+        deadline = time.monotonic() + within
         while not condition():
-            if patience.ended:
+            if time.monotonic() > deadline:
                 return False
             self.look(0.02)
         return True

@@ -62,7 +62,7 @@ class World:
         return process
 
     def until(self, condition: Callable[[], bool], missing: str, within: float = PATIENCE) -> None:
-        patience = Patience(within, self.vehicle.process.pid)
+        patience = Patience(within)
         while not condition():
             assert not patience.ended, f"{missing}\n{self.text}"
             time.sleep(STEP)
