@@ -20,7 +20,7 @@ from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.vehicles.demand.blind_stop import BlindStop
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
-from groundstation.verbs.session.core import VerbCore
+from groundstation.verbs.session.core import OwnCore
 from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import to_stamp
@@ -81,7 +81,7 @@ class StopWorld(CrowdedLink):
             keep(OWNER, WATCHER, wall=facts.clock, now=100.0), SigningPolicy(Role.WATCH, open_stops=True), 0
         )
         self.facts = facts
-        self.core = VerbCore(VERB, facts.vehicle, 1)
+        self.core = OwnCore(VERB, facts.vehicle, 1)
         guard = None
         if facts.key is not None:
             guard = SigningGuard(keep(facts.key, wall=NOON + 100.0, now=100.0), SIGNED_ONLY, 0)

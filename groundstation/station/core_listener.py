@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from dialects.messages import Message
-from groundstation.intents.union import AnyIntent
 from groundstation.station.driving.permission import Permission
 from groundstation.vehicles.fleet import Contact
 from link.core import LinkReport, Outgoing, Received
+
+if TYPE_CHECKING:
+    from groundstation.intents.union import AnyIntent
 
 
 class CoreListener:

@@ -25,7 +25,8 @@ from groundstation.vehicles.state.message_log import MessageLog
 class CoreParts:
     """Vehicles, operator, driving, commands, services, links and log of one ground station.
 
-    `system` is our system id, `session` a random number. `docs_cache`: texts of parameters, see VehicleServices.
+    `system` and `component` are our ids, `session` a random number. `docs_cache` has texts of parameters, see
+    VehicleServices.
     """
 
     def __init__(
@@ -33,13 +34,14 @@ class CoreParts:
         endpoints: Sequence[str],
         *,
         system: int = 255,
+        component: int = COMPONENT,
         style: Style = Style.HOLD,
         speed: float = 0.6,
         session: int = 0,
         docs_cache: MutableMapping[int, bytes] | None = None,
         now: float = 0.0,
     ) -> None:
-        ids = self.ids = (system, COMPONENT)
+        ids = self.ids = (system, component)
         self.started = now
         log = self.log = MessageLog()
         operator = self.operator = OperatorSession(style, speed, session)

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from dialects import messages as m
 from dialects.enums import Severity
-from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import REST_PERIOD
-from groundstation.intents.union import AnyIntent
 from groundstation.station.core_listener import CoreListener
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import WatchdogTarget
-from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.readings import READINGS
 from groundstation.vehicles.demand.drive_gate import drive_refusal
 from groundstation.vehicles.demand.stop_commands import StopKind
@@ -21,6 +20,11 @@ from groundstation.vehicles.readings.motor_outputs import is_turn
 from groundstation.vehicles.state.message_log import VehicleText
 from link.core import LinkReport, Outgoing, Received
 from link.services.timesync import handle_request
+
+if TYPE_CHECKING:
+    from groundstation.intents.driving import DriveKeyDown
+    from groundstation.intents.union import AnyIntent
+    from groundstation.station.intent_handler import IntentHandler
 
 DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 
@@ -37,14 +41,17 @@ TICK_PERIOD = 0.1
 class OperatorCore:
     """A core (link/core.py). Its parts do the work; here is which of them gets what, and in which order."""
 
-    def __init__(self, parts: CoreParts, listener: CoreListener | None = None) -> None:
-        """Join the parts. `listener` shows and records what happens; None: nobody does."""
+    def __init__(self, parts: CoreParts, listener: CoreListener | None = None, *, serves: bool = False) -> None:
+        """Join the parts. `listener` shows and records what happens; None: nobody does.
+
+        `serves`: a verb of this process makes requests, which are repeated although no screen is there.
+        """
+        self._serves = serves
         self.parts = parts
         self.log, self.operator, self.fleet = parts.log, parts.operator, parts.fleet
         self.services, self.driving, self.relay = parts.services, parts.driving, parts.relay
         self.shutdown, self.link_closing = parts.shutdown, parts.link_closing
         self.station_info, self.params = parts.links.station_info, parts.links.params
-        self.intents = IntentHandler(parts)
         self._listener = listener or CoreListener()
         self._commander, self._handover, self._queries = parts.commander, parts.handover, parts.queries
         self._links, self._timesync, self._heartbeat = parts.links, parts.links.timesync, parts.links.heartbeat
@@ -54,6 +61,13 @@ class OperatorCore:
         """When something was under way last."""
         self.on_rest_end: Callable[[], None] = lambda: None
         """Called at once when `rests` becomes False."""
+
+    @cached_property
+    def intents(self) -> IntentHandler:
+        """Who carries out which intent; a verb of its own process has none, and does not import them."""
+        from groundstation.station.intent_handler import IntentHandler
+
+        return IntentHandler(self.parts)
 
     # ---- Core ----
 
@@ -142,12 +156,7 @@ class OperatorCore:
         return self._listener.systems.union(each.state.system for each in self.fleet if self._is_needed(each))
 
     def _is_needed(self, contact: Contact) -> bool:
-        return (
-            contact is self.fleet.selected
-            or contact.ours
-            or not contact.demand_stream.finished
-            or (contact.services is not None and bool(contact.services.book.running))
-        )
+        return contact is self.fleet.selected or contact.ours or not contact.demand_stream.finished or contact.busy
 
     @property
     def rests(self) -> bool:
@@ -237,7 +246,7 @@ class OperatorCore:
     @property
     def _uses_services(self) -> bool:
         """Whether somebody is there for whom requests are repeated: a screen, or a verb that runs here."""
-        return self.operator.live or self.relay.uses_services
+        return self._serves or self.operator.live or self.relay.uses_services
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""

@@ -62,6 +62,11 @@ class Contact(msgspec.Struct):
     """Of the newest demand."""
 
     @property
+    def busy(self) -> bool:
+        """Whether a request to it is under way."""
+        return self.services is not None and bool(self.services.book.running)
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Texts for the driver: why the vehicle may ignore us, and settings that would let it drive on."""
         settings = self.settings_check.warnings if self.settings_check else ()
@@ -128,6 +133,8 @@ class Fleet:
         self._selected: Contact | None = None
         self.on_first: Callable[[], object] = lambda: None
         """Called when the first vehicle is found."""
+        self.is_meant: Callable[[Received], bool] = lambda received: False
+        """Returns whether a new vehicle is the one that this program is for, so that it gets a place."""
         self._not_shown: dict[int, float] = {}
         """System id of a vehicle for which there is no place -> when it was heard last."""
 
@@ -250,13 +257,14 @@ class Fleet:
             contact.services.change_component(component, now)
 
     def _make_room(self, received: Received, now: float) -> bool:
-        """Give a vehicle that signs with a key of ours the place of one that does not; return whether there is one.
+        """Give a vehicle that signs with a key of ours, or is meant, the place of another; return whether there is one.
 
-        Ids are invented easily, signatures are not. The selected vehicle, and those that we armed or drove, stay.
+        Ids are invented easily, signatures are not. The selected vehicle, those that we armed or drove, and those with
+        a request under way stay.
         """
-        if not received.signed:
+        if not received.signed and not self.is_meant(received):
             return False
-        others = [each for each in self if not (each.verified or each.ours or each is self._selected)]
+        others = [each for each in self if not (each.verified or each.ours or each is self._selected or each.busy)]
         if not others:
             return False
         leaving = min(others, key=lambda each: (each.state.armed, each.state.heartbeat_at))

@@ -7,7 +7,7 @@ their modules imported, when they are used first: importing all of them takes a 
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Mapping, MutableMapping, Sequence
+from collections.abc import Mapping, MutableMapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
@@ -100,6 +100,8 @@ class VehicleServices:
         self.kind: int = VehicleType.GENERIC
         """MAV_TYPE of its HEARTBEAT."""
         self.book = RequestBook()
+        self.lasting: set[int] = set()
+        """Numbers of requests that go on with another component of the system: stops, and what is repeated."""
         self._used = False
         self.alive = True
         """The vehicle is heard."""
@@ -107,10 +109,10 @@ class VehicleServices:
         """The transfers wait: the line is slow, and the operator drives."""
         self._talk_to(target)
 
-    def change_component(self, component: int, now: float, keep: Collection[int] = ()) -> None:
-        """Talk to another component of the same system. Requests to the former one are refused, but those in `keep`."""
+    def change_component(self, component: int, now: float) -> None:
+        """Talk to another component of the same system. Requests to the former one are refused, but for `lasting`."""
         for report in self.book.running:
-            if report.number not in keep:
+            if report.number not in self.lasting:
                 why = f"component {component} is the autopilot, not {self._target[1]}: request it again"
                 self.book.refuse(report.number, why, now, by_vehicle=False)
         for name in [name for name, each in vars(type(self)).items() if isinstance(each, cached_property)]:
@@ -256,6 +258,8 @@ class VehicleServices:
     def note_state(self, state: VehicleState) -> None:
         """Store the state that its newest HEARTBEAT reports."""
         self.autopilot, self.kind = state.autopilot, state.kind
+        if self.modes.current is None:  # the HEARTBEAT came before its services were made
+            self.modes.current = state.custom_mode
         self.book.busy = CALIBRATING if state.status == SystemState.CALIBRATING else ""
 
     def receive(self, received: Received, now: float) -> None:

@@ -173,14 +173,14 @@ async def _run_here(
 ) -> int:
     """Run the action in this process, with links of its own, or with those of a station."""
     from groundstation.verbs.session.identity import choose_identity  # a verb that a station runs does without
-    from groundstation.verbs.session.session import run_session
+    from groundstation.verbs.session.running import VerbLinks, run_session
 
     ids, kept = choose_identity(action, options, station)
     tap = action.tap(options, ids)
-    own = station is None and not action.examines and not getattr(options, "unsigned", False)
-    signing = _open_signing() if own else None
+    signing = _open_signing() if station is None and not getattr(options, "unsigned", False) else None
     guarded = station is None and action.guarded(options)
     guard = _start_guard(ids, signing) if guarded else None  # before the links are open
+    links = VerbLinks(endpoints, ids, kept.number, station, patience, signing, tap, guard)
 
     def found(name: str) -> None:
         if options.endpoints:
@@ -190,28 +190,16 @@ async def _run_here(
         session.where = " ".join(endpoints)
         return await perform(session, action, options, output, group, kept, found)
 
-    async def alone(session: DoctorSession) -> int:
+    async def examine(session: DoctorSession) -> int:
         return await action.run(session, options, output)
 
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
             if action.examines:
-                from groundstation.verbs.session.doctor_session import run_doctor  # loads an OperatorCore
+                from groundstation.verbs.session.doctor_session import run_doctor
 
-                return await run_doctor(endpoints, options.system, getattr(options, "driver", 0), alone, station)
-            return await run_session(
-                endpoints,
-                ids,
-                options.vehicle,
-                script,
-                output.progress,
-                guard,
-                session=kept.number,
-                station=station,
-                log_tap=tap,
-                signing=signing,
-                patience=patience,
-            )
+                return await run_doctor(links, getattr(options, "driver", 0), examine)
+            return await run_session(links, options.vehicle, script, output.progress)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
     finally:

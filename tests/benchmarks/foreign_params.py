@@ -7,7 +7,8 @@ import time
 from statistics import median
 
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
-from groundstation.verbs.session.session import VerbSession, run_session
+from groundstation.verbs.session.running import VerbLinks, run_session
+from groundstation.verbs.session.session import VerbSession
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Table, brief
 from tests.fakes.params import many_params
 from tests.fakes.services import foreign_vehicle
@@ -54,7 +55,7 @@ def _fetch(*, files: bool) -> float:
             return 0
 
         taken: list[float] = []
-        asyncio.run(run_session([vehicle.endpoint], (254, 190), 1, script, _ignore, session=1))
+        asyncio.run(run_session(VerbLinks([vehicle.endpoint], (254, 190), 1), 1, script, _ignore))
     return taken[0]
 
 

@@ -10,26 +10,25 @@ from collections.abc import Callable, Mapping, MutableMapping
 from typing import TYPE_CHECKING
 
 from dialects.enums import Command, Severity
-from groundstation.intents.services import ServiceIntent
 from groundstation.natural_order import natural_key
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.services.service_calls import SERVICE_CALLS
-from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog
-from groundstation.views.base import ViewRequest
-from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow, VehicleLog
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from link.core import Outgoing, Received
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # what only screens need: a verb of its own process does without
+    from groundstation.intents.services import ServiceIntent
+    from groundstation.station.view_feed import ViewSource
     from groundstation.vehicles.requests.disk_jobs import DiskJob, DiskResult
     from groundstation.vehicles.requests.folder_cache import ListedFolder
+    from groundstation.views.base import ViewRequest
+    from groundstation.views.files import FilesRequest, FilesView, FolderRow
 
 SLOW_LINE = 20_000.0
 """Bytes/s below which transfers wait while the operator drives: a telemetry radio has 5.8 k, 115200 baud 11.5 k."""
@@ -89,6 +88,8 @@ class ServiceRequests:
 
     def start(self, intent: ServiceIntent, now: float) -> None:
         """Make a request; without its vehicle it ends at once."""
+        from groundstation.station.services.service_calls import SERVICE_CALLS
+
         call = SERVICE_CALLS[type(intent)]
         self._service_of[intent.request] = call.service
         contact = self._fleet.get(intent.system) if intent.system else self._fleet.selected
@@ -171,6 +172,9 @@ class ServiceRequests:
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
         """Request -> its source."""
+        from groundstation.station.view_feed import ViewSource
+        from groundstation.views.files import FilesRequest
+
         return {
             RequestsRequest: ViewSource(self.build_requests, period=0.25),
             FilesRequest: ViewSource(self.build_files, period=0.25),
@@ -271,6 +275,7 @@ MAX_ROWS = 2000
 def build_files(contact: Contact, request: FilesRequest) -> FilesView:
     """Return what was listed so far, of one vehicle."""
     from groundstation.vehicles.requests.transfer_requests import log_ending  # with FTP, which a verb does without
+    from groundstation.views.files import FilesView, VehicleLog
 
     services = contact.services
     logs = services.logs.logs if services else None
@@ -285,6 +290,8 @@ def build_files(contact: Contact, request: FilesRequest) -> FilesView:
 
 
 def _folders(paths: tuple[str, ...], listed: dict[str, ListedFolder]) -> list[FolderRow]:
+    from groundstation.views.files import FileRow, FolderRow
+
     rows, room = [], MAX_ROWS
     for path in paths:
         folder = listed.get(path)

@@ -82,6 +82,8 @@ class VehicleState:
         """Its kind, as its newest HEARTBEAT tells."""
         self.listed_modes = ModeList()
         self.mode = "unknown"
+        self.custom_mode: int | None = None
+        """Of its newest HEARTBEAT."""
         self.armed = False
         self.status: int = SystemState.UNINIT
         self.control = ControlReport()
@@ -232,6 +234,7 @@ class VehicleState:
         self.status = message.system_status
         self.armed = self.senders.is_armed(self.component, now)
         self.model = find_kind(message.autopilot, message.type)
+        self.custom_mode = message.custom_mode
         self.mode = self.model.modes.get(message.custom_mode) or self.listed_modes.name_of(message.custom_mode)
 
     def _extended_state(self, message: m.ExtendedSysState, now: float) -> None:

@@ -10,17 +10,18 @@ from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.verbs.session.contact import VehicleContact
-from groundstation.verbs.session.session import Interrupted, RequestStart
-from groundstation.verbs.session.station_core import StationContact, StationCore, StationVerbSession
+from groundstation.verbs.session.session import Interrupted, RequestStart, VerbSession
+from groundstation.verbs.session.station_core import StationCore
 
 
-class LineSession(StationVerbSession):
+class LineSession(VerbSession):
     """For the vehicle that the operator has chosen. The station proves its session, and goes on behind the verb."""
+
+    core: StationCore
 
     def __init__(self, station: OperatorCore, contact: Contact, flush: Callable[[], None]) -> None:
         core = StationCore(station, contact.state.system, "a line", flush)
-        chosen: VehicleContact = StationContact(station, contact, 0.0)
-        super().__init__(core, core.flush, lambda report: None, chosen)
+        super().__init__(core, core.flush, lambda report: None, VehicleContact(station, contact, 0.0))
         self.selects = contact
         self.told: list[str] = []
         """How its requests have ended; the log has these lines already."""

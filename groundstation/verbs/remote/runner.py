@@ -23,7 +23,9 @@ from groundstation.verbs.performing import perform
 from groundstation.verbs.remote.sent_output import SentOutput
 from groundstation.verbs.remote.shell_files import ShellFiles
 from groundstation.verbs.session.kept_session import KeptSession
-from groundstation.verbs.session.station_core import StationCore, StationVerbSession
+from groundstation.verbs.session.running import END_WITHIN
+from groundstation.verbs.session.session import VerbSession
+from groundstation.verbs.session.station_core import StationCore
 
 log = logging.getLogger(__name__)
 
@@ -92,7 +94,7 @@ class ShellVerb:
         )
         options.system = core.ids[0]
         kept = KeptSession(self._station.operator.session, follows=self._follows)
-        session = StationVerbSession(core, core.flush, output.progress)
+        session = VerbSession(core, core.flush, output.progress)
         session.files = self._files
         session.where = " ".join(self._station.station_info.endpoints)
         core.join()
@@ -109,10 +111,6 @@ class ShellVerb:
 
     def _note_vehicle(self, name: str) -> None:
         self._vehicle = name
-
-
-END_WITHIN = 1.0
-"""s for an interrupted verb to send its last messages."""
 
 
 def _parse(words: tuple[str, ...]) -> tuple[VerbAction, argparse.Namespace]:

@@ -1,18 +1,18 @@
-"""One vehicle that a verb hears: its state, its services, and this program as its operator. Time is an argument."""
+"""One vehicle that a verb hears: a contact of an OperatorCore, with the jobs and proofs of the verb."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Protocol
 
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.station.driving.driven import WatchdogTarget
+from groundstation.station.operator_core import OperatorCore
+from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.services import VehicleServices
-from groundstation.vehicles.state.message_log import MessageLog, VehicleText
+from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_details import VehicleDetails
-from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.session.operator import VerbOperator
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -31,21 +31,19 @@ class Job(Protocol):
 
 
 class VehicleContact:
-    """The vehicle with the ids `target`. `ids` are ours, `session` is the random number of this run."""
+    """A vehicle of `station`. State and services are those of the contact; jobs and proofs are those of the verb."""
 
-    def __init__(self, ids: tuple[int, int], session: int, target: tuple[int, int], now: float) -> None:
-        self.ids = ids
+    def __init__(self, station: OperatorCore, contact: Contact, now: float) -> None:
+        self.ids, self.session = station.parts.ids, station.operator.session
         self.found_at = now
         """When it was heard first."""
-        self.session = session
-        self.state = VehicleState(*target)
-        self.details = VehicleDetails(target[1])
-        self.services = VehicleServices(*ids, target)
-        self.operator = VerbOperator(self.state, ids, session)
-        self.client = CommandClient(*ids)
+        self.contact = contact
+        self.state = contact.state
+        self.services: VehicleServices = station.services.services_of(contact)
+        """Its services, which screens of a station use, too."""
+        self.operator = VerbOperator(contact.state, self.ids, self.session)
+        self.client = CommandClient(*self.ids)
         """For jobs and for the operator's queries."""
-        self.verified = False
-        """It has signed with a key of ours."""
         self.texts = MessageLog()
         """What it has said."""
         self.refusal = ""
@@ -55,9 +53,9 @@ class VehicleContact:
         self._jobs: list[Job] = []
 
     @property
-    def busy(self) -> bool:
-        """A request to it is under way."""
-        return bool(self._jobs or self.services.book.running)
+    def details(self) -> VehicleDetails:
+        """What else it reports."""
+        return self.contact.details
 
     @property
     def in_control(self) -> bool:
@@ -77,30 +75,18 @@ class VehicleContact:
     @property
     def driven(self) -> WatchdogTarget:
         """What the watchdog must know."""
-        return WatchdogTarget.of(self.state, self.session, verified=self.verified)
+        return WatchdogTarget.of(self.state, self.session, verified=self.contact.verified)
 
     def start(self, job: Job, now: float) -> None:
-        """Begin a job."""
+        """Begin a job. It goes on when another component of the system turns out to be the autopilot."""
         self._jobs.append(job)
+        self.services.lasting.add(job.number)
         job.tick(self.client, self.services.book, now)
 
-    def change_component(self, component: int, now: float) -> None:
-        """Talk to another component of the system: the autopilot was heard after it. Jobs go on."""
-        self.state.change_component(component)
-        self.details = VehicleDetails(component)
-        self.services.change_component(component, now, keep={job.number for job in self._jobs})
-
     def receive(self, received: Received, now: float) -> None:
-        """Handle a message of the vehicle."""
-        self.verified |= received.signed
-        self.state.receive(received, now)
-        self.details.receive(received, now)
-        self.services.note_state(self.state)
+        """Handle a message of the vehicle, which its state and its services have already."""
         if isinstance(received.message, m.StatusText):
-            self._handle_texts(
-                self.texts.handle_statustext(received.message, received.system, now, received.component), now
-            )
-        self.services.receive(received, now)
+            self.texts.handle_statustext(received.message, received.system, now, received.component)
         self.client.receive(received, now)
         self._advance(now)
 
@@ -113,16 +99,15 @@ class VehicleContact:
 
     def tick(self, now: float) -> None:
         """Repeat what is overdue."""
-        self._handle_texts(self.texts.expire(now), now)
+        self.texts.expire(now)
         self.client.tick(now)
         self._advance(now)
-        self.operator.tick(self.client, now, may_query=not self.services.commands.is_waiting(Command.REQUEST_MESSAGE))
-        self.services.tick(now, may_query=not self.client.is_waiting(Command.REQUEST_MESSAGE, self.state.system))
+        asks = self.services.commands.is_waiting(Command.REQUEST_MESSAGE)
+        self.operator.tick(self.client, now, may_query=not asks)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them; the proof goes before the command that needs it."""
-        operator = self.operator.messages_to_send()
-        return operator + self.client.messages_to_send() + self.services.messages_to_send()
+        """Return the messages to send now, and remove them; those of the services are the core's."""
+        return self.operator.messages_to_send() + self.client.messages_to_send()
 
     def _advance(self, now: float) -> None:
         book = self.services.book
@@ -134,8 +119,3 @@ class VehicleContact:
             job.tick(self.client, book, now)
         running = {report.number for report in book.running}
         self._jobs = [job for job in self._jobs if job.number in running]
-
-    def _handle_texts(self, texts: Iterable[VehicleText], now: float) -> None:
-        for each in texts:
-            self.state.handle_text(each.text)
-            self.services.handle_text(each.text, each.severity, now)

@@ -1,4 +1,4 @@
-"""The core of a verb: the vehicles that are heard, and the messages to them. Time is an argument."""
+"""The core of a verb: the vehicles of an OperatorCore, and what the verb sends to them. Time is an argument."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from dialects import messages as m
 from dialects.kinds import AUTOPILOT_COMPONENT
+from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
+from groundstation.station.operator_core import OperatorCore
 from groundstation.vehicles.demand.drive_gate import drive_refusal
-from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
+from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.session.contact import VehicleContact
 from link.core import LinkReport, Outgoing, Received
@@ -34,14 +36,15 @@ Tap = Callable[[Received, float], None]
 
 
 class VerbCore:
-    """A core (link/core.py) with the vehicles that are heard. It talks to `wanted`, or to the first.
+    """A verb on `station`: that of its own process (OwnCore), or of one that runs (StationCore).
 
-    `ids` are our system and component id, `session` is the number of our session.
+    It talks to `wanted`, or to the first vehicle that is heard.
     """
 
-    def __init__(self, ids: tuple[int, int], wanted: int | str | None, session: int) -> None:
+    def __init__(self, station: OperatorCore, wanted: int | str | None) -> None:
+        self.station = station
         self.contacts: dict[int, VehicleContact] = {}
-        """All vehicles heard, by system id; at most MAX_VEHICLES."""
+        """All vehicles heard, by system id."""
         self.chosen: VehicleContact | None = None
         self.reports: tuple[LinkReport, ...] = ()
         """The newest of each link."""
@@ -58,20 +61,17 @@ class VerbCore:
         """The watchdog of a verb that sends demands."""
         self.outbox: list[m.Message] = []
         """Messages of a verb, to all or to their target."""
-        self.ids = ids
+        self.ids = station.parts.ids
         """Our system and component id."""
         self._wanted = wanted
-        self._session = session
         self._heartbeat = HeartbeatSender(0.0)
         self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
-    def receive(self, received: Received, now: float) -> None:
-        """Handle one message; the HEARTBEAT of a vehicle begins the conversation."""
-        if type(received.message) is m.SetupSigning:
-            received = received._replace(message=m.hide_key(received.message))
+    def hear(self, received: Received, now: float) -> None:
+        """Handle one message, which the station has handled; the HEARTBEAT of a vehicle begins the conversation."""
         if is_vehicle(received.message):
             self._heartbeat.greet(received.peer, now)
-            self._add(received, now)
+            self.add_vehicles(now)
         contact = self.contacts.get(received.system)
         if contact is not None:
             contact.receive(received, now)
@@ -82,9 +82,14 @@ class VerbCore:
             self._choose(now)
         self._look()
 
-    def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
-        """Count a frame that has left on a link of this program."""
-        self.frames_sent += 1
+    def add_vehicles(self, now: float) -> None:
+        """Take the vehicles of the station that are heard, and leave out those for which it has no place."""
+        fleet = self.station.fleet
+        for contact in fleet:
+            known = self.contacts.get(contact.state.system)
+            if (known is None or known.contact is not contact) and contact.state.monitor.is_alive(now):
+                self.contacts[contact.state.system] = VehicleContact(self.station, contact, now)
+        self.contacts = {system: each for system, each in self.contacts.items() if fleet.get(system) is each.contact}
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:
         """Note that a message was not sent, because the role of this program does not allow it."""
@@ -113,13 +118,6 @@ class VerbCore:
         found = [Outgoing(message) for message in outbox]
         return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
 
-    def may_send(self, message: m.Message, now: float) -> bool:
-        """Return False for what would move a vehicle of a kind that is not driven; the verb is told why."""
-        why = drive_refusal(message, (contact.state for contact in self.contacts.values()))
-        if why is not None:
-            self.handle_refused(message, why, now)
-        return why is None
-
     def explain_silence(self, system: int) -> str:
         """Return why a vehicle that is heard may answer nothing: it signs with a key that is not here; else ""."""
         if not any(system in each.signing for each in self.reports):
@@ -139,25 +137,6 @@ class VerbCore:
         self._waiters.append((condition, found))
         return found
 
-    def _add(self, received: Received, now: float) -> None:
-        contact = self.contacts.get(received.system)
-        if contact is None and (len(self.contacts) < MAX_VEHICLES or self._make_room(received)):
-            target = (received.system, received.component)
-            contact = self.contacts[received.system] = VehicleContact(self.ids, self._session, target, now)
-        elif contact is not None and replaces(received.component, contact.state.component):
-            contact.change_component(received.component, now)
-
-    def _make_room(self, received: Received) -> bool:
-        """Give the vehicle that is meant, or one that signs with a key of ours, the place of one that does not."""
-        meant = self._wanted is not None and is_chosen(self._wanted, received.system, received.peer.name)
-        if not meant and not received.signed:
-            return False
-        others = [each for each in self.contacts.values() if not each.verified and each is not self.chosen]
-        idle = [each for each in others if not each.busy]
-        if idle:
-            del self.contacts[min(idle, key=lambda each: each.state.heartbeat_at).state.system]
-        return bool(idle)
-
     def _choose(self, now: float) -> None:
         """Choose the vehicle. One that is not heard as an autopilot yet may be a script on board of it."""
         for system, contact in self.contacts.items():
@@ -173,3 +152,58 @@ class VerbCore:
             if not found.done() and condition():
                 found.set_result(None)
         self._waiters = [each for each in self._waiters if not each[1].done()]
+
+
+class OwnCore(VerbCore):
+    """A core (link/core.py) for the links of this process, with an OperatorCore that no screen uses.
+
+    `ids` are our system and component id, `session` is the number of our session.
+    """
+
+    def __init__(
+        self,
+        ids: tuple[int, int],
+        wanted: int | str | None,
+        session: int,
+        endpoints: Sequence[str] = (),
+        now: float = 0.0,
+    ) -> None:
+        parts = CoreParts(endpoints, system=ids[0], component=ids[1], session=session, now=now)
+        super().__init__(OperatorCore(parts, serves=True), wanted)
+        self.station.fleet.is_meant = self._is_meant
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle one message."""
+        if type(received.message) is m.SetupSigning:
+            received = received._replace(message=m.hide_key(received.message))
+        self.station.receive(received, now)
+        self.station.services.collect(now)
+        self.hear(received, now)
+
+    def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
+        """Count a frame that has left on a link of this program."""
+        self.frames_sent += 1
+
+    def tick(self, now: float) -> None:
+        """Repeat what is overdue."""
+        self.station.tick(now)
+        super().tick(now)
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Keep the reports of the links."""
+        self.station.observe(reports, now)
+        super().observe(reports, now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them; the proof goes before the command that needs it."""
+        return super().messages_to_send() + self.station.messages_to_send()
+
+    def may_send(self, message: m.Message, now: float) -> bool:
+        """Return False for what would move a vehicle of a kind that is not driven; the verb is told why."""
+        why = drive_refusal(message, (contact.state for contact in self.contacts.values()))
+        if why is not None:
+            self.handle_refused(message, why, now)
+        return why is None
+
+    def _is_meant(self, received: Received) -> bool:
+        return self._wanted is not None and is_chosen(self._wanted, received.system, received.peer.name)

@@ -3,34 +3,23 @@
 from __future__ import annotations
 
 import asyncio
-import secrets
 import time
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable
 
-from groundstation.connect.signing import SigningError, open_signing
 from groundstation.intents.base import Intent
 from groundstation.intents.session import RenewLease
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.snapshot import Snapshot
-from groundstation.station.component import COMPONENT
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.operator_core import OperatorCore
-from groundstation.station_socket.relay import LinksReport
-from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.common.arguments import is_chosen
-from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.link_reasons import describe_silence
+from groundstation.verbs.session.running import VerbLinks, run_beside
 from groundstation.verbs.session.station_link import StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
-from link.endpoint import Side
-from link.links import open_links
 from link.runner import Runner
 
-PERIOD = 0.02
-"""s between two ticks, as of the other verbs."""
-END_WITHIN = 1.0
-"""s for an interrupted verb to send its last messages."""
 LEASE_PERIOD = 0.1
 """s between renewals of the lease, as of the screen; each also looks whether something has changed."""
 
@@ -107,58 +96,20 @@ class DoctorSession:
         return asyncio.get_running_loop().time()
 
 
-async def run_doctor(
-    endpoints: Sequence[str],
-    system: int,
-    driver: int,
-    script: Callable[[DoctorSession], Awaitable[int]],
-    link: StationLink | None = None,
-) -> int:
-    """Open the links, run the script, and return its exit code.
+async def run_doctor(links: VerbLinks, driver: int, script: Callable[[DoctorSession], Awaitable[int]]) -> int:
+    """Run the script, and return its exit code. `driver` is the system id of the ground station that will drive.
 
-    `driver` is the system id of the ground station that will drive, 0 for this one. With `link` there are no links:
-    it hears and sends through the station that runs. Raises EndpointError, LinkError, VerbError.
+    0 is this one. Raises EndpointError, LinkError, VerbError.
     """
-    now = asyncio.get_running_loop().time
-    session_number = secrets.randbits(32) if link is None else link.ready.session
-    parts = CoreParts(endpoints, system=system, session=session_number, now=now())
+    system, component = links.ids
+    now = asyncio.get_running_loop().time()
+    parts = CoreParts(links.endpoints, system=system, component=component, session=links.session, now=now)
     feed = DoctorFeed(parts)
     core = OperatorCore(parts, feed)
     core.intents.add(feed.handlers)
-    runner = _open(core, endpoints, system) if link is None else _go_through(core, link)
-    running = asyncio.ensure_future(runner.run())
-    await asyncio.sleep(0)  # run() begins
+    runner = links.open(core)
     session = DoctorSession(core, feed, DoctorRequest(station=driver), runner)
-    lease = asyncio.ensure_future(_renew(core, session))
-    verb = asyncio.ensure_future(script(session))
-    try:
-        await asyncio.wait({running, verb, lease}, return_when=asyncio.FIRST_COMPLETED)
-        for each in (running, lease):
-            if each.done():
-                each.result()
-        return await verb
-    finally:
-        if verb.cancel():
-            await asyncio.wait({verb}, timeout=END_WITHIN)
-        lease.cancel()
-        runner.stop()
-        await running
-
-
-def _open(core: OperatorCore, endpoints: Sequence[str], system: int) -> Runner:
-    try:
-        signing = open_signing(asyncio.get_running_loop().time())
-    except SigningError as error:
-        raise VerbError(ExitCode.USAGE, str(error)) from None
-    links = open_links(endpoints, system=system, component=COMPONENT, side=Side.GROUND_STATION)
-    return Runner(core, links, period=PERIOD, route=False, signing=signing)
-
-
-def _go_through(core: OperatorCore, link: StationLink) -> StationRunner:
-    def take_reports(links: LinksReport) -> None:
-        core.observe(links.reports, asyncio.get_running_loop().time())
-
-    return StationRunner(core, link, PERIOD, take_reports)
+    return await run_beside(runner, lambda: script(session), _renew(core, session))
 
 
 async def _renew(core: OperatorCore, session: DoctorSession) -> None:

@@ -29,4 +29,5 @@ def choose_identity(
 
 def _component(action: VerbAction, kept: KeptSession) -> int:
     """Return our component id; with that of the verb before a verb that looks goes on with its session."""
-    return WATCHER if action.watches and not kept.follows else COMPONENT
+    looks = action.watches and not action.examines and not kept.follows
+    return WATCHER if looks else COMPONENT

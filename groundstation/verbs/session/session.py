@@ -5,34 +5,21 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import math
-from collections.abc import Awaitable, Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from itertools import count
 
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.station.driving.operator import NEUTRAL_LEAD
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
-from groundstation.vehicles.state.places import PLACES
 from groundstation.vehicles.state.vehicle_state import VehicleState
-from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.files import Files
 from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.core import ALONE_AFTER, VerbCore
 from groundstation.verbs.session.link_reasons import describe_silence, to_view
-from groundstation.verbs.session.station_link import StationRunner
-from link.protocol.log_tap import LogTap
 
-if TYPE_CHECKING:
-    from groundstation.verbs.session.demand_guard import DemandGuard
-    from link.link_signing import LinkSigning
-    from link.runner import Runner
-
-PERIOD = 0.02
-"""s between two ticks: twice the shortest round trip of a radio."""
-END_WITHIN = 1.0
-"""s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
 SETTLED_WITHIN = 3.0
 """s to find out the dialect and prove the session; the question alone is repeated for 2.1 s."""
 PROOF_PERIOD = 0.01
@@ -43,6 +30,9 @@ DRIVER_WITHIN = 2.5
 """s until our vehicle tells who is in control: it does once a second, and one may get lost."""
 SUCCESSION_WITHIN = 2.0
 """s for the session of the verb before this one to count as silent, which takes 0.7 s (docs/safety.md)."""
+
+NUMBERS = count(1 << 40)
+"""Numbers of requests, far from those that screens of a station take."""
 
 RequestStart = Callable[[int, float], None]
 """Starts a request, with its number and the time."""
@@ -65,8 +55,6 @@ class VerbSession:
         self.flush = flush
         self._progress = progress
         self._contact = contact
-        self._count = 0
-        self._ended: dict[int, RequestReport] = {}
         self.files = Files()
         """The files of whoever typed the verb."""
         self.where = ""
@@ -211,19 +199,32 @@ class VerbSession:
         return others
 
     async def request(self, start: RequestStart, interrupted: Interrupted | None = None) -> RequestReport:
-        """Make a request and return how it ended. Raises VerbError if its messages may not be sent."""
-        self._count += 1
-        number = self._count
+        """Make a request and return how it ended; it is cancelled with the verb.
+
+        Raises VerbError if its messages may not be sent.
+        """
+        services, number, ended = self.core.station.services, next(NUMBERS), list[RequestReport]()
+
+        def tell(report: RequestReport) -> None:
+            self._progress(report)
+            if report.state is not RequestState.RUNNING:
+                ended.append(report)
+
+        services.follow(number, tell)
         start(number, self.now)
+        services.collect(self.now)
         self.flush()
         try:
-            await self.core.add_waiter(lambda: self._collect(number) or bool(self._refusal))
+            if not ended:
+                await self.core.add_waiter(lambda: bool(ended) or bool(self._refusal))
         except asyncio.CancelledError:
             if interrupted is not None:
                 interrupted(number)
+            services.cancel(number, self.now)
+            self.flush()
             raise
         self.need_sent()
-        return self._ended.pop(number)
+        return ended[0]
 
     def heard_at(self, kind: type[m.Message]) -> float:
         """Return when such a message of the vehicle arrived last; -infinity if none has."""
@@ -241,67 +242,7 @@ class VerbSession:
             await self.wait_for(told or (lambda: self.heard_at(kind) >= began), within)
         return report
 
-    def _collect(self, number: int) -> bool:
-        for report in self.services.book.pop_changes():
-            self._progress(report)
-            if report.state is not RequestState.RUNNING:
-                self._ended[report.number] = report
-        return number in self._ended
-
 
 def _names(contacts: Mapping[int, VehicleContact]) -> str:
     """Return what --vehicle may name: names of a fleet, else system ids."""
     return ", ".join(contacts[system].state.fleet_name or str(system) for system in sorted(contacts))
-
-
-async def run_session(
-    endpoints: Sequence[str],
-    ids: tuple[int, int],
-    wanted: int | str | None,
-    script: Callable[[VerbSession], Awaitable[int]],
-    progress: Callable[[RequestReport], None],
-    guard: DemandGuard | None = None,
-    *,
-    session: int,
-    station: StationLink | None = None,
-    log_tap: LogTap | None = None,
-    signing: LinkSigning | None = None,
-    patience: float = math.inf,
-) -> int:
-    """Open the links, run the script, and return its exit code. Raises EndpointError, LinkError, VerbError.
-
-    With `station` there are no links: the verb goes through it, unless it does not answer for `patience` s. A script
-    that is interrupted gets END_WITHIN to end in order, over links that still work.
-    """
-    core = VerbCore(ids, wanted, session)
-    core.guard = guard
-    runner: Runner | StationRunner
-    if station is not None:
-        core.has_heard_all = True
-        runner = StationRunner(core, station, PERIOD, lambda links: core.observe(links.reports, 0.0), log_tap, patience)
-    else:
-        from link.endpoint import Side
-        from link.links import open_links
-        from link.runner import Runner  # a verb through a station does without
-
-        links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION, places=PLACES)
-        sent = guard.record_sent if guard else None
-        runner = Runner(core, links, period=PERIOD, route=False, log_tap=log_tap, sent=sent, signing=signing)
-    running = asyncio.ensure_future(runner.run())
-    await asyncio.sleep(0)  # run() begins
-    verb_session = VerbSession(core, runner.flush, progress)
-    verb_session.observe = runner.observe
-    verb = asyncio.ensure_future(script(verb_session))
-    reporting = asyncio.ensure_future(guard.run(core.driven)) if guard else None
-    try:
-        await asyncio.wait({running, verb}, return_when=asyncio.FIRST_COMPLETED)
-        if running.done():
-            running.result()
-        return await verb
-    finally:
-        if verb.cancel():
-            await asyncio.wait({verb}, timeout=END_WITHIN)
-        if reporting is not None:
-            reporting.cancel()
-        runner.stop()
-        await running

@@ -37,7 +37,6 @@ class StationRunner:
         core: Core,
         link: StationLink,
         period: float,
-        take_reports: Callable[[LinksReport], None],
         log_tap: LogTap | None = None,
         patience: float = math.inf,
     ) -> None:
@@ -49,7 +48,6 @@ class StationRunner:
         self._socket = link.sock
         self._buffer = ReceiveBuffer(MAX_RELAYED)
         self._period = period
-        self._take_reports = take_reports
         self._log_tap = log_tap
         self._endpoints = link.ready.endpoints
         self._patience = patience
@@ -140,7 +138,7 @@ class StationRunner:
                 for heard in messages:
                     self._take(heard, now)
             case LinksReport() as links:
-                self._take_reports(links)
+                self._core.observe(links.reports, now)
             case MessageRefused(number, payload, why):
                 if isinstance(self._core, RefusalListener):
                     self._core.handle_refused(codec.decode(number, payload), why, now)

@@ -7,7 +7,7 @@ from dialects.enums import Autopilot
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
-from groundstation.verbs.session.core import VerbCore
+from groundstation.verbs.session.core import OwnCore
 from link.core import Peer, Received
 
 
@@ -117,7 +117,7 @@ def test_a_vehicle_with_our_key_takes_the_place_of_one_without() -> None:
 
 
 def test_a_verb_has_a_place_for_the_vehicle_that_is_meant() -> None:
-    core = VerbCore((254, 25), 200, 1)
+    core = OwnCore((254, 25), 200, 1)
     for system in range(1, MAX_VEHICLES + 1):
         core.receive(beat(system), 1.0)
     core.receive(beat(200), 2.0)

@@ -9,9 +9,11 @@ from dialects.enums import Autopilot
 from dialects.kinds import NO_VEHICLES
 from groundstation.connect.heard import HeardVehicles
 from groundstation.vehicles.fleet import Fleet
+from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
-from groundstation.verbs.session.core import ALONE_AFTER, VerbCore
+from groundstation.verbs.control.stop_jobs import StopTimes, disarm_job
+from groundstation.verbs.session.core import ALONE_AFTER, OwnCore
 from link.core import Peer, Received
 
 PEER = Peer(0, "vehicle")
@@ -62,14 +64,16 @@ def test_autopilot_replaces_a_script_that_claims_to_be_a_rover() -> None:
 
 
 def test_a_request_to_the_former_component_is_refused() -> None:
-    core = VerbCore((254, 25), None, 1)
+    core = OwnCore((254, 25), None, 1)
     core.receive(beat(ROVER), 1.0)
     core.tick(1.01 + ALONE_AFTER)
     contact = core.chosen
     assert contact is not None
+    reports: list[RequestReport] = []
+    core.station.services.follow(1, reports.append)
     contact.services.commands.send(1, 520, (1.0,), "ask", 2.5)
     core.receive(autopilot(), 2.6)
-    [report] = [each for each in contact.services.book.pop_changes() if each.state.ended]
+    [report] = [each for each in reports if each.state.ended]
     assert report.detail == "component 1 is the autopilot, not 191: request it again"
     contact.services.commands.send(2, 520, (1.0,), "ask", 2.7)
     assert [each.message.target_component for each in core.messages_to_send() if type(each.message) is m.CommandLong][
@@ -77,8 +81,24 @@ def test_a_request_to_the_former_component_is_refused() -> None:
     ] == 1
 
 
+def test_a_stop_goes_on_when_the_autopilot_is_heard() -> None:
+    core = OwnCore((254, 25), None, 1)
+    core.receive(beat(ROVER), 1.0)
+    core.tick(1.01 + ALONE_AFTER)
+    contact = core.chosen
+    assert contact is not None
+    contact.services.book.begin(1, "disarm")
+    contact.start(disarm_job(1, contact.state, StopTimes(2.5, 2.5, 30.0)), 2.5)
+    core.messages_to_send()
+    core.receive(autopilot(), 2.6)
+    core.tick(4.0)
+    sent = [each.message for each in core.messages_to_send()]
+    assert {each.target_component for each in sent if type(each) is m.CommandLong} == {1}
+    assert [report.number for report in contact.services.book.running] == [1]
+
+
 def test_a_verb_waits_for_the_autopilot_behind_a_script() -> None:
-    core = VerbCore((254, 25), None, 1)
+    core = OwnCore((254, 25), None, 1)
     core.receive(beat(ROVER), 1.0)
     core.tick(1.0 + ALONE_AFTER - 0.1)
     assert core.chosen is None
@@ -88,7 +108,7 @@ def test_a_verb_waits_for_the_autopilot_behind_a_script() -> None:
 
 
 def test_a_verb_takes_the_second_autopilot_if_there_is_no_first() -> None:
-    core = VerbCore((254, 25), None, 1)
+    core = OwnCore((254, 25), None, 1)
     core.receive(autopilot(2), 1.0)
     assert core.chosen is None
     core.tick(1.01 + ALONE_AFTER)
@@ -98,7 +118,7 @@ def test_a_verb_takes_the_second_autopilot_if_there_is_no_first() -> None:
 
 def test_what_came_before_a_heartbeat_counts_as_not_heard() -> None:
     """Its contact has not taken it: `status` would not request it, and print that nobody is in control."""
-    core, system = VerbCore((254, 25), None, 1), 1
+    core, system = OwnCore((254, 25), None, 1), 1
     control = Received(m.ControlStatus(0, 254, [0] * 10), system, 1, 0, PEER, introduced=True)
     core.receive(control, 1.0)
     core.receive(autopilot(), 1.1)

@@ -84,6 +84,8 @@ def with_station(vehicle: ForeignVehicle, use: Use) -> None:
 
 def test_it_prints_in_the_shell_and_has_its_code(capsys: pytest.CaptureFixture[str]) -> None:
     async def use(shells: Shells) -> None:
+        assert (await shells.run("modes")).code == ExitCode.DONE
+        assert "> MANUAL" in capsys.readouterr().out
         assert await shells.run("mode", "HOLD") == VerbEnded(ExitCode.DONE, "ArduPilot rover 1")
         assert vehicle.mode == 4
         assert (await shells.run("param", "get", "FS_ACTION", "--json")).code == ExitCode.DONE
