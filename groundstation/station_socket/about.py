@@ -11,7 +11,7 @@ import msgspec
 from groundstation.station_socket.connect import NoStationError, connect, running_stations
 from groundstation.station_socket.folder import FolderError
 from groundstation.station_socket.hello import ABOUT, Hello, encode
-from link.endpoint import EndpointError, parse_endpoints
+from link.endpoint import EndpointError, parse_endpoint, parse_endpoints
 
 VERSION = 1
 """Of the answer below."""
@@ -91,7 +91,11 @@ def _describe(pid: int, about: About | None) -> str:
 def _is_the_same(one: str, other: str) -> bool:
     """Return whether two endpoints of this machine cannot be open at once."""
     try:
-        parse_endpoints([one, other])
+        texts = [parse_endpoint(text).text for text in (one, other)]
+    except EndpointError:  # of a station that knows other endpoints
+        return False
+    try:
+        parse_endpoints(texts)
     except EndpointError:
         return True
     return False

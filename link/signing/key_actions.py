@@ -57,11 +57,12 @@ def remove_key(path: Path, name: str) -> SigningKey:
     removed: list[SigningKey] = []
 
     def remove(ring: KeyRing) -> KeyRing:
-        removed.append(pick_key(ring, name))
-        return ring.remove(removed[-1].name)
+        key = pick_key(ring, name)
+        removed.append(key)
+        return ring.remove(key.name)
 
     change_keys(path, remove)
-    return removed[-1]
+    return removed.pop()
 
 
 def use_key(path: Path, name: str) -> SigningKey:
@@ -79,14 +80,13 @@ def pick_key(ring: KeyRing, name: str | None) -> SigningKey:
     """Return the key with this name or fingerprint, or the only one. Raises KeyActionError."""
     if not ring.keys:
         raise KeyActionError("there are no keys")
-    key = (
-        (ring.keys[0] if len(ring.keys) == 1 else None)
-        if name is None
-        else ring.find(name) or ring.find_fingerprint(name)
-    )
-    if key is None:
-        known = ", ".join(each.name for each in ring.keys)
-        raise KeyActionError(f"name a key: {known}" if name is None else f"there is no key {name!r}; there are {known}")
+    known = ", ".join(each.name for each in ring.keys)
+    if name is None:
+        if len(ring.keys) > 1:
+            raise KeyActionError(f"name a key: {known}")
+        return ring.keys[0]
+    if (key := ring.find(name) or ring.find_fingerprint(name)) is None:
+        raise KeyActionError(f"there is no key {name!r}; there are {known}")
     return key
 
 

@@ -37,7 +37,12 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "vehicle/drive": _VEHICLE_TESTS,
     "vehicle/safety": _VEHICLE_TESTS,
     "link/protocol": ("tests/link/protocol", "tests/test_bounds.py"),
-    "link/signing": ("tests/link/signing", "tests/link/protocol/test_signing_guard.py", "tests/test_bounds.py"),
+    "link/signing": (
+        "tests/link/signing",
+        "tests/link/protocol/test_signing_guard.py",
+        "tests/vehicle/cli/test_key_command.py",
+        "tests/test_bounds.py",
+    ),
     "link/fleet/roles.py": _ROLE_TESTS,
     "link/fleet/keys.py": _ROLE_TESTS,
     "link/fleet/rights": _ROLE_TESTS,
@@ -48,15 +53,6 @@ ROOMS: dict[str, tuple[str, ...]] = {
 }
 """Folders and modules to mutate: those that decide whether the wheels turn, which frames count and who gets in -> tests
 to run against them."""
-NOT_RUN = (
-    *(
-        f"link/signing/{name}.py"
-        for name in ("key_actions", "key_file", "key_input", "key_options", "key_qr", "key_words", "missing_package")
-    ),
-    "groundstation/station_socket/about.py",
-)
-"""Modules of these folders that are mutated only if they are named: how people enter, show and keep keys, and the words
-for the stations of a user."""
 DESELECTED = (
     "tests/vehicle/safety/test_estop_button.py",
     "tests/groundstation/watchdog/test_killed_stations.py",
@@ -102,9 +98,7 @@ def _parse() -> argparse.Namespace:
 
 def _modules(paths: list[str]) -> list[str]:
     files = [file for path in map(Path, paths) for file in (sorted(path.glob("*.py")) if path.is_dir() else [path])]
-    return [
-        str(file) for file in files if file.name != "__init__.py" and (str(file) not in NOT_RUN or str(file) in paths)
-    ]
+    return [str(file) for file in files if file.name != "__init__.py"]
 
 
 def describe(mutant: Mutant) -> str:

@@ -30,14 +30,22 @@ def find_functions() -> Functions:
     return found
 
 
-def replace_function(mutant: Mutant, functions: Functions) -> None:
-    """Replace the code of the function that `mutant` changes. Raises LookupError if it is not loaded."""
+def replace_function(mutant: Mutant, functions: Functions) -> bool:
+    """Replace the code of the function that `mutant` changes. Raises LookupError if it is not loaded.
+
+    Returns False, and replaces nothing, where a function cannot take the code because it uses other variables of the
+    functions around it: one without its only `super()` has no `__class__`.
+    """
     changed = {(code.co_qualname, code.co_firstlineno): code for code in _codes(mutant.compile())}
     loaded = functions.get((mutant.file, mutant.function))
     if not loaded:
         raise LookupError(mutant.function)
-    for function in loaded:
-        function.__code__ = changed[mutant.function, function.__code__.co_firstlineno]
+    codes = [changed[mutant.function, function.__code__.co_firstlineno] for function in loaded]
+    if any(f.__code__.co_freevars != code.co_freevars for f, code in zip(loaded, codes, strict=True)):
+        return False
+    for function, code in zip(loaded, codes, strict=True):
+        function.__code__ = code
+    return True
 
 
 def _codes(code: CodeType) -> Iterator[CodeType]:

@@ -94,12 +94,11 @@ class Runner:
         self._running[fork(lambda at: self._run(mutant, tests, at), folder)] = (mutant, folder)
 
     def _run(self, mutant: Mutant, tests: Sequence[str], folder: Path) -> None:
-        if mutant.function:
-            replace_function(mutant, self._functions)
+        if mutant.function and replace_function(mutant, self._functions):
             run_items([self._items[test] for test in tests], Watch(folder))
         else:
             replace_module(mutant)
-            run_files(tests, Watch(folder))
+            run_files(list(dict.fromkeys(test.partition("::")[0] for test in tests)), Watch(folder))
 
     def _finish(self) -> None:
         child, status = os.wait()

@@ -1,12 +1,14 @@
-"""A key as words and as a QR code."""
+"""A key as words."""
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
-from link.signing.key_input import read_words
-from link.signing.key_qr import draw_qr
+from link.signing import key_words
 from link.signing.key_words import WordsError, complete_word, secret_from_words, words_from_secret
+from link.signing.missing_package import MissingPackageError
 
 ZERO = ("abandon",) * 23 + ("art",)
 """The test vector of BIP-39 for 32 zero bytes."""
@@ -15,7 +17,6 @@ ZERO = ("abandon",) * 23 + ("art",)
 @pytest.fixture(autouse=True)
 def _packages() -> None:
     pytest.importorskip("mnemonic")
-    pytest.importorskip("segno")
 
 
 def test_the_vectors_of_bip_39() -> None:
@@ -43,17 +44,11 @@ def test_four_letters_are_enough(text: str, word: str | None) -> None:
     assert complete_word(text) == word
 
 
-def test_typed_words_are_checked_at_once(capsys: pytest.CaptureFixture[str]) -> None:
-    lines = iter(["ABANDON aban", "wrnog", *ZERO[2:]])
-    assert read_words(lambda prompt: next(lines)) == bytes(32)
-    assert "word 3 is not in the list" in capsys.readouterr().err
-
-
-def test_a_qr_code_has_its_quiet_zone_and_fits_a_terminal() -> None:
-    lines = draw_qr("AB" * 32, unicode=True).splitlines()
-    assert len(lines) == 19
-    assert all(line.startswith("\x1b[30;107m") and line.endswith("\x1b[0m") for line in lines)
-    width = len(lines[0].removeprefix("\x1b[30;107m").removesuffix("\x1b[0m"))
-    assert width == 37
-    assert not lines[0].removeprefix("\x1b[30;107m").removesuffix("\x1b[0m").strip()
-    assert "▀" not in draw_qr("AB" * 32, unicode=False)
+def test_a_missing_package_is_named_with_its_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(key_words, "_books", [])
+    monkeypatch.setitem(sys.modules, "mnemonic", None)
+    with pytest.raises(
+        MissingPackageError, match=r"^words need the package mnemonic: .*\[keys\].*; --hex does without$"
+    ):
+        words_from_secret(bytes(32))
+    assert key_words._books == []
