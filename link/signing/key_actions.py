@@ -84,7 +84,8 @@ def pick_key(ring: KeyRing, name: str | None) -> SigningKey:
     if name is None:
         if len(ring.keys) > 1:
             raise KeyActionError(f"name a key: {known}")
-        return ring.keys[0]
+        (only,) = ring.keys
+        return only
     if (key := ring.find(name) or ring.find_fingerprint(name)) is None:
         raise KeyActionError(f"there is no key {name!r}; there are {known}")
     return key

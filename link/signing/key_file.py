@@ -109,7 +109,7 @@ def _open_lock(path: Path) -> int:
 
     One that exists is left as it is: the owner of the folder may have linked another file there.
     """
-    flags = os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC
+    flags = os.O_RDWR | os.O_NOFOLLOW
     try:
         descriptor = os.open(path, flags | os.O_CREAT | os.O_EXCL, PRIVATE)
     except FileExistsError:
@@ -127,7 +127,7 @@ def _format_key(key: SigningKey) -> str:
 def _read_private(path: Path) -> str | None:
     """Return the text of a file that nobody else can read or replace; None without a file."""
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except FileNotFoundError:
         return None
     except OSError as error:

@@ -54,11 +54,11 @@ def read_secret(form: SecretForm, file: str = STDIN, ask: Ask | None = None) -> 
 def read_hex(file: str) -> bytes:
     """Return the bytes of hex digits in a file, or in standard input for `-`. Raises SecretInputError."""
     try:
-        data = sys.stdin.buffer.read(MAX_HEX + 1) if file == STDIN else read_regular_file(Path(file), MAX_HEX)
+        data = sys.stdin.buffer.read(MAX_HEX) if file == STDIN else read_regular_file(Path(file), MAX_HEX)
     except OSError as error:
         raise SecretInputError(f"{file}: {error.strerror}") from error
     try:
-        return bytes.fromhex("".join(data[:MAX_HEX].decode("ascii").split()))
+        return bytes.fromhex("".join(data.decode("ascii").split()))
     except ValueError:
         name = "standard input" if file == STDIN else file
         raise SecretInputError(f"{name}: this is not 64 hex digits") from None

@@ -7,22 +7,25 @@ from typing import Any
 Options = dict[str, dict[str, Any]]
 """Name -> arguments of argparse."""
 
-
-def _constant(dest: str, value: str, text: str) -> dict[str, Any]:
-    return {"dest": dest, "action": "store_const", "const": value, "help": text}
-
+_SHOWN_AS = {
+    "words": "print the secret as 24 words",
+    "hex": "print the secret as 64 hex digits",
+    "qr": "draw the hex digits as a QR code",
+}
+_FORMS = {
+    "words": "type 24 words; four letters of each are enough",
+    "passphrase": "type that of MAVProxy, Mission Planner, QGroundControl to 5.0",
+    "qgc-passphrase": "type that of a newer QGroundControl",
+}
 
 SHOWN: Options = {
-    "--words": _constant("shown_as", "words", "print the secret as 24 words"),
-    "--hex": _constant("shown_as", "hex", "print the secret as 64 hex digits"),
-    "--qr": _constant("shown_as", "qr", "draw the hex digits as a QR code"),
+    f"--{value}": {"dest": "shown_as", "action": "store_const", "const": value, "help": text}
+    for value, text in _SHOWN_AS.items()
 }
 """Values: link.signing.key_actions.ShownAs."""
 
 ENTERED: Options = {
-    "--words": _constant("form", "words", "type 24 words; four letters of each are enough"),
-    "--passphrase": _constant("form", "passphrase", "type that of MAVProxy, Mission Planner, QGroundControl to 5.0"),
-    "--qgc-passphrase": _constant("form", "qgc-passphrase", "type that of a newer QGroundControl"),
-    "--hex": {"metavar": "FILE", "help": "read 64 hex digits from a file, - for standard input"},
-}
+    f"--{value}": {"dest": "form", "action": "store_const", "const": value, "help": text}
+    for value, text in _FORMS.items()
+} | {"--hex": {"metavar": "FILE", "help": "read 64 hex digits from a file, - for standard input"}}
 """Values: link.signing.key_input.SecretForm."""

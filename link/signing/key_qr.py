@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 
 from link.signing.missing_package import MissingPackageError
 
@@ -35,8 +36,7 @@ def _modules(text: str) -> list[Sequence[int]]:
 
 
 def _half_blocks(rows: list[Sequence[int]]) -> list[str]:
-    padded = rows if len(rows) % 2 == 0 else [*rows, (0,) * len(rows[0])]
-    pairs = zip(padded[::2], padded[1::2], strict=True)
+    pairs = zip_longest(rows[::2], rows[1::2], fillvalue=(0,) * len(rows))  # a code is a square with an odd side
     return [DARK_ON_LIGHT + "".join(HALVES[pair] for pair in zip(*each, strict=True)) for each in pairs]
 
 

@@ -7,6 +7,7 @@ https://github.com/bitcoin/bips/blob/master/bip-0039.mediawiki
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 from link.signing.missing_package import MissingPackageError
@@ -50,14 +51,10 @@ def complete_word(text: str) -> str | None:
     return found[0] if len(found) == 1 else None
 
 
-_books: list[Mnemonic] = []
-
-
+@cache
 def _book() -> Mnemonic:
-    if not _books:
-        try:
-            from mnemonic import Mnemonic
-        except ImportError:
-            raise MissingPackageError("words need", "mnemonic") from None
-        _books.append(Mnemonic("english"))
-    return _books[0]
+    try:
+        from mnemonic import Mnemonic
+    except ImportError:
+        raise MissingPackageError("words need", "mnemonic") from None
+    return Mnemonic("english")

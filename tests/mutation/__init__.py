@@ -23,8 +23,7 @@ How a run works:
    tests/ anew and runs the test files one after the other, the module's own first, that and tests/test_bounds.py in any
    case.
 
-Tests that start programs (`DESELECTED`) run unchanged code in them and notice no mutant. What only they test is not run
-here: the entry and files of keys, and the words for stations (`NOT_RUN`).
+Tests that start programs (`DESELECTED`) run unchanged code in them and notice no mutant.
 
 With --results, a mutant that was killed is not run again while its module is the same, and a survivor not while the
 tests are the same, too (results.py).
