@@ -21,6 +21,10 @@ STEP = 0.02
 TRY = 5.0
 """s for a demand to turn the wheels; then its publisher begins anew."""
 
+LATE_FAILSAFE = ("--param", "FS_TIMEOUT=10", "--param", "FS_DISARM_T=300", "--param", "FS_GCS_TIMEOUT=120")
+"""Where our node was late, its publisher begins anew; after HOLD or disarming only an operator could. Neutral comes as
+soon as ever."""
+
 
 class World:
     """A router, a vehicle, our node, and another node in this process."""
@@ -29,7 +33,7 @@ class World:
         self._folder, self.stack = folder, stack
         self.router, self.port = free_port(), free_port()
         self.router_process = self.start_router()
-        self.vehicle = Vehicle(folder, self.port)
+        self.vehicle = Vehicle(folder, self.port, *LATE_FAILSAFE)
         stack.callback(self.vehicle.end)
         self.peer = Peer(self.router)
         stack.callback(self.peer.close)
