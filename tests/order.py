@@ -21,17 +21,22 @@ WAITING_FOLDERS = (
     "vehicle/motors",
 )  # fmt: skip
 """Folders below tests/ whose tests start programs, talk to sockets or to a controller behind a line."""
+LONG = (
+    "tests/vehicle/machine", "tests/vehicle/autonomy/mission", "tests/test_stops.py", "tests/test_stop_monkey.py",
+    "tests/test_stop_worlds.py",
+)  # fmt: skip
+"""Folders and files with tests that compute for 10 to 50 s: at the end, one of them would run alone."""
 LAST = 0.85
 """Share of the suite by which the last waiting test has begun: a long one at the end would run alone."""
 
 
 def mix(items: Sequence[pytest.Item]) -> list[pytest.Item]:
-    """Return all items, in their order but for those that wait, which are spread; the longest of these come first."""
+    """Return all items, in their order but for those that wait, which are spread; the longest of both come first."""
     waiting: list[pytest.Item] = []
     computing: list[pytest.Item] = []
     for item in items:
         (waiting if waits(item) else computing).append(item)
-    return list(spread(sorted(waiting, key=_is_short), computing))
+    return list(spread(sorted(waiting, key=_is_short), sorted(computing, key=lambda item: not computes_long(item))))
 
 
 def turned(nodes: Sequence[Each], worker: str) -> list[Each]:
@@ -72,3 +77,8 @@ def gives_way(item: pytest.Item) -> bool:
 def _is_short(item: pytest.Item) -> bool:
     """Return False for the slow tests, and for a group, which one worker runs from its first to its last test."""
     return item.get_closest_marker("slow") is None and item.get_closest_marker("xdist_group") is None
+
+
+def computes_long(item: pytest.Item) -> bool:
+    """Return whether a test is one of LONG."""
+    return item.path.parent.as_posix().endswith(LONG) or item.path.as_posix().endswith(LONG)
