@@ -44,6 +44,9 @@ class KeyPrinter:
     def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Note nothing: they are in handle_keys as the rest of a sequence."""
 
+    def handle_release_claim(self) -> None:
+        """Note nothing: a release or a repeat is shown as such."""
+
     def handle_release_support(self) -> None:
         """Note that the terminal reports releases."""
         self.releases = True

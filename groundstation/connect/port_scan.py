@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from groundstation.station_socket.connect import running_stations
+from groundstation.station_socket.folder import FolderError
 from groundstation.views.connect import PortRow
 from link.runtime.worker import Worker
 from link.transport.serial_ports import SerialPort, find_serial_ports
@@ -33,6 +35,8 @@ class PortScan:
         self._worker.close(patience=0.0)
 
     def _scan(self) -> None:
+        ports = self._find()
+        stations = _own_stations() if any(each.holder for each in ports) else []
         self.rows = tuple(
             PortRow(
                 path=each.path,
@@ -40,7 +44,15 @@ class PortScan:
                 ids=each.ids,
                 driver=each.driver,
                 holder=each.holder,
+                station=next((pid for pid in stations if each.holder.endswith(f"(pid {pid})")), 0),
                 allowed=each.allowed,
             )
-            for each in self._find()
+            for each in ports
         )
+
+
+def _own_stations() -> list[int]:
+    try:
+        return running_stations()
+    except FolderError:
+        return []

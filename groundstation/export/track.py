@@ -16,7 +16,7 @@ from dialects.enums import Severity
 from dialects.messages import GlobalPositionInt, GpsRawInt, StatusText
 from groundstation.export.sample import Sample
 from groundstation.geo import FIX_2D, read_place
-from groundstation.vehicles.state.chunked_texts import TextJoiner, TextKey
+from groundstation.vehicles.state.chunked_texts import TextJoiner
 
 PAUSE = 10_000_000
 """us without a position that end a segment: a line across the gap would show a path that was not recorded."""
@@ -77,8 +77,6 @@ class Tracks:
         self.remarks: list[Remark] = []
         self.count = 0
         self._joiner = TextJoiner()
-        self._open: dict[TextKey, int] = {}
-        """Texts of which chunks may follow, and the place of their remarks."""
 
     def add(self, sample: Sample) -> None:
         """Handle a message that has a position, or a warning."""
@@ -116,13 +114,10 @@ class Tracks:
         assert isinstance(message, StatusText)
         track = self.of.get(sample.system)
         text = self._joiner.add(message, sample.system, sample.component, sample.microseconds / 1e6)
-        for gone in self._joiner.pop_overdue(sample.microseconds / 1e6):
-            self._open.pop(gone.key, None)
-        at = self._open.pop(text.key, None)
-        if at is not None:
-            self.remarks[at] = replace(self.remarks[at], text=text.text)
+        for _ in self._joiner.pop_overdue(sample.microseconds / 1e6):
+            pass  # their remarks are there already
+        if text.made is not None:
+            self.remarks[text.made] = replace(self.remarks[text.made], text=text.text)
         elif text.severity <= Severity.WARNING and track is not None and track.last:
-            at = len(self.remarks)
+            text.made = len(self.remarks)
             self.remarks.append(Remark(sample.system, text.text, track.last))
-        if at is not None and not text.complete:
-            self._open[text.key] = at

@@ -19,7 +19,7 @@ from dialects.messages import MESSAGES, Message, decode_text
 from dialects.modes import custom_mode_of
 from dialects.printable import printable
 from groundstation.vehicles.readings.values import flag_words
-from groundstation.vehicles.state.chunked_texts import ChunkedText, TextJoiner, TextKey
+from groundstation.vehicles.state.chunked_texts import TextJoiner
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
 
 MAX_EVENTS = 20_000
@@ -148,8 +148,6 @@ class EventFinder(msgspec.Struct):
     """System and component -> the vehicle that its HEARTBEATs are of."""
 
     joiner: TextJoiner = msgspec.field(default_factory=TextJoiner)
-    joined: dict[TextKey, tuple[ChunkedText, LogEvent]] = msgspec.field(default_factory=dict)
-    """Texts of which chunks may follow, and their events."""
 
     def handle(self, found: Found) -> None:
         """Add the events of one message."""
@@ -225,19 +223,14 @@ def _status_text(finder: EventFinder, found: Found) -> Parts:
     if message.id == 0:
         yield "TEXT", text.severity, text.text
         return
-    for gone in finder.joiner.pop_overdue(found.time):
-        if finder.joined.get(gone.key, (None, None))[0] is gone:
-            del finder.joined[gone.key]
-    known, event = finder.joined.get(text.key, (None, None))
-    if known is text and event is not None:
-        changed = event._replace(text=text.text[:MAX_TEXT])
-        finder.events.replace(event, changed)
+    for _ in finder.joiner.pop_overdue(found.time):
+        pass  # their events are there already
+    if text.made is None:
+        text.made = LogEvent(found.time, found.offset, "TEXT", text.severity, text.text[:MAX_TEXT], found.system)
+        finder.events.add(text.made)
     else:
-        changed = LogEvent(found.time, found.offset, "TEXT", text.severity, text.text[:MAX_TEXT], found.system)
-        finder.events.add(changed)
-    finder.joined[text.key] = text, changed
-    if text.complete:
-        del finder.joined[text.key]
+        before, text.made = text.made, text.made._replace(text=text.text[:MAX_TEXT])
+        finder.events.replace(before, text.made)
 
 
 def _failsafe(finder: EventFinder, found: Found) -> Parts:
@@ -283,6 +276,8 @@ def _reached(finder: EventFinder, found: Found) -> Parts:
 def _station_event(finder: EventFinder, found: Found) -> Parts:
     message = found.message
     kind = enum_names("ROVER_STATION_EVENT_KIND").get(int(message.kind), "")
+    if kind == "SCREEN":
+        return  # which screen was looked at is no event of a drive
     tag = "KEY" if kind.startswith("KEYS") else "CMD" if kind == "ACTION" else "LINK" if "LINK" in kind else "GCS"
     yield tag, int(message.severity), decode_text(message)
 

@@ -7,7 +7,15 @@ from collections.abc import Callable
 from dialects.axes import NEUTRAL, Axes, parse_manual_control
 from dialects.codec import CRC_EXTRA, decode_frame
 from dialects.enums import OperatorFlag
-from dialects.messages import Heartbeat, ManualControl, Message, RoverOperatorPresence
+from dialects.enums import StationEventKind as Kind
+from dialects.messages import (
+    Heartbeat,
+    ManualControl,
+    Message,
+    RoverOperatorPresence,
+    RoverStationEvent,
+    decode_text,
+)
 from groundstation.station.station import Station
 from link.core import LinkReport, Peer, Received, SourceCount
 from link.tlog.scan import LogFrame
@@ -26,7 +34,7 @@ REPORT = 1.0
 
 MOST_LOST = 128
 
-DEMAND_IDS = (ManualControl.id, RoverOperatorPresence.id)
+DEMAND_IDS = (ManualControl.id, RoverOperatorPresence.id, RoverStationEvent.id)
 
 BuildStation = Callable[[int, float], Station]
 """Returns a new station; called with its system id and its time."""
@@ -45,6 +53,12 @@ class StationFeed:
         self._counts: dict[tuple[int, int], list[int]] = {}
         self._frames = self._bytes = 0
         self._demand_until = 0.0
+        self._keys: dict[str, None] = {}
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Drive keys that counted as held, as the ground station noted them; in logs of others there are none."""
+        return tuple(self._keys)
 
     def prime(self, frame: LogFrame, time: float) -> None:
         """Give a frame from before, in the order of time; nothing happens between them. Demands are over by now."""
@@ -68,6 +82,7 @@ class StationFeed:
         station = self.station
         if BASE + time >= self._demand_until:
             station.operator.record_demand(NEUTRAL)
+            self._keys.clear()
         station.tick(BASE + time)
         if time >= self._report_due:
             self._report_due = time + REPORT
@@ -110,6 +125,8 @@ class StationFeed:
         self.station.handle_sent(message, sequence, now)
         if isinstance(message, ManualControl):
             self._show_demand(message, message.target, now)
+        elif isinstance(message, RoverStationEvent):
+            self._show_keys(message, now)
         elif isinstance(message, RoverOperatorPresence) and message.flags & OperatorFlag.AXES:
             self._show_demand(message, message.target_system, now)
 
@@ -119,3 +136,14 @@ class StationFeed:
             throttle, steering = parse_manual_control(message, contact.choose_axes(NEUTRAL))
             self.station.operator.record_demand(Axes(throttle or 0.0, steering or 0.0))
             self._demand_until = now + DEMAND_SHOWN
+
+    def _show_keys(self, note: RoverStationEvent, now: float) -> None:
+        """Follow the keys of a note: its text is the key, and why it no longer counts behind a colon."""
+        key = decode_text(note).partition(": ")[0]
+        if note.kind == Kind.KEYS_DOWN:
+            self._keys[key] = None
+            self._demand_until = now + DEMAND_SHOWN
+        elif note.kind == Kind.KEYS_UP:
+            self._keys.pop(key, None)
+            if not note.throttle and not note.steering:
+                self._keys.clear()

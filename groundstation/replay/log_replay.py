@@ -132,6 +132,7 @@ class LogReplay:
             endpoints=(self.name,),
             faults=0,
             waiting=None if snapshot.vehicle else "no vehicle yet at this moment of the log",
+            operator=msgspec.structs.replace(snapshot.operator, held=self.player.keys),
             replay=self._status(),
         )
 

@@ -64,6 +64,11 @@ class ReplayPlayer:
         return self._feed.station
 
     @property
+    def keys(self) -> tuple[str, ...]:
+        """Drive keys that were held at this position."""
+        return self._feed.keys
+
+    @property
     def own(self) -> tuple[int, int] | None:
         """The ground station whose frames count as sent: the one that wrote the log, as far as it can be told."""
         stations = self._index.findings.finder.stations

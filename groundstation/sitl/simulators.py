@@ -26,7 +26,7 @@ SIMULATORS: tuple[SimulatorRow, ...] = (
     SimulatorRow("rover", "s", "rover", "skid steering", ((),)),
     SimulatorRow("car", "c", "car", "steered wheels", (("--param", "DRIVE_TYPE=2"),)),
     SimulatorRow("mecanum", "m", "mecanum", "moves sideways", (("--param", "DRIVE_TYPE=4"),)),
-    SimulatorRow("low", "l", "battery low", "20 % charge left", (("--sim-battery", "0.2"),)),
+    SimulatorRow("low", "l", "battery low", "drops into HOLD", (("--sim-battery", "0.1"),)),
     SimulatorRow("three", "v", "three rovers", "ids 1 2 3",
                  (("--system", "1"), ("--system", "2", "--sim-seed", "2"), ("--system", "3", "--sim-seed", "3"))),
 )  # fmt: skip

@@ -261,7 +261,7 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     uptime: float = 0.0
     endpoints: tuple[str, ...] = ()
     addresses: tuple[str, ...] = ()
-    """IPv4 addresses of this machine without loopback, while there is no vehicle."""
+    """IPv4 addresses of this machine without loopback, that of the default route first."""
     waiting: str | None = None
     """What the station waits for while there is no vehicle, in one line."""
     vehicle: VehicleView | None = None

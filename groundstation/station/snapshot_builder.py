@@ -22,7 +22,7 @@ class SnapshotBuilder:
         return Snapshot(
             uptime=now - parts.started,
             endpoints=around.endpoints,
-            addresses=() if selected else around.addresses,
+            addresses=around.addresses,
             waiting=None if selected else around.waiting(has_traffic=links.stats.has_traffic),
             vehicle=self._vehicle(selected, now) if selected else None,
             left_armed=parts.shutdown.left_armed(now),

@@ -88,14 +88,20 @@ def _describe(pid: int, about: About | None) -> str:
     return f"{pid} ({', '.join(parts)})"
 
 
+def _by_device(endpoint: str) -> str:
+    """Return an endpoint with the device in place of a link to it, as /dev/serial0 and /dev/serial/by-id/... are."""
+    found = parse_endpoint(endpoint)
+    return found.text.replace(found.path, os.path.realpath(found.path), 1) if found.path else found.text
+
+
 def _is_the_same(one: str, other: str) -> bool:
-    """Return whether two endpoints of this machine cannot be open at once."""
+    """Return whether two endpoints of this machine cannot be open at once; a serial port may have several names."""
     try:
-        texts = [parse_endpoint(text).text for text in (one, other)]
+        devices = [_by_device(text) for text in (one, other)]
     except EndpointError:  # of a station that knows other endpoints
         return False
     try:
-        parse_endpoints(texts)
+        parse_endpoints(devices)
     except EndpointError:
         return True
     return False

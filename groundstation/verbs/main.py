@@ -97,6 +97,8 @@ def run(arguments: Sequence[str]) -> int:
         return 128 + (caught[0] if caught else signal.SIGINT)
     except OSError as error:  # of the output: full, or closed by its reader
         return stdio.end_output(error, lambda reason: output.error(f"output: {reason}"))
+    finally:
+        output.clear_progress()
     return code
 
 

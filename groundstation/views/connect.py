@@ -50,6 +50,8 @@ class PortRow(msgspec.Struct, frozen=True, kw_only=True):
     """Name of the kernel's driver, e.g. "ftdi_sio"."""
     holder: str = ""
     """Program that has it open, with its process id."""
+    station: int = 0
+    """Process id of that program if it is another station of this user; 0: it is none."""
     allowed: bool = True
     """This user may open it."""
 

@@ -71,6 +71,8 @@ class MessagesPage(View, frozen=True):
     order: str = "source"
     text: str = ""
     """Those of the request: a page for another filter must not pass for the answer to this one."""
+    history: tuple[int, ...] = ()
+    """Bytes/s of all links in the last minute, the oldest first, one a second."""
 
 
 class MessageRequest(ViewRequest, frozen=True):

@@ -93,6 +93,12 @@ class PlanView(View, frozen=True, kw_only=True):
     home: Place | None = None
     home_altitude: float | None = None
     """m above sea level."""
+    speed: float | None = None
+    """m/s in AUTO, by the vehicle's parameters; None: not read."""
+    charge: float | None = None
+    """Charge of the battery, 0..1."""
+    charge_rate: float | None = None
+    """Share of the charge that is used in a second of driving; None: too little was used to tell."""
     neighbours: tuple[Neighbour, ...] = ()
     modes: tuple[PlanMode, ...] = ()
     running: tuple[RequestLine, ...] = ()

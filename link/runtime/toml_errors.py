@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import re
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -44,6 +45,46 @@ def explain_error(error: msgspec.ValidationError, kind: Any, at: str, also: Iter
             path, what = reword(found, _Place(kind, path, tuple(also)))
             break
     return f"{_joined(at, path)}: {what}"
+
+
+def explain_errors(table: Any, kind: Any, at: str, also: Iterable[str] = ()) -> list[str]:
+    """Return one line for each mistake in a table; [] for none. The arguments are those of `explain_error`.
+
+    msgspec names the first mistake only, so what it names is left out and the rest is tried again.
+    """
+    found: list[str] = []
+    also, rest, dropped = tuple(also), copy.deepcopy(table), set[str]()
+    while True:
+        try:
+            msgspec.convert(rest, kind)
+        except msgspec.ValidationError as error:
+            line = explain_error(error, kind, at, also)
+            if line.partition(": ")[0] not in dropped:  # else it is missing because its mistake was named
+                found.append(line)
+            key = _drop(rest, error)
+            if key is None:
+                return found
+            dropped.add(_joined(at, key))
+        else:
+            return found
+
+
+def _drop(table: Any, error: msgspec.ValidationError) -> str | None:
+    """Remove what an error names from a table; return its path, None where nothing is left to be removed.
+
+    Of a list all goes, because the numbers of its entries are part of the paths; a table that lacks a key goes as well.
+    """
+    what, _, path = str(error).partition(" - at `$")
+    path, is_in_list, _ = path.removesuffix("`").partition("[")
+    steps = path.split(".")[1:]
+    if not is_in_list and (unknown := re.fullmatch(r"Object contains unknown field `(.+)`", what)):
+        steps.append(unknown[1])
+    if not steps:
+        return None
+    for step in steps[:-1]:
+        table = table[step]
+    del table[steps[-1]]
+    return "." + ".".join(steps)
 
 
 class _Place:

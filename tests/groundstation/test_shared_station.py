@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
+import pty
 import signal
 import socket
 import stat
 import subprocess
 import sys
 import time
+import tty
 from pathlib import Path
 
 import msgspec
@@ -253,6 +256,22 @@ def test_a_port_of_another_station_is_named(capsys: pytest.CaptureFixture[str]) 
             assert str(caught.value) == f"{held}groundstation attach"
             assert main(["status", "-e", endpoint, "--station", "never"]) == 2
             assert capsys.readouterr().err == f"groundstation: {held}--station {pid} goes through it\n"
+
+
+def test_a_serial_port_of_another_station_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """/dev/serial0 and /dev/serial/by-id/... are links to the device."""
+    ours, theirs = pty.openpty()
+    tty.setraw(ours)
+    device, link = os.ttyname(theirs), tmp_path / "serial0"
+    link.symlink_to(device)
+    with contextlib.closing(StationClient.start([f"serial:{device}:57600"])) as client:
+        wait_until(lambda: running_stations() == [client.pid])
+        for name in (device, str(link)):
+            assert main(["status", "-e", f"serial:{name}:115200", "--station", "never"]) == 2
+            held = f"another program uses {name}; a station of yours ({client.pid}) has it: --station {client.pid}"
+            assert held in capsys.readouterr().err
+    os.close(ours)
+    os.close(theirs)
 
 
 def _attach_with(station: int, hello: Hello) -> StationClient:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from link.runtime.toml_errors import explain_error
+from link.runtime.toml_errors import explain_errors
 from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, OFF, Accessory
 from vehicle.accessories.drivers import DRIVERS, Kind
 from vehicle.accessories.output import AccessorySpec, PulseRange, Until
@@ -124,22 +124,15 @@ def _problems(kind: Kind, at: str, table: Mapping[str, Any]) -> list[str]:
         return [f"{at}.driver: {error}"]
     common, own = _split(kind, table)
     other_keys = ("driver", *COMMON[kind].__struct_fields__)
-    found = [_problem(common, COMMON[kind], at), _problem(own, own_kind or NoSettings, at, other_keys)]
-    if any(found):
-        return [line for line in found if line]
+    found = explain_errors(dict(common), COMMON[kind], at)
+    found += explain_errors(dict(own), own_kind or NoSettings, at, other_keys)
+    if found:
+        return found
     try:
         build_spec(kind, table)
     except MotorSettingsError as error:
         return [f"{at}: {error}"]
     return []
-
-
-def _problem(table: Mapping[str, Any], kind: Any, at: str, other_keys: tuple[str, ...] = ()) -> str | None:
-    try:
-        msgspec.convert(dict(table), kind)
-    except msgspec.ValidationError as error:
-        return explain_error(error, kind, at, other_keys)
-    return None
 
 
 def settings_type(kind: Kind, name: str) -> type | None:

@@ -13,7 +13,7 @@ from typing import Annotated, Any, get_type_hints
 import msgspec
 
 from link.endpoint import EndpointError, parse_endpoint
-from link.runtime.toml_errors import explain_error, suggest
+from link.runtime.toml_errors import explain_errors, suggest
 from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read_toml
 from vehicle.accessories import settings as accessory_settings
 from vehicle.accessories.settings import Accessories
@@ -102,19 +102,15 @@ def _build(table: Mapping[str, Any], name: str) -> Config:
 
 
 def _problems(table: Mapping[str, Any]) -> list[str]:
-    """Return one line for each section with an error, and for each error in [params] and [accessories]."""
+    """Return one line for each mistake; of a section with mistakes in its types the further checks are left out."""
     kinds = get_type_hints(Config, include_extras=True) | {"params": dict[str, Any]}
     problems: list[str] = []
     for key, value in table.items():
         if key not in kinds:
             problems.append(f"{key}: unknown key; {suggest(key, kinds)}")
             continue
-        try:
-            msgspec.convert(value, kinds[key])
-        except msgspec.ValidationError as error:
-            problems.append(explain_error(error, kinds[key], key))
-        else:
-            problems += _CHECKS[key](value) if key in _CHECKS else []
+        mistakes = explain_errors(value, kinds[key], key)
+        problems += mistakes or (_CHECKS[key](value) if key in _CHECKS else [])
     return problems or _contradictions(table)
 
 
@@ -144,11 +140,7 @@ def _motor_problems(table: Mapping[str, Any]) -> list[str]:
 
 
 def _problem(table: Mapping[str, Any], kind: Any, other_keys: tuple[str, ...] = ()) -> list[str]:
-    try:
-        msgspec.convert(dict(table), kind)
-    except msgspec.ValidationError as error:
-        return [explain_error(error, kind, "motors", other_keys)]
-    return []
+    return explain_errors(dict(table), kind, "motors", other_keys)
 
 
 def _param_problems(table: Mapping[str, Any]) -> list[str]:

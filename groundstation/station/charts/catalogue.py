@@ -98,6 +98,12 @@ class FieldCatalogue:
         ready = build_ready(lambda name: self._find(name, vehicle))
         return FieldsPage(request.text, rows, len(matching), len(self._fields), known, ready)
 
+    def first_view(self, vehicle: tuple[int, int]) -> tuple[FieldId, ...]:
+        """Return the fields of the ready view that opens by itself, as far as a vehicle (its ids) sends them."""
+        self._update()
+        charts = build_ready(lambda name: self._find(name, vehicle))[0].charts
+        return tuple(field for chart in charts for field in chart.fields)
+
     def _update(self) -> None:
         places = [place for place, _ in self._traffic.kinds()]
         if places != self._places:

@@ -78,6 +78,8 @@ class ChartRecorder:
         selected = self._fleet.selected
         if selected is not None:
             self._watcher.update(selected.state, now)
+            if not self._recorder.was_asked:
+                self._recorder.suggest(self._catalogue.first_view((selected.state.system, selected.state.component)))
         self._update_taps(now)
         self._measure(now)
 

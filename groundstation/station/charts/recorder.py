@@ -29,12 +29,21 @@ class SeriesRecorder:
         self.marks = MarkList(take_number)
         self._buffers: dict[FieldId, PointBuffer] = {}
         self._drawn: tuple[FieldId, ...] = ()
+        self.was_asked = False
+        """A screen has drawn fields."""
         self._pinned: tuple[FieldId, ...] = ()
 
     def pin(self, fields: Iterable[FieldId]) -> None:
         """Record these fields also when they are not drawn any more, in place of those pinned before."""
         self._pinned = tuple(dict.fromkeys(fields))[:MAX_FIELDS]
         self._update_buffers()
+
+    def suggest(self, fields: Iterable[FieldId]) -> None:
+        """Record these fields until a screen draws some: the first one is opened after the drive that it shows."""
+        suggested = tuple(dict.fromkeys(fields))[:MAX_FIELDS]
+        if not self.was_asked and suggested != self._drawn:
+            self._drawn = suggested
+            self._update_buffers()
 
     @property
     def recorded(self) -> Mapping[FieldId, PointBuffer]:
@@ -47,12 +56,15 @@ class SeriesRecorder:
     def build_page(self, request: SeriesRequest, now: float, wall: float) -> SeriesPage:
         """Return what is new since `request.after`, oldest first; it is recorded from the first request on."""
         fields = tuple(dict.fromkeys(request.fields))[:MAX_FIELDS]
-        if fields != self._drawn:
+        self.was_asked = self.was_asked or bool(fields)
+        if self.was_asked and fields != self._drawn:
             self._drawn = fields
             self._update_buffers()
         for buffer in self._buffers.values():
             buffer.flush(now)
         after = min(request.after, self._newest)
+        if self._drawn and not self.was_asked:  # a screen that opens names no field yet and shall miss no point
+            return SeriesPage(after, request.after, now, wall, (), ())
         state = self._last_of_page(after)
         points = [SeriesPoints(field, *self._buffers[field].take(after, state)) for field in fields]
         marks = self.marks.take(after, state)

@@ -174,7 +174,7 @@ class DrivingController:
         if not state.armed:
             return "arming" if self._commander.is_arming(state.system) else "disarmed"
         if state.control.clash:
-            return f"another program uses our id {self._system}: use --system"
+            return f"another program uses our id {self._system}"
         if not in_control:
             if state.driver == self._system:
                 return f"another program with our id {self._system} is in control"

@@ -10,6 +10,7 @@ import msgspec
 from dialects.enum_names import enum_names
 from dialects.messages import Message, hide_key
 from groundstation.natural_order import natural_key
+from groundstation.station.messages.byte_rates import ByteRates
 from groundstation.station.messages.message_filter import parse_filter, sorted_rows
 from groundstation.station.messages.message_kind import BUCKET, BUCKETS, WINDOW, MessageKind, Tap
 from groundstation.station.messages.unknown_messages import UnknownMessages
@@ -40,6 +41,7 @@ class MessageTraffic:
         self._own = (True, system, component)
         self._kinds: dict[Source, dict[str, MessageKind]] = {}
         self.unknown = UnknownMessages(WINDOW)
+        self._bytes = ByteRates()
         self._size = 0
         self._not_shown = 0
         self._losses: dict[tuple[int, int], SourceCount] = {}
@@ -94,6 +96,7 @@ class MessageTraffic:
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Handle the unknown messages, and what was lost of each source, from the link that has received most of it."""
         self.unknown.observe(reports, now)
+        self._bytes.observe(reports, now)
         for report in reports:
             for ids, counted in report.sources.items():
                 if ids not in self._losses or counted.received >= self._losses[ids].received:
@@ -135,7 +138,10 @@ class MessageTraffic:
         first = max(0, min(request.first, len(rows) - count))
         shown = tuple(rows[first : first + count])
         totals = sum(row.rate for row in every), sum(row.bytes for row in every)
-        return MessagesPage(shown, first, len(rows), len(every), *totals, self._not_shown, request.order, request.text)
+        return MessagesPage(
+            shown, first, len(rows), len(every), *totals, self._not_shown, request.order, request.text,
+            self._bytes.rates,
+        )  # fmt: skip
 
     def _sources(self) -> list[Source]:
         return sorted(self._kinds.keys() | {(False, *ids) for ids in self.unknown.sources})

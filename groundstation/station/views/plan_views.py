@@ -61,6 +61,9 @@ class PlanViews:
             autopilot=state.autopilot,
             place=details.place,
             home=details.home,
+            speed=contact.drive.plan_speed,
+            charge=state.reading("battery_remaining"),
+            charge_rate=_rounded(contact.drive.battery_use.rate),
             neighbours=tuple(self._neighbours(contact)),
             running=tuple(each for each in requests.running if _ours(each.service, each.system, contact)),
             ended=tuple(each for each in requests.ended if _ours(each.service, each.system, contact)),
@@ -89,6 +92,11 @@ class PlanViews:
     def _neighbours(self, selected: Contact) -> list[Neighbour]:
         others = ((each.state.system, each.details.place) for each in self._fleet if each is not selected)
         return [Neighbour(system, place) for system, place in others if place is not None]
+
+
+def _rounded(rate: float | None) -> float | None:
+    """Return a rate with two digits, so that the view changes no more often than what it says."""
+    return None if rate is None else float(f"{rate:.1e}")
 
 
 def _plan_fields(services: VehicleServices | None, now: float) -> dict[str, Any]:

@@ -263,6 +263,7 @@ class ConsoleApp(App[int]):
             key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
             terminal_silence=self.gate.ping.waited(self._clock()),
+            promises_releases=self.gate.promises_releases,
             ascii=self._appearance.look.ascii,
             still=self._appearance.look.reduce_motion,
             gamepad=self._gamepad.state(self._clock()) if self._gamepad else None,
@@ -317,9 +318,9 @@ class ConsoleApp(App[int]):
         return WITHOUT_SNAPSHOT if armed or self._gamepad is not None else AT_REST
 
     def _ping(self) -> None:
-        lent = self._log_child.running  # a ping would go unanswered
-        if isinstance(self._driver, ConsoleDriver) and not lent and self.gate.ping.next_due(self._clock()):
-            self._driver.write(PING)
+        driver, lent = self._driver, self._log_child.running  # a ping would go unanswered
+        if isinstance(driver, ConsoleDriver) and driver.reads and not lent and self.gate.ping.next_due(self._clock()):
+            driver.write(PING)
 
     def _gate_closure(self, now: float) -> GateClosure | None:
         """Return why keys must not drive now, as far as the UI knows; None when they may."""

@@ -63,8 +63,16 @@ def action_commands(keymap: Keymap, choose: Callable[[OperatorAction], None]) ->
     """Yield a command for every action but those that mean holding a key, to drive or to confirm."""
     for action in ACTIONS.values():
         if not isinstance(action.intent, DriveKeyDown) and not action.confirm:
-            keys = "  ".join(format_key(key) for key in keymap.get_keys(action.id))
+            keys = "  ".join(format_key(key) for key in _keys_of(action, keymap))
             yield SystemCommand(_title(action.label, keys), action.help, partial(choose, action))
+
+
+def _keys_of(action: OperatorAction, keymap: Keymap) -> Iterator[str]:
+    """Yield the keys of an action, and those that do it while armed, as the key of Arm disarms."""
+    yield from keymap.get_keys(action.id)
+    for other in ACTIONS.values():
+        if other.when_armed is not None and other.when_armed == action.intent:
+            yield from keymap.get_keys(other.id)
 
 
 def line_commands(modes: Iterable[str], write: Callable[[str], None]) -> Iterator[SystemCommand]:

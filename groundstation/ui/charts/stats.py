@@ -8,6 +8,7 @@ from textual.strip import Strip
 from groundstation.ui.charts.pane import COLOURS
 from groundstation.ui.display.wrap import clean
 from groundstation.ui.look.colours import DIM, style
+from groundstation.ui.widgets.columns import cut
 from groundstation.ui.widgets.instrument import Instrument, strip
 
 NUMBER, UNIT = 7, 6
@@ -39,7 +40,7 @@ class StatsPanel(Instrument[tuple[StatsRow, ...]]):
     def _line(self, row: StatsRow, room: int, unit: int) -> Strip:
         numbers = "".join(f"{text[: NUMBER - 1]:>{NUMBER}}" for text in row.texts)
         return strip(
-            (f"{clean(row.name)[: room - 1]:<{room}}", style(DIM)),
+            (f"{cut(clean(row.name), room - 1):<{room}}", style(DIM)),
             (numbers, style(COLOURS[row.slot])),
             (f" {row.unit:<{UNIT}}"[:unit], style(DIM)),
         )

@@ -150,7 +150,7 @@ def _port(each: PortRow, opened: Sequence[str], baud: int | None) -> tuple[Cell,
     if open_as:
         state = Cell(f"{open_as.rpartition(':')[2]} open ✓", GREEN)
     elif each.holder:
-        state = Cell(f"in use: {each.holder.partition(' ')[0]}", AMBER)
+        state = Cell("in use: yours" if each.station else f"in use: {each.holder.partition(' ')[0]}", AMBER)
     elif not each.allowed:
         state = Cell("not allowed", AMBER)
     return Cell(each.path, WHITE if baud else TEXT, bold=True), dim(each.description or each.driver or each.ids), state
@@ -159,7 +159,9 @@ def _port(each: PortRow, opened: Sequence[str], baud: int | None) -> tuple[Cell,
 def _port_notes(each: PortRow) -> list[Cell]:
     facts = " · ".join(filter(None, (each.description, each.ids, each.driver)))
     notes = [dim(facts)] if facts else []
-    if each.holder:
+    if each.station:
+        notes.append(Cell(f"a station of yours ({each.station}) has it open: groundstation attach", AMBER))
+    elif each.holder:
         notes.append(Cell(f"{each.holder} has it open: stop it first", AMBER))
     elif not each.allowed:
         notes.append(Cell("your user may not open it: sudo usermod -a -G dialout $USER, then log in again", AMBER))

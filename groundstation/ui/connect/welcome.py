@@ -13,6 +13,10 @@ from groundstation.ui.widgets.instrument import Instrument, Part, strip
 
 HELM_WIDTH, HELM_HEIGHT = 28, 13
 SPOKES = 8
+MAX_ADDRESSES = 3
+"""Addresses that are shown: of a wired and a wireless network, and one more."""
+NO_ADDRESS = "ADDRESS"
+"""In commands while this machine has none."""
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
 
 
@@ -25,6 +29,7 @@ class WelcomeValue(msgspec.Struct, frozen=True):
     turn: int = 0
     endpoints: tuple[str, ...] = ()
     addresses: tuple[str, ...] = ()
+    """Of this machine; a vehicle sends to one of them."""
 
 
 class Welcome(Instrument[WelcomeValue]):
@@ -50,13 +55,15 @@ class Welcome(Instrument[WelcomeValue]):
     def _texts(self, state: list[Part]) -> list[list[Part]]:
         value = self.value
         count = f"{value.heard} vehicle{'' if value.heard == 1 else 's'}"
-        address = value.addresses[0] if value.addresses else "THIS-MACHINE"
+        address = value.addresses[0] if value.addresses else NO_ADDRESS
+        here = "  ".join(value.addresses[:MAX_ADDRESSES]) or "no address yet: connect it to the network of the vehicle"
         return [
             [("   m a v h e l m", style(BLUE, bold=True)), ("   the helm of a MAVLink vehicle", style(DIM))],
             [],
             state,
             [("   heard now: ", style(DIM)), (count, style(GREEN if value.heard else DIM, bold=True))],
             [],
+            _advice("this machine", here),
             _advice("on a rover of ours", f"vehicle --config rover.toml udpout:{address}:14550"),
             _advice("on ArduPilot or PX4", f"send to {address}:14550; a radio shows below"),
             _advice("let the network in", "udpin:0.0.0.0:14550"),

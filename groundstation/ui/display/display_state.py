@@ -69,6 +69,8 @@ class DisplayState(msgspec.Struct, frozen=True):
     """Seconds from a ping of the terminal to its answer."""
     terminal_silence: float | None = None
     """Seconds for which an answer of the terminal is missing; None if it never answered."""
+    promises_releases: bool = False
+    """The terminal says that it reports key releases, which only the first one proves (OperatorView)."""
     screen: ScreenInfo = DRIVE_INFO
     ascii: bool = False
     """The terminal shows ASCII characters only."""

@@ -35,7 +35,7 @@ def layout_classes(size: Size) -> frozenset[str]:
     """Return those of CLASSES that a size has."""
     _, rows = size
     if is_smaller(size, WIDE):
-        return frozenset({"-narrow", *(("-chart",) if rows >= 29 else ())})
+        return frozenset({"-narrow", *(("-chart",) if rows >= 30 else ())})
     chosen = {
         "-wide": True,
         "-large": not is_smaller(size, LARGE),

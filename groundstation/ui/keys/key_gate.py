@@ -126,6 +126,8 @@ class KeyGate:
         self._closure: GateClosure | None = STARTING
         self._down: set[str] = set()
         self._exact = False
+        self.promises_releases = False
+        """The terminal says that it reports releases. Only a release or a repeat proves it."""
         self._armed = False
         self._driving = True
         self._opening_until = -math.inf
@@ -220,6 +222,10 @@ class KeyGate:
         """Progress of the key that is held to confirm an action."""
         with self._lock:
             return self._hold.progress(self._clock())
+
+    def handle_release_claim(self) -> None:
+        """Note that the terminal says that it reports releases: shown until the first one proves it."""
+        self.promises_releases = True
 
     def handle_release_support(self) -> None:
         """Note that the terminal reports repeats and releases."""

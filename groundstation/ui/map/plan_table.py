@@ -69,7 +69,14 @@ class PlanTable(Instrument[PlanTableValue]):
         if self.value.note:
             lines.append(strip((f" {self.value.note}"[:width], style(DIM))))
         lines += [strip()] * (height - 1 - len(lines))
-        return [*lines[: height - 1], strip((f" {self.value.summary}"[:width], style(DIM)))]
+        return [*lines[: height - 1], strip((f" {_fitting(self.value.summary, width - 1)}"[:width], style(DIM)))]
+
+
+def _fitting(summary: str, width: int) -> str:
+    """Return as many whole parts of a summary as fit, the first in any case."""
+    while len(summary) > width and " · " in summary:
+        summary = summary.rpartition(" · ")[0]
+    return summary
 
 
 def _draw_row(item: PlanTableRow, widths: tuple[int, ...], *, selected: bool, width: int) -> Strip:

@@ -22,6 +22,7 @@ from groundstation.ui.map.plan.commands import (
 )
 from groundstation.ui.map.plan.fields import FRAMES, fields_of, number_text, value_of
 from groundstation.ui.map.plan.geometry import place_of
+from groundstation.ui.map.plan.plan_time import LegTime, clock_text, leg_times, seconds_of
 from groundstation.ui.map.plan_table import PlanTableRow, PlanTableValue
 from groundstation.views.plan import MAX_ITEMS, PlanItem, PlanKind
 
@@ -107,8 +108,46 @@ def item_value(item: PlanItem, first: int = 0) -> str:
 def _summary(model: MapModel) -> str:
     if model.editor.layer is not PlanKind.MISSION or not model.route.points:
         return ""
-    total = route_length(model)
-    return f"{total:.0f} m in all"
+    parts = [f"{route_length(model):.0f} m in all"]
+    if (seconds := _whole_time(model)) is not None:
+        parts.append(clock_text(seconds))
+    if charge := _charge_at_end(model, _time_left(model)):
+        parts.append(f"battery {charge}")
+    return " · ".join(parts)
+
+
+# ---- times ----
+
+
+def _whole_time(model: MapModel) -> float | None:
+    """Return how long the mission takes from home, s; None: not known, or it does not end."""
+    legs = _leg_times(model)
+    return None if legs is None else seconds_of(model.home, model.route.points, legs)
+
+
+def _time_left(model: MapModel) -> float | None:
+    """Return how long the rest of the mission takes, s: all of it before it begins."""
+    current, _ = progress_of(model)
+    legs, number = _leg_times(model), model.route.number.get(-1 if current is None else current)
+    if _all_done(model) or legs is None:
+        return None
+    if number is None:
+        return _whole_time(model)
+    return seconds_of(model.ground.vehicle, model.route.points[number:], legs[number:])
+
+
+def _leg_times(model: MapModel) -> tuple[LegTime, ...] | None:
+    speed = None if model.view is None else model.view.speed
+    return leg_times(model.editor.items(PlanKind.MISSION), model.route.indices, speed)
+
+
+def _charge_at_end(model: MapModel, seconds: float | None) -> str:
+    """Return the charge of the battery after a time of driving; empty where that is not known."""
+    view = model.view
+    if view is None or seconds is None or view.charge is None or view.charge_rate is None:
+        return ""
+    left = view.charge - view.charge_rate * seconds
+    return f"{left:.0%} then" if left > 0 else "EMPTY before"
 
 
 def route_length(model: MapModel) -> float:
@@ -256,7 +295,7 @@ def _texts(
         texts.append(("next", f"{title_of(model, current)} {way_text(model.ground.vehicle, at)}"))
     texts.append(("mission", _STATES.get(view.state, "--")))
     if left is not None:
-        texts.append(("left", f"{left:.0f} m{_time(left, vehicle)}"))
+        texts.append(("left", f"{left:.0f} m{_left_time(model, left, vehicle)}"))
     if view.off_line is not None and current is not None:
         side = "right" if view.off_line >= 0 else "left"
         texts.append(("off the line", f"{abs(view.off_line):.2f} m {side}"))
@@ -264,6 +303,8 @@ def _texts(
         texts.append(("speed", f"{vehicle.speed:z.2f} m/s"))
     if fence := fence_text(model, model.ground.vehicle, "inside"):
         texts.append(("fence", "OFF" if model.fence_idle else fence))
+    if charge := _charge_at_end(model, _time_left(model)):
+        texts.append(("battery", charge))
     return tuple(texts)
 
 
@@ -271,9 +312,12 @@ _STATES = {1: "none", 2: "not started", 3: "active", 4: "paused", 5: "complete"}
 """MISSION_STATE."""
 
 
-def _time(left: float, vehicle: VehicleView | None) -> str:
-    speed = vehicle.speed if vehicle is not None else None
-    if speed is None or not speed >= LEAST_SPEED:
-        return ""
-    minutes, seconds = divmod(round(left / speed), 60)
-    return f" {minutes}:{seconds:02}"
+def _left_time(model: MapModel, left: float, vehicle: VehicleView | None) -> str:
+    """Return the time for the way that is left: by the speeds of the plan, else at the present speed."""
+    seconds = _time_left(model)
+    if seconds is None:
+        speed = vehicle.speed if vehicle is not None else None
+        if _leg_times(model) is not None or speed is None or not speed >= LEAST_SPEED:
+            return ""
+        seconds = left / speed
+    return f" {clock_text(seconds)}"

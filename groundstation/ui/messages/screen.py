@@ -14,6 +14,7 @@ from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenConte
 from groundstation.ui.charts.model import ChartsModel
 from groundstation.ui.display.display_state import ScreenKey
 from groundstation.ui.display.wrap import plain
+from groundstation.ui.messages.byte_graph import ByteGraph, most_text
 from groundstation.ui.messages.calls import MessageCalls, parse_rate
 from groundstation.ui.messages.csv_file import MessageCsv
 from groundstation.ui.messages.detail import MessageDetail, MessageDetailValue, detail_lines
@@ -32,6 +33,10 @@ TITLES = 1
 
 WIDE = 120
 """Columns from which on the table has more of its columns, and the fields have columns."""
+
+
+TALL = 36
+"""Rows from which on the bytes a second stand below the table; in smaller terminals in place of a plot."""
 
 
 class MessagesScreen(ConsoleScreen):
@@ -57,6 +62,7 @@ class MessagesScreen(ConsoleScreen):
         self._table = MessageTable(MessageTableValue(), id="table")
         self._detail = MessageDetail(MessageDetailValue(), id="detail")
         self._plot = MessagePlot(MessagePlotValue(), id="plot")
+        self._graphs = ByteGraph((), id="bytes"), ByteGraph((), id="bytes-beside")
         self._in_detail = self._frozen = self._raw = False
         self._field = FieldCursor()
         self._calls = MessageCalls(context.numbers)
@@ -65,9 +71,11 @@ class MessagesScreen(ConsoleScreen):
     # ---- what all screens define ----
 
     def compose_body(self) -> Iterable[Widget]:
-        """Lay out the table beside the fields over their plot."""
-        right = Vertical(self.build_panel(self._detail, "fields"), self._plot, id="right")
-        return (Horizontal(self.build_panel(self._table, "messages"), right, id="panels"),)
+        """Lay out the table over the bytes a second, beside the fields over their plot."""
+        below, beside = (self.build_panel(graph, "bytes a second") for graph in self._graphs)
+        left = Vertical(self.build_panel(self._table, "messages"), below, id="left")
+        right = Vertical(self.build_panel(self._detail, "fields"), self._plot, beside, id="right")
+        return (Horizontal(left, right, id="panels"),)
 
     def on_mount(self) -> None:
         """Mark the panel that the arrows scroll."""
@@ -104,6 +112,7 @@ class MessagesScreen(ConsoleScreen):
     def on_resize(self, event: events.Resize) -> None:
         """Lay out the panels, and show the rows at the size that the table has then."""
         self.set_class(event.size.width >= WIDE, "-wide")
+        self.set_class(event.size.width >= WIDE and event.size.height >= TALL, "-tall")
         self.call_after_refresh(self._show_table)
 
     @property
@@ -275,10 +284,15 @@ class MessagesScreen(ConsoleScreen):
         selected = next((at for at, row in enumerate(rows) if key_of(row) == model.selected), -1)
         note = "" if model.text else describe_silence(model.page, self._state.snapshot.links)
         self._table.show(MessageTableValue(rows, selected, model.order == MESSAGE_ORDERS[0], model.closed, note))
+        for graph in self._graphs:
+            graph.show(page.history)
+            graph.border_subtitle = plain(most_text(page.history))
+        self.set_class(self._view is None, "-no-message")
         self._table.border_subtitle = plain(f"{page.kinds} kinds · {page.rate:.0f}/s · {page.bytes / 1000:.1f} kB/s")
 
     def _show_message(self, view: MessageView) -> None:
         self._field.follow(view)
+        self.remove_class("-no-message")
         self._detail.show(MessageDetailValue(view, self._top(view), self._field.field, self._raw))
         self._show_plot(view)
         self._detail.border_title = plain(f"{view.name} #{view.id}" if view.fields else view.name)

@@ -9,6 +9,7 @@ from textual.strip import Strip
 
 from groundstation.ui.display.wrap import clean, wrap
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, style
+from groundstation.ui.widgets.columns import cut
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.views.messages import MessageRow
 
@@ -50,7 +51,7 @@ class MessageTable(Instrument[MessageTableValue]):
         numbers = list(_numbers(row, width, ground))
         head = self._head(row, ground, chosen=chosen)
         room = width - length(numbers)
-        name = strip(*head).crop(0, room)
+        name = strip(*_fitting(head, room))
         return Strip([*name, *strip((" " * (room - name.cell_length), style(TEXT, ground)), *numbers)])
 
     def _head(self, row: MessageRow, ground: str, *, chosen: bool) -> list[Part]:
@@ -69,6 +70,17 @@ class MessageTable(Instrument[MessageTableValue]):
         length_of_frame = [(f"  {row.label}", style(DIM, ground))] if row.unknown else []
         lead = [] if self.value.tree else [(f"{source} ", style(colour, ground))]
         return [(f"{mark}  " if self.value.tree else f"{mark} ", style(DIM, ground)), *lead, name, *length_of_frame]
+
+
+def _fitting(head: list[Part], room: int) -> list[Part]:
+    """Return the parts in front of the numbers; of a long name the end goes first, and not the sign that it is sent."""
+    over = length(head) - room
+    if over <= 0:
+        return head
+    *lead, (text, look) = head
+    sign = " >" if text.endswith(" >") else ""
+    kept = cut(text.removesuffix(sign), max(1, len(text) - over - len(sign)))
+    return [*lead, (kept + sign, look)]
 
 
 def _titles(width: int) -> Strip:

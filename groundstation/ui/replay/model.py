@@ -60,10 +60,12 @@ class ReplayModel:
             return f"searching {view.searching} · ESC ends it"
         if view.indexed < 1:
             return f"index {100 * view.indexed:.0f} %: later parts follow"
-        event = view.current_event
-        if event is None:
+        event, number = self.marked, self.chosen
+        if self.cursor is None or event is None:
+            event, number = view.current_event, view.current
+        if event is None or number is None:
             return "p plays · ← → move · n goes to the first event · / searches"
-        return f"event {view.current + 1} of {view.total}: {event.text}"
+        return f"event {number + 1} of {view.total}: {event.text}"
 
 
 def summary(view: ReplayView) -> str:

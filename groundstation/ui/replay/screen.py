@@ -17,6 +17,7 @@ from groundstation.ui.base.local_files import LocalFile, short_path
 from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.wrap import plain
+from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
 from groundstation.ui.drive.panes import SPEED_CHART, PaneInput, speed_samples
@@ -69,6 +70,7 @@ class ReplayScreen(ConsoleScreen):
         self._export = FileExport(self, self._chosen_log, context.folder, exports, context.numbers.take)
         self._track = TrackMap(TrackValue(), id="track")
         self._bars = StickBars((), id="bars")
+        self._caps = Keycaps(KeycapsValue(context.keymap), id="caps")
         self._chart = SPEED_CHART(ChartValue(), id="chart")
         self._events = RowTable(events_value(self._model), id="events")
         self._timeline = ReplayTimeline(TimelineValue(), id="timeline")
@@ -83,8 +85,10 @@ class ReplayScreen(ConsoleScreen):
     def compose_body(self) -> Iterable[Widget]:
         """Lay out what was then over the timeline."""
         track = self.build_panel(self._track, "track then")
-        bars = self.build_panel(self._bars, "drive then")
-        middle = Vertical(bars, self.build_panel(self._chart, "speed then"), id="middle")
+        drive = Vertical(self._bars, self._caps, id="drive")
+        middle = Vertical(
+            self.build_panel(drive, "drive then"), self.build_panel(self._chart, "speed then"), id="middle"
+        )
         yield Horizontal(track, middle, self.build_panel(self._events, "events"), id="then")
         yield self.build_panel(self._timeline, "timeline")
         yield self.build_panel(self._logs, "logs here")
@@ -123,6 +127,7 @@ class ReplayScreen(ConsoleScreen):
         points = track.points if track is not None else ()
         self._track.show(TrackValue.from_vehicle(now.snapshot.vehicle, points, ascii=now.ascii))
         self._bars.show(build_bars(now.snapshot))
+        self._caps.show(KeycapsValue.from_state(now))
         if given.view(SpeedView) is not None:
             self._chart.show(speed_samples(given))
         self._events.show(events_value(self._model))

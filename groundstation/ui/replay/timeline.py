@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 
 import msgspec
@@ -31,6 +32,11 @@ HOLD = 4
 """Columns over which a speed is held."""
 BELOW_BAR = 4
 """Rows below the bar, where all is shown."""
+HOUR = 3600
+TICK_STEPS = (1, 2, 5, 10, 15, 20, 30, 60, 120, 300, 600, 900, 1200, 1800, HOUR, 2 * HOUR, 6 * HOUR, 12 * HOUR)
+"""s between two times of the axis."""
+TICK_CELLS = 16
+"""Least cells between two of them."""
 
 
 class TimelineValue(msgspec.Struct, frozen=True):
@@ -221,10 +227,20 @@ def _times(sheet: _Sheet, count: int) -> None:
     view, canvas = sheet.view, sheet.canvas
     here, end = duration_text(view.position, tenths=True), duration_text(view.duration)
     at = max(AXIS, min(sheet.at(view.position) - len(here) // 2, canvas.width - len(here)))
-    for edge, text in ((AXIS, "0:00"), (canvas.width - len(end), end)):
-        if edge + len(text) < at or edge > at + len(here):
-            canvas.write(edge, sheet.row, text, style(DIM))
+    taken = [(at, at + len(here))]
     canvas.write(at, sheet.row, here, style(WHITE, bold=True))
+    ticks = [(sheet.at(time), duration_text(time)) for time in tick_times(view.duration, sheet.columns)]
+    for edge, text in [(AXIS, "0:00"), (canvas.width - len(end), end), *ticks]:
+        if edge + len(text) <= canvas.width and all(edge + len(text) < a or edge > b for a, b in taken):
+            canvas.write(edge, sheet.row, text, style(DIM))
+            taken.append((edge, edge + len(text)))
+
+
+def tick_times(duration: float, columns: int) -> list[float]:
+    """Return the times of an axis, s: multiples of a step that people count in, TICK_CELLS or more apart."""
+    steps = [step for step in TICK_STEPS if step * columns >= duration * TICK_CELLS]
+    step = steps[0] if steps else math.ceil(duration * TICK_CELLS / columns / TICK_STEPS[-1]) * TICK_STEPS[-1]
+    return [float(step * number) for number in range(1, int(duration // step) + 1)]
 
 
 def _gap(sheet: _Sheet, count: int) -> None:

@@ -107,6 +107,11 @@ class ConsoleDriver(LinuxDriver):
                 termios.tcsetattr(self.fileno, termios.TCSAFLUSH, modes)
             self._lent = False
 
+    @property
+    def reads(self) -> bool:
+        """The input thread runs. What the terminal answers after it has ended is typed into the shell."""
+        return self._key_thread is not None and self._key_thread.is_alive()
+
     def write(self, data: str) -> None:
         """Write to the terminal, unless it is lent."""
         if not self._lent and (rest := self.terminal.write_at_once(data)) is not None:

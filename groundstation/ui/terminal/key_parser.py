@@ -38,6 +38,9 @@ MAX_SIZE = 1000
 _KEY = re.compile(r"\x1b\[(\d+)((?::\d*)*)(?:;(\d*)(?::(\d*))?)?(?:;([\d:]*))?([u~ABCDEFHPQRS])")
 _REPORT = re.compile(r"\x1b\[(?:\?\d+u|\??\d+n|[?>=][\d;]*c|\??[\d;]*\$[py]|[\d;]*t)")
 """Answers of terminals: to our queries, and others. "$p" is Textual's own query of a mode, as a bad line echoes it."""
+_FLAGS = re.compile(r"\x1b\[\?(\d{1,3})u")
+_EVENT_TYPES = 2
+"""Bit of the flags of the kitty protocol that are set."""
 _MODE_REPORT = re.compile(r"\x1b\[\?\d+;\d\$y")
 """The answer to that query, which the stock parser reads."""
 _PASTE, UNKNOWN = KeyEvent("paste"), "unknown_sequence"
@@ -82,6 +85,9 @@ class KeySink(Protocol):
 
     def is_repeat(self, key: str) -> bool:
         """Return whether the event loop need not see this key, which was handled."""
+
+    def handle_release_claim(self) -> None:
+        """Note that the terminal says that it reports repeats and releases, which is no proof."""
 
     def handle_release_support(self) -> None:
         """Note that the terminal reports repeats and releases."""
@@ -205,10 +211,7 @@ class KeyEventParser(XTermParser):
 
     def _sequence_to_key_events(self, sequence: str, alt: bool = False) -> Iterable[events.Key]:
         if _REPORT.fullmatch(sequence) and not _MODE_REPORT.fullmatch(sequence):
-            if sequence == PONG:
-                self._sink.handle_pong()
-            # "CSI ? flags u" is discarded: Contour answers with flags and then reports no releases. The first sub-field
-            # with an event type is the proof.
+            self._handle_report(sequence)
             return [_ignored(sequence)]
         found = _KEY.fullmatch(sequence)
         if found is None:
@@ -230,6 +233,17 @@ class KeyEventParser(XTermParser):
         if latin is not None:  # the key of this place, which still types its own letter
             keys = [events.Key(key.key, keys[0].character if keys else None) for key in self._parse_stock(latin, alt)]
         return self._pressed(code + end, keys, repeat=kind == _REPEAT)
+
+    def _handle_report(self, report: str) -> None:
+        """Handle the answer of a terminal.
+
+        "CSI ? flags u" is shown, and timers go on: Contour answers with flags and then reports no releases. The first
+        sub-field with an event type is the proof.
+        """
+        if report == PONG:
+            self._sink.handle_pong()
+        elif (flags := _FLAGS.fullmatch(report)) and int(flags[1]) & _EVENT_TYPES:
+            self._sink.handle_release_claim()
 
     def _unknown(self, sequence: str) -> list[events.Key]:
         """Return a key without a meaning; its last character may be a stop key behind a sequence without its end."""

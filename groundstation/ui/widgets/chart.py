@@ -25,7 +25,10 @@ Samples = tuple[tuple[float, tuple[float | None, ...]], ...]
 NAMES_APART = 8
 """Rows from which the names have a row of their own, above the scale."""
 NOISE = 0.1
-"""Share of a step by which values may leave the scale: a speed that is measured is a little below 0, too."""
+"""Share of a step by which measured values go beyond one: the scale then ends that much above it, not a step. Below its
+lowest step they are drawn on it: the speed of a vehicle that stands is a little below 0, too."""
+EQUAL = 1e-6
+"""Share of a step that is no more than rounding."""
 
 
 class Series(msgspec.Struct, frozen=True):
@@ -85,7 +88,7 @@ class Chart(Instrument[ChartValue]):
     def _draw_grid(self, canvas: Canvas, low: float, high: float, top: int) -> None:
         bottom = canvas.height - 1
         for row, dot, value in ((top, top * 4, high), (bottom, bottom * 4 + 3, low)):
-            canvas.write(0, row, f"{value:{AXIS - 1}.1f}", style(DIM))
+            canvas.write(0, row, f"{_scale_text(value):>{AXIS - 1}}", style(DIM))
             for x in range(AXIS * 2, canvas.across, 8):
                 canvas.dot(x, dot, style(LINE))
 
@@ -124,9 +127,15 @@ def _clamp(share: float) -> float:
 
 
 def _scale(values: Sequence[float], step: float) -> tuple[float, float]:
-    """Return bounds on whole steps around all values, at least two steps apart; NOISE does not make a step."""
+    """Return bounds around all values, at least two steps apart: on whole steps, or NOISE of a step above one."""
     if not values:
         return 0.0, 2 * step
     low = math.floor(min(values) / step + NOISE) * step
-    high = math.ceil(max(values) / step - NOISE) * step
-    return (low, high) if high - low >= 2 * step else (low, low + 2 * step)
+    below, over = divmod(max(values) / step, 1.0)
+    high = (below + (0.0 if over < EQUAL else NOISE if over <= NOISE + EQUAL else 1.0)) * step
+    return (low, max(high, low + 2 * step))
+
+
+def _scale_text(value: float) -> str:
+    """Return a bound with the digits that it needs: 1.0, 1.05."""
+    return f"{value:.1f}" if math.isclose(value, round(value, 1)) else f"{value:.2f}"

@@ -14,6 +14,8 @@ from groundstation.ui.widgets.instrument import Part, strip
 
 GAP = 1
 """Cells between two columns."""
+LEAST_CUT = 8
+"""Cells from which on a text that is cut says so."""
 
 
 class Column(msgspec.Struct, frozen=True):
@@ -49,10 +51,15 @@ def row(columns: Sequence[Column], widths: Sequence[int], cells: Sequence[Part],
     parts: list[Part] = []
     for column, width, (text, look) in zip(columns, widths, cells, strict=True):
         if width:
-            text = clean(text)[:width]
+            text = cut(clean(text), width)
             text = text.rjust(width) if column.right else text.ljust(width)
             parts += [*([(" " * GAP, gap or style())] if parts else []), (text, look)]
     return strip(*parts)
+
+
+def cut(text: str, width: int) -> str:
+    """Return a text that fits a width; one that is cut ends with an ellipsis, unless that would leave little of it."""
+    return text if len(text) <= width else f"{text[: width - 1]}…" if width >= LEAST_CUT else text[:width]
 
 
 def header(columns: Sequence[Column], widths: Sequence[int]) -> Strip:

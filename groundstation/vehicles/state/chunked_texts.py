@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import codecs
 from collections.abc import Iterator
+from typing import Any
 
 import msgspec
 
@@ -44,6 +45,8 @@ class ChunkedText(msgspec.Struct):
     parts: dict[int, bytes] = msgspec.field(default_factory=dict)
     last: int | None = None
     """Number of the last chunk; None until it has arrived."""
+    made: Any = None
+    """What the caller has made of it so far, for the chunks that follow."""
 
     @property
     def complete(self) -> bool:

@@ -6,7 +6,9 @@ import math
 from collections.abc import Mapping
 
 from dialects import messages as m
+from dialects.enums import Autopilot
 from groundstation.vehicles.health.health import HealthReadings
+from groundstation.vehicles.readings.battery_use import BatteryUse
 from groundstation.vehicles.readings.foreign_drive import drive_params
 from groundstation.vehicles.readings.speed_series import SpeedSeries
 from groundstation.vehicles.readings.step_meter import StepMeter
@@ -18,6 +20,9 @@ from groundstation.vehicles.stops.stop_rules import StopFacts, StopRules
 from link.core import Received
 
 OUTPUT_REPORTS = (m.ServoOutputRaw, m.ActuatorOutputStatus)
+
+SPEED_PARAMS = ("WP_SPEED", "CRUISE_SPEED")
+"""The speed of a mission, of ArduPilot and our rover: the first that is above 0."""
 
 SILENT = 1.5
 """s without a message after which the vehicle may have heard nothing of us either: one that tells little is asked for
@@ -31,6 +36,7 @@ class DriveReadings:
         self.health = HealthReadings()
         self.mission = MissionMessages()
         self.speeds = SpeedSeries()
+        self.battery_use = BatteryUse()
         self.steps = StepMeter(state.key_timings)
         self.params = params
         self._state = state
@@ -56,13 +62,21 @@ class DriveReadings:
             self.params.want(drive_params(state.autopilot, values))
             rules = self.rules
             self.params.want(rules.params if rules is not None else ())
+            self.params.want(SPEED_PARAMS if rules is not None and state.autopilot != Autopilot.PX4 else ())
         if self.speeds.is_due(now):
+            self.battery_use.add(state.reading("battery_remaining"), now, armed=state.armed)
             self.speeds.add(state.speed if state.monitor.is_alive(now) else None, self.speed_demand(now), now)
 
     @property
     def rules(self) -> StopRules | None:
         """What stops this vehicle."""
         return find_rules(self._state.autopilot, own_dialect=self._state.has_rover_dialect)
+
+    @property
+    def plan_speed(self) -> float | None:
+        """The speed at which the vehicle drives a mission, m/s; None: not known."""
+        known = [self.params.values.get(name) for name in SPEED_PARAMS]
+        return None if known[0] is None else next((speed for speed in known if speed and speed > 0.0), None)
 
     def speed_demand(self, now: float) -> float | None:
         """Return the speed that the obeyed demand requests, m/s; None unless ROVER_DRIVE_INFO has the top speed."""

@@ -32,13 +32,13 @@ class Output:
     def line(self, text: str) -> None:
         """Print one or more lines of data, unless --json. Escape sequences in texts of a vehicle become harmless."""
         if not self.as_json:
-            self._clear_progress()
+            self.clear_progress()
             sys.stdout.writelines(f"{printable(line)}\n" for line in text.split("\n"))
 
     def record(self, **fields: Any) -> None:
         """Print an object with --json."""
         if self.as_json:
-            self._clear_progress()
+            self.clear_progress()
             sys.stdout.write(json.dumps(_finite(fields)) + "\n")
 
     def flush(self) -> None:
@@ -57,7 +57,7 @@ class Output:
 
     def error(self, text: str) -> None:
         """Print an error to stderr, one line."""
-        self._clear_progress()
+        self.clear_progress()
         sys.stdout.flush()
         sys.stderr.write(f"groundstation: {printable(' '.join(text.split()))}\n")
         sys.stderr.flush()
@@ -74,12 +74,13 @@ class Output:
         """Show how many of a total are done, on a terminal only."""
         if not self._shows_progress:
             return
-        of = f"/{total}" if total is not None else ""
-        sys.stderr.write(f"\r\x1b[K{printable(what)} {done}{of}")
+        counted = "..." if total is None and not done else f"{done}" if total is None else f"{done}/{total}"
+        sys.stderr.write(f"\r\x1b[K{printable(what)} {counted}")
         sys.stderr.flush()
         self._progress_shown = True
 
-    def _clear_progress(self) -> None:
+    def clear_progress(self) -> None:
+        """Remove the line of the progress, so that the next one begins at its start."""
         if self._progress_shown:
             sys.stderr.write("\r\x1b[K")
             sys.stderr.flush()

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from dialects import codec
 from dialects import messages as m
-from dialects.enums import Command, ModeFlag
+from dialects.enums import Command, ModeFlag, StationEventKind
 from groundstation.replay.log_index import LogIndex
 from groundstation.replay.log_replay import LogReplay
 from groundstation.station.station import Station
@@ -66,6 +66,11 @@ class LogWriter:
         """Add a demand of the ground station in ArduPilot's axes."""
         return self.add(m.ManualControl(1, 0, 0, round(1000 * throttle), 0, 0), 255, 190)
 
+    def note(self, kind: StationEventKind, text: str, throttle: float = 0.0) -> int:
+        """Add a note of the ground station."""
+        note = m.RoverStationEvent(kind, 6, 1, round(1000 * throttle), 0, text.encode())
+        return self.add(note, 255, 190)
+
     def say(self, text: str, severity: int = 6) -> int:
         """Add a STATUSTEXT of the vehicle."""
         return self.add(m.StatusText(severity, text.encode()))
@@ -89,6 +94,29 @@ def drive_log(seconds: int = 60) -> LogWriter:
         if armed:
             log.drive(0.5)
         log.add(m.VfrHud(0, tenth / 10, 90, 0, 0, 0))
+    return log
+
+
+def keys_log() -> LogWriter:
+    """Return a drive of 40 s by keys: i from 10 s on, u with it from 15 to 20 s, all up at 30 s; a look at the map."""
+    log, kind = LogWriter(), StationEventKind
+    notes = {
+        50: (kind.SCREEN, "map", 0.0),
+        100: (kind.KEYS_DOWN, "i", 0.5),
+        150: (kind.KEYS_DOWN, "u", 0.5),
+        200: (kind.KEYS_UP, "u: released", 0.5),
+        300: (kind.KEYS_UP, "neutral, no repeat of a key that was held for a long time", 0.0),
+    }
+    for tenth in range(400):
+        log.time = tenth / 10
+        if tenth % 10 == 0:
+            log.beat(armed=True)
+            log.station_beat()
+        if tenth in notes:
+            log.note(*notes[tenth])
+        if 100 <= tenth < 300:
+            log.drive(0.5)
+        log.add(m.VfrHud(0, 0.5, 90, 0, 0, 0))
     return log
 
 

@@ -61,7 +61,8 @@ def plan_view(**changes: Any) -> PlanView:
     view = PlanView(
         system=1, name="Rover 1", autopilot=0, plans=(summary(MISSION), summary(FENCE), summary(RALLY)), current=6,
         reached=(0, 1, 2, 3, 4, 5), state=3, off_line=-0.14, place=at(30, 49), home=HOME,
-        home_altitude=584.0, modes=MODES, neighbours=(Neighbour(2, at(20, -4)),),
+        home_altitude=584.0, speed=0.8, charge=0.76, charge_rate=0.0006, modes=MODES,
+        neighbours=(Neighbour(2, at(20, -4)),),
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 

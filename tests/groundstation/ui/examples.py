@@ -281,7 +281,10 @@ MESSAGE_ROWS = (
         255, 190, "this station", None, ("HEARTBEAT", 1.0, 21.0, 490, 0.3), ("MANUAL_CONTROL", 20.0, 800.0, 9811, 0.0)
     ),
 )  # fmt: skip
-MESSAGES_PAGE = MessagesPage(MESSAGE_ROWS, 0, len(MESSAGE_ROWS), 12, 69.3, 2518.0)
+MESSAGES_PAGE = MessagesPage(
+    MESSAGE_ROWS, 0, len(MESSAGE_ROWS), 12, 69.3, 2518.0,
+    history=tuple(6600 if 24 <= second < 28 else 2400 + 40 * (second % 5) for second in range(55)),
+)  # fmt: skip
 SYS_STATUS_VIEW = MessageView(
     1, 1, False, "SYS_STATUS", 1, 2.0, 981, 0.4, 43,
     (

@@ -31,6 +31,9 @@ class Sink:
     def takes_text(self) -> bool:
         return self.text
 
+    def handle_release_claim(self) -> None:
+        self.told.append("claim")
+
     def handle_release_support(self) -> None:
         self.told.append("exact")
 

@@ -87,6 +87,7 @@ SETUP_FRAMES = setup_frames(STANDING, waiting())
 
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(signing=SIGNED), ()),
+    "drive_100x30": ((100, 30), snapshot(signing=SIGNED), ()),
     "drive_140x45": (WIDE, snapshot(signing=SIGNED), ()),
     "drive_200x60": (LARGE, snapshot(signing=SIGNED), ()),
     "pane_speed_80x24": (SMALL, snapshot(), ("v",)),

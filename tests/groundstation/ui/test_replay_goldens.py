@@ -13,7 +13,9 @@ from groundstation.intents.vehicle import Arm
 from groundstation.replay.log_replay import LogReplay
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, REPLAY
 from groundstation.ui.look.appearance import Look
-from tests.groundstation.replay.logs import drive_log, open_desk
+from groundstation.ui.replay.timeline import tick_times
+from groundstation.ui.widgets.chart import Chart
+from tests.groundstation.replay.logs import drive_log, keys_log, open_desk
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.replay_station import replay_console
@@ -131,3 +133,46 @@ async def test_a_chart_shows_the_log_and_forgets_it_after_a_move() -> None:
         await screen.press("f5")
         await screen.show()
         assert "groundspeed 14.90" in screen.text
+
+
+@pytest.mark.parametrize(("at", "held"), [("5", "none"), ("12", "i"), ("17", "i u"), ("25", "i"), ("31", "none")])
+async def test_the_caps_of_the_recorded_keys_are_lit(at: str, held: str) -> None:
+    async with replay_console(open_desk(bytes(keys_log().data), at=at), WIDE) as screen:
+        await screen.show()
+        assert re.search(rf"held {held} +│", screen.text)
+        assert set(screen.app.drive.snapshot.operator.held) == {*held.split()} - {"none"}
+
+
+async def test_the_screens_that_were_looked_at_are_no_events() -> None:
+    async with replay_console(open_desk(bytes(keys_log().data), at="5"), WIDE) as screen:
+        await screen.show()
+        assert " KEY   i" in screen.text
+        assert " GCS " not in screen.text
+
+
+async def test_the_text_of_an_event_that_is_cut_is_whole_in_the_hint() -> None:
+    text = "neutral, no repeat of a key that was held for a long time"
+    async with replay_console(open_desk(bytes(keys_log().data), at="5"), SMALL) as screen:
+        await screen.show()
+        assert text not in screen.text
+        assert "…" in screen.text
+        await screen.press(*["down"] * 6)
+        assert f"of 6: {text}" in screen.text
+
+
+async def test_the_speed_chart_of_drive_has_the_time_before_a_seek() -> None:
+    async with replay_console(open_drive(), WIDE, first="drive") as screen:
+        await screen.press("ctrl+g", "0")
+        await screen.press("colon", *"0:45", "enter")
+        await screen.press("f1")
+        await screen.show()
+        chart = screen.app.drive.query_one("#speeds", Chart)
+        assert chart.value.shown[0][0] < chart.value.shown[-1][0] - 20.0
+
+
+def test_the_axis_has_times_that_people_count_in() -> None:
+    assert tick_times(59.0, 120) == [10.0, 20.0, 30.0, 40.0, 50.0]
+    assert tick_times(126.0, 60) == [60.0, 120.0]
+    assert tick_times(3725.0, 120) == [600.0 * number for number in range(1, 7)]
+    assert tick_times(400_000.0, 60) == [36 * 3600.0 * number for number in range(1, 4)]
+    assert tick_times(0.0, 60) == []

@@ -14,6 +14,7 @@ from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
+from vehicle.cli.check import run_checks
 from vehicle.config.template import build_template
 from vehicle.storage.param_file import encode
 
@@ -225,3 +226,13 @@ def test_kept_parameters_that_are_damaged_are_a_fault(tmp_path: Path) -> None:
     damaged = "parameter file damaged; start the vehicle and set a parameter from a ground station to repair it"
     assert lines[1] == f"FAIL  parameters: 0 from the file, 0 saved in FOLDER: {damaged}"
     assert all_checked(tmp_path, text, "--state", "/nowhere")[1][1].endswith("0 saved in /nowhere")
+
+
+def test_each_mistake_of_a_section_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "rover.toml"
+    file.write_text('endpoints = ["udpin:127.0.0.1:14550"]\n[motors]\ndriver = "gpio"\nbackwards = [1, 2]\npwm = "x"\n'
+                    '[sensors.battery]\naddress = "high"\nshunt_ohm = true\n')  # fmt: skip
+    problems = [result.detail for result in run_checks(str(file)) if not result.ok]
+    named = [problem.partition(": ")[2].partition(": ")[0] for problem in problems]
+    assert len(named) == len(set(named)) >= 4, problems
+    assert {"motors.backwards", "motors.pwm", "sensors.battery.address"} <= set(named)

@@ -39,6 +39,8 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     lit: frozenset[str] = frozenset()
     style: str = "hold"
     reports_releases: bool = False
+    promises_releases: bool = False
+    """The terminal says that it reports them; until the first one the timer ends a drive."""
     stop_bound: float = 0.0
     throttle_limit: int = 100
     steering_limit: int = 100
@@ -47,6 +49,8 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     """The key that is held does not count."""
     gamepad: bool = False
     """The gamepad drives."""
+    recorded: tuple[str, ...] | None = None
+    """In a replay the keys that were held; None: no replay."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> KeycapsValue:
@@ -57,12 +61,14 @@ class KeycapsValue(msgspec.Struct, frozen=True):
             lit=lit_actions(frozenset(operator.held) | now.pressed, now.keymap),
             style=operator.style,
             reports_releases=operator.reports_releases,
+            promises_releases=now.promises_releases,
             stop_bound=round(operator.stop_bound, 2),
             throttle_limit=round(100 * operator.throttle_limit),
             steering_limit=round(100 * operator.steering_limit),
             open=operator.gate_open,
             ignored=bool(operator.ignored),
             gamepad=PAD in operator.held,
+            recorded=None if now.snapshot.replay is None else operator.held,
         )
 
 
@@ -97,6 +103,10 @@ class Keycaps(Instrument[KeycapsValue]):
 
     def _texts(self) -> tuple[list[Part], list[Part], list[Part]]:
         value = self.value
+        if value.recorded is not None:
+            keys = " ".join(map(format_key, value.recorded))
+            held: Part = (keys, style(YELLOW, bold=True)) if keys else ("none", style(DIM))
+            return [("keys of the log", style(DIM))], [("held ", style(DIM)), held], []
         return (
             style_parts(value),
             bound_parts(value),
@@ -125,4 +135,7 @@ def bound_parts(value: KeycapsValue) -> list[Part]:
         return [("only a key stops it", style(AMBER))]
     if value.reports_releases:
         return [("stops when you let go", style(DIM))]
-    return [("timer: stops within ", style(DIM)), (f"{value.stop_bound:.2f} s", style(TEXT))]
+    bound = (f"{value.stop_bound:.2f} s", style(TEXT))
+    if value.promises_releases:
+        return [("timer ", style(DIM)), bound, (" till a release", style(DIM))]
+    return [("timer: stops within ", style(DIM)), bound]

@@ -35,6 +35,9 @@ TALL = 14
 LEAST_TEXTS = 2
 """Lines of the log that they leave."""
 
+BOUND_LINE = 3
+"""Index of the line of the vehicle that says what ends a drive."""
+
 HINT_LINES = 2
 """Lines of the hint, above the footer."""
 
@@ -81,19 +84,31 @@ class DrivingStrip(Instrument[StripValue]):
         if len(alerts) > room:
             alerts = [*alerts[: room - 1], self._more(width)] if room else []
         if height >= TALL and self.value.status.snapshot.vehicle is not None:
-            for part in self._drive(width):
-                if room - len(alerts) - len(part) >= LEAST_TEXTS:
-                    top, room = [*top, *part], room - len(part)
+            lines = len(top)
+            top = self._with_drive(top, room - len(alerts) - LEAST_TEXTS, width)
+            room -= len(top) - lines
         texts = LogPanel(self.value.texts).draw(width, room - len(alerts)) if room > len(alerts) else []
         blank = [strip((" " * width, style()))] * (room - len(alerts) - len(texts))
         return [*top, *alerts, *blank, *texts, *hints, *KeyFooter(self.value.footer).draw(width, 1)]
 
-    def _drive(self, width: int) -> Iterator[list[Strip]]:
-        """Yield what is shown beside the lines of the vehicle, the most important first."""
+    def _with_drive(self, top: list[Strip], spare: int, width: int) -> list[Strip]:
+        """Return the lines of the vehicle and what fits beside them in `spare` lines, the most important first."""
+        stops, bars, caps = self._drive(width)
+        for part in (stops, bars):
+            if len(part) <= spare:
+                top, spare = [*top, *part], spare - len(part)
+        if len(caps) - 1 <= spare:  # the line of the bound is drawn beside the caps
+            top = [*top[:BOUND_LINE], *top[BOUND_LINE + 1 :], *caps]
+        return top
+
+    def _drive(self, width: int) -> tuple[list[Strip], list[Strip], list[Strip]]:
+        """Return what stops the vehicle, the bars and the caps."""
         value, inside = self.value, width - 2
-        yield StopsLine(value.stops).draw(width, 1)
-        yield [Strip([*strip((" ", style())), *line]) for line in StickBars(value.bars).draw(inside, 2)]
-        yield [Strip([*strip((" ", style())), *line]) for line in Keycaps(value.caps).draw(inside, 3)]
+        return (
+            StopsLine(value.stops).draw(width, 1),
+            [Strip([*strip((" ", style())), *line]) for line in StickBars(value.bars).draw(inside, 2)],
+            [Strip([*strip((" ", style())), *line]) for line in Keycaps(value.caps).draw(inside, 3)],
+        )
 
     def _hints(self, width: int) -> list[Strip]:
         lines = wrap(f"› {self.value.hint}", width - 2)[:HINT_LINES]

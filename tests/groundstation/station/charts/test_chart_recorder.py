@@ -146,7 +146,7 @@ def test_ready_views_are_built_from_what_the_vehicle_sends() -> None:
 
 def test_modes_arming_and_own_keys_are_marked_once() -> None:
     desk = Desk()
-    desk.draw()
+    desk.draw(VOLTS)
     desk.cockpit.do(Arm(held=HOLD_TIME))
     desk.run(1.0)
     for _ in range(10):
@@ -177,3 +177,17 @@ def test_a_lost_link_is_marked_when_it_ends_and_comes_back() -> None:
     desk.cockpit.vehicle.beat = beat  # type: ignore[method-assign]
     desk.run(2.0)
     assert desk.marks == [("mode", "MANUAL"), ("link", "link lost"), ("link", "link back")]
+
+
+def test_the_first_drive_is_there_before_any_chart_was_drawn() -> None:
+    """The view that opens by itself shows what was driven before the screen was opened for the first time."""
+    desk = Desk()
+    speed = FieldId(1, 1, False, "VFR_HUD", "groundspeed")
+    for _ in range(20):
+        desk.cockpit.vehicle.send(m.VfrHud(0, 1.25, 0, 0, 0, 0))
+        desk.run(0.25)
+    desk.draw()
+    desk.run(0.5)
+    desk.draw(speed)
+    desk.run(1.0)
+    assert len([value for value in desk.values(speed) if value == 1.25]) >= 15

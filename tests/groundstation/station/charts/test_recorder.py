@@ -157,3 +157,15 @@ def test_a_request_for_too_many_fields_is_cut() -> None:
     fields = tuple(FieldId(1, 1, False, "M", f"f{number}") for number in range(500))
     recorder.build_page(SeriesRequest(fields), 0.0, 0.0)
     assert len(recorder.recorded) == MAX_FIELDS
+
+
+def test_suggested_fields_are_recorded_until_others_are_drawn() -> None:
+    recorder = SeriesRecorder()
+    recorder.suggest([A])
+    assert recorder.recorded.keys() == {A}
+    recorder.recorded[A].add(1.0, 5.0)
+    assert recorder.build_page(SeriesRequest((), 0), 2.0, 0.0).state == 0, "a screen that opens names no field yet"
+    assert read(recorder.build_page(SeriesRequest((A, B), 0), 2.0, 0.0), A) == [(1.0, 5.0)]
+    recorder.build_page(SeriesRequest((B,), 0), 3.0, 0.0)
+    recorder.suggest([A])
+    assert recorder.recorded.keys() == {B}

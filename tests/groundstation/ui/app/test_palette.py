@@ -85,6 +85,14 @@ async def test_actions_stand_beside_their_keys() -> None:
         assert {"Release control   G", "Style   ^y", "Map   F2"} <= set(titles)
 
 
+async def test_what_disarms_is_there_once_and_beside_its_key() -> None:
+    for picture in (snapshot(), DISARMED):
+        async with console(picture=picture) as screen:
+            titles = [each.title for each in screen.app.get_system_commands(screen.app.screen)]
+            assert [title for title in titles if title.lower().startswith("disarm")] == ["Disarm   r"]
+            assert len(titles) == len(set(titles)), "no two rows look the same"
+
+
 async def test_a_mode_of_the_palette_is_written_on_the_line_first() -> None:
     async with console() as screen:
         await offer_modes(screen)

@@ -124,8 +124,11 @@ async def test_the_strip_has_caps_bars_and_bounds_where_there_is_room() -> None:
     words = ("stops without", " steering ", " j   k   l ")
     async with console(size=(60, 20)) as screen:
         await until(lambda: all(map(screen.text.__contains__, words)))
+        bound = "stops when you let go"
+        assert screen.text.count(bound) == 1, "beside the caps, and not in a line of its own, too"
     async with console(size=(60, 12)) as screen:
         await until(lambda: "0.84 m/s" in screen.text)
+        assert screen.text.count(bound) == 1
         assert not any(map(screen.text.__contains__, words))
 
 

@@ -165,6 +165,12 @@ def test_repeats_of_a_key_held_over_a_closing_are_dropped(gate: KeyGate, station
     assert len(station.of(DriveKeyDown)) == 3
 
 
+def test_a_promise_of_releases_is_no_proof(gate: KeyGate, station: Recorder) -> None:
+    gate.handle_release_claim()
+    assert gate.promises_releases
+    assert station.intents == []
+
+
 def test_proof_of_releases_is_told_once(gate: KeyGate, station: Recorder) -> None:
     gate.handle_release_support()
     gate.handle_release_support()

@@ -94,7 +94,8 @@ def test_modifiers_alone_are_no_keys() -> None:
 
 def test_only_a_subfield_proves_that_releases_come() -> None:
     """Contour answers "27" and then sends none: believing it would mean a key that is never let go."""
-    assert feed("\x1b[?27u", "i", "\x1b[119;1;119u")[0].told == []
+    assert feed("\x1b[?27u", "i", "\x1b[119;1;119u")[0].told == ["claim"]
+    assert feed("\x1b[?1u", "\x1b[?0u", "i")[0].told == []
     assert feed(REPEAT_W)[0].told == ["exact"]
     assert feed(RELEASE_W)[0].told == ["exact"]
 

@@ -13,6 +13,7 @@ from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencySto
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.ui.keys.key_gate import GateClosure
 from groundstation.ui.terminal.console_driver import PING, ConsoleDriver
+from groundstation.ui.terminal.tty_ping import TerminalPing
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, app_on_a_pty
 from tests.waits import until
 
@@ -137,6 +138,10 @@ async def test_the_answer_to_the_last_ping_is_not_left_to_the_shell() -> None:
         assert asked[0], "it waits for the answer"
         assert unread_bytes(keyboard) == 0
         os.close(keyboard)
+        drawn, app.gate.ping = len(terminal.drawn), TerminalPing()
+        app._ping()  # timers go on until the app has unmounted
+        await until(lambda: b"\x1b[?25h" in terminal.drawn)
+        assert PING.encode() not in terminal.drawn[drawn:]
 
 
 def unread_bytes(descriptor: int) -> int:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import pytest
+
 from groundstation.ui.look.roles import Role
 from groundstation.ui.widgets.chart import Chart, ChartValue, Samples, Series
 from tests.groundstation.ui.frames import texts
@@ -38,10 +40,17 @@ def test_both_series_are_named_with_their_newest_value() -> None:
 
 
 def test_noise_around_a_step_of_the_scale_does_not_widen_it() -> None:
-    samples = tuple((float(at), (-0.01 if at % 2 else 1.02, None)) for at in range(60))
+    samples = tuple((float(at), (-0.01 if at % 2 else 1.0, None)) for at in range(60))
     lines = chart(samples)
-    assert lines[0].lstrip().startswith("1.0")
+    assert lines[0].lstrip().startswith("1.0 ")
     assert lines[-1].lstrip().startswith("0.0")
+
+
+@pytest.mark.parametrize(("speed", "top"), [(1.0, "1.0"), (1.03, "1.05"), (1.05, "1.05"), (1.06, "1.5"), (-0.7, "0.0")])
+def test_no_speed_is_above_the_end_of_the_axis(speed: float, top: str) -> None:
+    lines = chart(tuple((float(at), (speed if at > 50 else 0.0, None)) for at in range(60)))
+    assert lines[0].split()[0] == top
+    assert speed <= float(top)
 
 
 def test_a_high_chart_has_its_names_above_the_lines() -> None:

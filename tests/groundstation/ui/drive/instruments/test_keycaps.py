@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue, lit_actions
 from tests.groundstation.ui.ptys import STANDARD
 
@@ -18,3 +20,12 @@ def test_the_cap_of_a_key_that_does_not_count_has_another_colour() -> None:
     ]
     assert first[0].text == first[1].text
     assert [segment.style for segment in first[0]] != [segment.style for segment in first[1]]
+
+
+def test_promised_releases_have_a_timer_until_one_came() -> None:
+    """Contour promises them and sends none, so the timer goes on; the text says for how long."""
+    promised = KeycapsValue(STANDARD, stop_bound=0.75, promises_releases=True)
+    assert "timer 0.75 s till a release" in Keycaps(promised).draw(40, 3)[1].text
+    proved = msgspec.structs.replace(promised, reports_releases=True, stop_bound=0.0)
+    assert "stops when you let go" in Keycaps(proved).draw(40, 3)[1].text
+    assert "timer: stops within 0.75 s" in Keycaps(KeycapsValue(STANDARD, stop_bound=0.75)).draw(40, 3)[1].text
