@@ -10,7 +10,7 @@ from textual.strip import Strip
 from groundstation.snapshot.signing import SigningState
 from groundstation.ui.links.vehicle_table import age_text
 from groundstation.ui.look.colours import AMBER, DIM, GREEN, RED, TEXT, style
-from groundstation.ui.widgets.instrument import Instrument, Part, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, cropped, strip
 from groundstation.views.links import ControlView, Program
 
 OLD_REPORT = 3.0
@@ -33,7 +33,7 @@ class ControlPanel(Instrument[ControlPanelValue]):
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the lines from `top` on, cut at the right edge."""
-        return [strip(*line).crop(0, width) for line in self._lines()[self.value.top :][:height]]
+        return [cropped(strip(*line), width) for line in self._lines()[self.value.top :][:height]]
 
     @property
     def wanted(self) -> int:

@@ -8,7 +8,7 @@ from textual.strip import Strip
 from groundstation.ui.display.wrap import clean
 from groundstation.ui.look.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, RED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
-from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, cropped, finite_or_none, strip
 from groundstation.views.links import VehicleRow, VehiclesView
 
 COLUMNS = (
@@ -59,7 +59,7 @@ class VehicleTable(Instrument[VehicleTableValue]):
         if view is None or not view.rows:
             text = "waiting for the station" if view is None else self.value.waiting or "no vehicle yet"
             return [strip((f" {clean(text)}", style(DIM))).crop(0, width)]
-        tail = [line.crop(0, width) for line in self._tail()]
+        tail = [cropped(line, width) for line in self._tail()]
         shown = max(1, height - 1 - len(tail)) if height < self.wanted else len(view.rows)
         tail = tail[: max(0, height - 1 - shown)]
         widths = fit(COLUMNS, width)

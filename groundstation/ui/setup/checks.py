@@ -10,7 +10,7 @@ from textual.strip import Strip
 from groundstation.ui.display.wrap import clean, wrap
 from groundstation.ui.look.colours import BLUE, DIM, GREEN, RED, TEXT, WHITE, style
 from groundstation.ui.setup.chain import MARKS
-from groundstation.ui.widgets.instrument import Instrument, Part, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, cropped, strip
 from groundstation.views.doctor import DoctorView
 from link.runtime.diagnosis import Health
 
@@ -30,7 +30,7 @@ class ChecksPanel(Instrument[ChecksValue]):
         if view is None or not view.system:
             return [strip((" no vehicle yet", style(DIM)))]
         lines = [*_reasons(view, width), *_answer(view), *_sensors(view)]
-        return [strip(*line).crop(0, width) for line in lines[:height]]
+        return [cropped(strip(*line), width) for line in lines[:height]]
 
 
 def _reasons(view: DoctorView, width: int) -> Iterator[list[Part]]:

@@ -7,7 +7,7 @@ from textual.strip import Strip
 
 from groundstation.ui.display.wrap import clean, wrap
 from groundstation.ui.look.colours import BLUE, DIM, GREEN, RED, TEXT, YELLOW, style
-from groundstation.ui.widgets.instrument import Instrument, Part, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, cropped, strip
 from groundstation.views.doctor import CalibrationRow, DoctorView, StickRow
 from groundstation.views.requests import RequestLine
 from link.runtime.diagnosis import Health
@@ -47,7 +47,7 @@ class CalibrationPanel(Instrument[ListValue]):
         room = height - len(below) - 1 if below else height  # what to do comes before what could be done
         lines = [_line(row) for row in view.calibrations] if view.sticks is None else _stick_lines(view.sticks)
         shown = [*lines[: max(0, room)], *([[]] if below else []), *below]
-        return [strip(*line).crop(0, width) for line in shown[:height]]
+        return [cropped(strip(*line), width) for line in shown[:height]]
 
 
 def _line(row: CalibrationRow) -> list[Part]:

@@ -9,7 +9,7 @@ from textual.strip import Strip
 
 from groundstation.ui.display.wrap import clean, wrap
 from groundstation.ui.look.colours import AMBER, DIM, GREEN, TEXT, YELLOW, style
-from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, cropped, length, strip
 from groundstation.views.doctor import DoctorView, MotorRow
 
 BAR = 18
@@ -41,7 +41,7 @@ class MotorsPanel(Instrument[MotorsValue]):
             motors = [[(" cannot: it is not known which motors this vehicle has", style(DIM))]]
         kept = max(1, height - 1)
         lines = [*motors[:kept], *below]
-        return [strip(*line).crop(0, width) for line in lines[:height]]
+        return [cropped(strip(*line), width) for line in lines[:height]]
 
     def _motor(self, row: MotorRow, view: DoctorView, width: int) -> list[Part]:
         turns = view.test is not None and view.test.turning and view.test.motor == row.number

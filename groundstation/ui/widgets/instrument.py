@@ -30,6 +30,14 @@ def strip(*parts: Part) -> Strip:
     return Strip([Segment(text, look) for text, look in parts if text])
 
 
+def cropped(line: Strip, width: int) -> Strip:
+    """Return a line that is no wider than this; one whose words are cut ends with an ellipsis."""
+    if line.cell_length <= width or not line.text[width:].strip():
+        return line.crop(0, width)
+    kept = list(line.crop(0, max(0, width - 1)))
+    return Strip([*kept, Segment("…", kept[-1].style if kept else None)])
+
+
 def length(parts: Iterable[Part]) -> int:
     """Return the width of parts in cells; all characters that we draw are one cell wide."""
     return sum(len(text) for text, _ in parts)

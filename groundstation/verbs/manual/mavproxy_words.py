@@ -12,7 +12,7 @@ _SCREEN = "`groundstation` without a verb opens the screen"
 
 WORDS: Mapping[str, str] = {
     "wp": "use `groundstation mission`", "rc": _OVERRIDE, "rtl": "use `groundstation home`",
-    "module": "there are no modules: `groundstation --help` lists what there is", "link": "use `groundstation links`",
+    "module": "there are no modules: docs/commands.md lists the verbs", "link": "use `groundstation links`",
     "output": "the program `bridge` forwards to other ground stations", "guided": "use `groundstation goto LAT LON`",
     "setspeed": "use `groundstation speed M/S`", "long": "use `groundstation command`",
     "command_long": "use `groundstation command`", "command_int": "use `groundstation command`, or `goto`",

@@ -7,7 +7,7 @@ from textual.strip import Strip
 from groundstation.snapshot.drive import HealthLine
 from groundstation.ui.display.wrap import clean
 from groundstation.ui.look.colours import AMBER, DIM, GREEN, TEXT, style
-from groundstation.ui.widgets.instrument import Instrument, strip
+from groundstation.ui.widgets.instrument import Instrument, cropped, strip
 
 NAME = 10
 """Cells of the name."""
@@ -26,7 +26,7 @@ class HealthPanel(Instrument[tuple[HealthLine, ...]]):
         if not lines:
             return [strip(("the vehicle tells nothing yet", style(DIM))).crop(0, width)]
         shown = lines if len(lines) <= height else lines[: max(0, height - 1)]
-        drawn = [_line(line).crop(0, width) for line in shown]
+        drawn = [cropped(_line(line), width) for line in shown]
         hidden = lines[len(shown) :]
         if hidden:
             bad = sum(line.good is False for line in hidden)
