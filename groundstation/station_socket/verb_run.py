@@ -28,7 +28,7 @@ ALIVE_WITHIN = 0.3
 """s without a packet after which a verb that demands motion counts as dead."""
 
 STILL_WITHIN = 1.0
-"""s without a packet after which a shell counts as standing still, as after Ctrl-Z. Its verb, which demands nothing,
+"""s without a packet after which a shell counts as standing still, as after Ctrl-Z. Its verb
 stands still, too, so that the vehicle misses its ground station as if the verb ran in the shell."""
 
 

@@ -187,7 +187,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
          ("--rate", {"type": rate, "metavar": "HZ", "help": "repeat it, with --for"}),
          ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "how long to repeat it"}),
          ("--yes", {"action": "store_true", "help": "send what can move the vehicle"})),
-        check=send.check, guarded=send.is_demand, own_process=True)},
+        check=send.check, guarded=send.is_demand)},
     "record": {ONLY: VerbAction(
         "record all that is heard into a telemetry log, until Ctrl-C", record.record,
         (_FILE, ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end after this time"}), _YES),

@@ -78,7 +78,8 @@ class VerbClient:
                 return self.ended
             self._ask()
             with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(ALIVE_PERIOD):  # wait_for() may lose a Ctrl-C
+                wait = max(0.0, self._asked_at + ALIVE_PERIOD - time.monotonic())
+                async with asyncio.timeout(wait):  # wait_for() may lose a Ctrl-C
                     await readable.wait()
 
     def _ask(self) -> None:

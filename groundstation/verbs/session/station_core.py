@@ -9,6 +9,7 @@ from dialects import messages as m
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station.relay.verb_relay import Verb
 from groundstation.station_socket.verb_run import STILL_WITHIN
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.core import VerbCore
 from link.core import LinkReport, Received
 
@@ -37,7 +38,7 @@ class StationCore(VerbCore):
         """Has what ends the verb: a mistake in it, or a demand that is refused."""
         self._flush, self._silence = flush, silence
         self._verb = Verb(
-            name, takes_part, self._deliver, self._report, lambda line: None, follows=follows, runs_here=True,
+            name, takes_part, self._deliver, self._report, self._refuse_demand, follows=follows, runs_here=True,
             tell_refusal=self._take_refusal, tick=self._run_tick,
         )  # fmt: skip
 
@@ -54,6 +55,8 @@ class StationCore(VerbCore):
         self.flush()
         self.station.relay.leave(self._verb, self._now)
         self._flush()
+        if self.broken.done():
+            self.broken.exception()  # a verb that ends by itself has not read it
 
     def flush(self) -> None:
         """Send the messages of the verb now."""
@@ -78,7 +81,7 @@ class StationCore(VerbCore):
         """Tick, unless the shell stands still."""
         if self._silence(now) > STILL_WITHIN:
             return
-        self.station.relay.hear(self._verb, now)
+        self.station.relay.hear(self._verb, now - self._silence(now))
         self._guard(lambda: self.add_vehicles(now))
         self._guard(lambda: self.tick(now))
         self._pass_on(now)
@@ -88,6 +91,10 @@ class StationCore(VerbCore):
 
     def _take_refusal(self, message: m.Message, why: str) -> None:
         self._guard(lambda: self.handle_refused(message, why, self._now))
+
+    def _refuse_demand(self, line: str) -> None:
+        """End the verb: its demand is not sent any more."""
+        self._break(VerbError(ExitCode.NOT_IN_CONTROL, line))
 
     def _pass_on(self, now: float) -> None:
         """Give the messages of the verb to the station, which sends them; later if the shell stands still."""
@@ -100,5 +107,8 @@ class StationCore(VerbCore):
         try:
             step()
         except Exception as error:
-            if not self.broken.done():
-                self.broken.set_exception(error)
+            self._break(error)
+
+    def _break(self, error: Exception) -> None:
+        if not self.broken.done():
+            self.broken.set_exception(error)

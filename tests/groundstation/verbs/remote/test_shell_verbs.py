@@ -9,20 +9,21 @@ from collections.abc import Awaitable, Callable
 import pytest
 
 from dialects import messages as m
+from dialects.axes import Axes, axis_map, build_manual_control
 from groundstation.host.run_port import RunPort
 from groundstation.intents.session import RenewLease
 from groundstation.station.component import COMPONENT
 from groundstation.station.station import Station
-from groundstation.station_socket.verb_run import STILL_WITHIN, VerbEnded, VerbReady, decode_from_station
+from groundstation.station_socket.verb_run import ALIVE_WITHIN, STILL_WITHIN, VerbEnded, VerbReady, decode_from_station
 from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.client.verb_client import VerbClient
-from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.station_core import StationCore
 from link.links import open_links
 from link.runner import Runner
 from tests.fakes.params import Param
-from tests.fakes.services import ForeignVehicle, foreign_vehicle
+from tests.fakes.services import ARDUPILOT, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.setup.test_doctor import MAG_CAL_CANCEL, MAG_CAL_START, commanded, progress
 from tests.waits import PATIENCE
 
@@ -138,6 +139,32 @@ def test_the_verb_of_a_shell_that_stands_still_sends_nothing() -> None:
         core.leave()
 
     ping = m.Ping(1, 2, 0, 0)
+    with foreign_vehicle() as vehicle:
+        with_station(vehicle, use)
+
+
+def test_the_demand_of_a_shell_that_stands_still_ends() -> None:
+    silence = [0.0]
+
+    async def use(shells: Shells) -> None:
+        core = StationCore(shells.station, 1, "a shell", shells.flush, takes_part=True, silence=lambda now: silence[0])
+        core.join()
+        await shells.see(lambda: core.chosen is not None)
+        core.outbox.append(ahead)
+        core.flush()
+        await shells.see(lambda: [each.z for each in vehicle.of("MANUAL_CONTROL")][-1:] == [ahead.z])
+        silence[0] = ALIVE_WITHIN + 0.05
+        await shells.see(lambda: vehicle.of("MANUAL_CONTROL")[-1].z == neutral.z)
+        core.outbox.append(ahead)
+        core.flush()
+        with pytest.raises(VerbError, match=r"a shell stood still for .* s: its demand has ended"):
+            await core.broken
+        core.leave()
+        assert vehicle.of("MANUAL_CONTROL")[-1].z == neutral.z
+
+    axes = axis_map(ARDUPILOT)
+    ahead, neutral = (build_manual_control(Axes(throttle, 0.0), 1, axes) for throttle in (0.4, 0.0))
+    assert (ahead.z, neutral.z) == (400, 0)
     with foreign_vehicle() as vehicle:
         with_station(vehicle, use)
 
