@@ -11,7 +11,7 @@ from dialects.kinds import AUTOPILOT_COMPONENT
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
-from groundstation.station.operator_core import OperatorCore
+from groundstation.station.operator_core import TICK_PERIOD, OperatorCore
 from groundstation.vehicles.demand.drive_gate import drive_refusal
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from groundstation.verbs.common.arguments import is_chosen
@@ -171,6 +171,7 @@ class OwnCore(VerbCore):
         parts = CoreParts(endpoints, system=ids[0], component=ids[1], session=session, now=now)
         super().__init__(OperatorCore(parts, serves=True), wanted)
         self.station.fleet.is_meant = self._is_meant
+        self._station_due = now
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message."""
@@ -185,8 +186,10 @@ class OwnCore(VerbCore):
         self.frames_sent += 1
 
     def tick(self, now: float) -> None:
-        """Repeat what is overdue."""
-        self.station.tick(now)
+        """Repeat what is overdue; the station needs all ticks only while something is under way there."""
+        if self.station.rest_period is None or now >= self._station_due:
+            self._station_due = now + TICK_PERIOD
+            self.station.tick(now)
         super().tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
@@ -204,6 +207,12 @@ class OwnCore(VerbCore):
         if why is not None:
             self.handle_refused(message, why, now)
         return why is None
+
+    def _choose(self, now: float) -> None:
+        """Choose the vehicle, and select it, so that no other one gets its place."""
+        super()._choose(now)
+        if self.chosen is not None:
+            self.station.fleet.select(self.chosen.state.system, now)
 
     def _is_meant(self, received: Received) -> bool:
         return self._wanted is not None and is_chosen(self._wanted, received.system, received.peer.name)

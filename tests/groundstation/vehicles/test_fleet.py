@@ -124,3 +124,7 @@ def test_a_verb_has_a_place_for_the_vehicle_that_is_meant() -> None:
     assert core.chosen is not None
     assert core.chosen.state.system == 200
     assert len(core.contacts) == MAX_VEHICLES
+    for system in range(1, MAX_VEHICLES + 1):
+        core.receive(beat(system), 3.0)
+    core.receive(beat(201)._replace(signed=True), 4.0)
+    assert {200, 201} <= set(core.contacts), "the one that is meant keeps its place"
