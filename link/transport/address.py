@@ -10,6 +10,8 @@ from link.transport.transport import LinkError
 
 PRIVILEGED = 1024
 """Ports below need root (ip(7), ip_unprivileged_port_start)."""
+LIMITED_BROADCAST = "255.255.255.255"
+"""Without any route it is unreachable, too (RFC 919)."""
 
 
 def resolve(endpoint: Endpoint, kind: socket.SocketKind) -> tuple[tuple[str, int], socket.AddressFamily]:
@@ -38,7 +40,8 @@ def bind_error_text(endpoint: Endpoint, error: OSError) -> str:
             f"{endpoint.text}: {endpoint.host} is not an address of this machine; "
             "use one of its own, or 0.0.0.0 for all of them"
         )
-    if error.errno == errno.EACCES and endpoint.scheme == "udpout":  # socket(7): without SO_BROADCAST
+    broadcast = error.errno == errno.EACCES or endpoint.host == LIMITED_BROADCAST  # socket(7): without SO_BROADCAST
+    if broadcast and endpoint.scheme == "udpout":
         return f"{endpoint.text}: {endpoint.host} is a broadcast address; name one machine, or listen with udpin"
     if error.errno in (errno.EACCES, errno.EPERM) and endpoint.scheme in LISTENING and endpoint.port < PRIVILEGED:
         return f"{endpoint.text}: not allowed; ports below {PRIVILEGED} need root, choose a higher one"

@@ -116,7 +116,7 @@ def test_a_trusted_link_is_free_until_the_first_key_guards_it(tmp_path: Path) ->
         keys.listeners[0](keys.ring.add(key))
         assert channel.guard is not None
         assert channel.receive(heartbeat(0), HERE, 0.0), "this computer needs no key"
-        stamp = made._keeper.signing.clock.stamp(0.0)
+        stamp = made._link_signing.signing.clock.stamp(0.0)
         assert channel.receive(signed(ARM, STRANGER, stamp), HERE, 0.0) == []
         assert channel.receive(signed(ARM, key, stamp), HERE, 0.0)[0].role is Role.DRIVE
         made.close(1.0)
