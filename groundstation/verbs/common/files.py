@@ -6,12 +6,9 @@ pipes. A slow disk then delays the shell, and not the station.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from enum import StrEnum
 
-from groundstation.disk import local_file
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.common.local_file import check_new_file, file_errors
 
 
 class FileWork(StrEnum):
@@ -67,15 +64,21 @@ class Files:
 
 def work_on(work: FileWork, path: str, data: bytes, overwrite: bool) -> bytes:
     """Do something with a file of this process; return what was read. Raises VerbError."""
+    from groundstation.disk import local_file  # with FTP, which most verbs do without
+    from groundstation.verbs.common.local_file import check_new_file, file_errors
+
     with file_errors():
-        return _WORK[work](path, data, overwrite) or b""
-
-
-_WORK: Mapping[FileWork, Callable[[str, bytes, bool], bytes | None]] = {
-    FileWork.READ: lambda path, data, overwrite: local_file.read_bytes(path),
-    FileWork.CHECK_NEW: lambda path, data, overwrite: check_new_file(path, overwrite=overwrite),
-    FileWork.WRITE: lambda path, data, overwrite: local_file.write_bytes(path, data),
-    FileWork.READ_PART: lambda path, data, overwrite: local_file.read_part(path),
-    FileWork.KEEP_PART: lambda path, data, overwrite: local_file.keep_part(path, data),
-    FileWork.STORE: lambda path, data, overwrite: local_file.store(path, data),
-}
+        match work:
+            case FileWork.READ:
+                return local_file.read_bytes(path)
+            case FileWork.READ_PART:
+                return local_file.read_part(path)
+            case FileWork.CHECK_NEW:
+                check_new_file(path, overwrite=overwrite)
+            case FileWork.WRITE:
+                local_file.write_bytes(path, data)
+            case FileWork.KEEP_PART:
+                local_file.keep_part(path, data)
+            case FileWork.STORE:
+                local_file.store(path, data)
+        return b""
