@@ -8,6 +8,10 @@ To add a driver, write a class that fits `Accessory`, add one row to DRIVERS in 
 the class with tests/vehicle/accessories/contract.py. A driver outside this package needs no row: name it
 "module:Class". A driver with settings names their type `Settings` (a msgspec.Struct) and is built as
 `Class(settings, value)`, any other as `Class(value)`.
+
+To add or change:
+- a relay or servo driver: a class that fits `vehicle/accessories/__init__.py`, and its row in
+  `vehicle/accessories/drivers.py`, `DRIVERS`.
 """
 
 from __future__ import annotations

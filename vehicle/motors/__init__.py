@@ -3,6 +3,9 @@
 To add a driver, write a class that fits `Motors`, add one row to DRIVERS in vehicle/motors/drivers.py, and test the
 class with tests/vehicle/motors/contract.py. A driver outside this package needs no row: name it "module:Class".
 A driver with settings names their type `Settings` (a msgspec.Struct) and is built as `Class(settings)`.
+
+To add or change:
+- a known car: `vehicle/motors/drivers.py`: a row in `DRIVERS` with `profile` and `params`.
 """
 
 from __future__ import annotations
