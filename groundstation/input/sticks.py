@@ -1,4 +1,16 @@
-"""Keys and the gamepad as two sticks: intents and time in, axes out. Timers return them to neutral."""
+"""Keys and the gamepad as two sticks: intents and time in, axes out. Timers return them to neutral.
+
+Operations wanted: the axes at any moment (`axes`), and the moment at which a timer changes them next (`changes_at`).
+
+Worst case: a terminal that reports no releases. A held key sends a press, a pause of up to 1 s, then repeats, and
+nothing when it goes up. So a press counts for a window and each repeat extends it (key_repeat.py); `stop_bound` is the
+longest. Of several held keys only the newest repeats: the others last as long as it does. A key that was held while
+driving was not allowed goes on repeating afterwards, which looks like a press: `block`, `reject` and `require_quiet`
+ignore it.
+
+Why not simpler: one fixed window would either interrupt each hold once on a keyboard that repeats late, or let each
+tap drive for longer on all others.
+"""
 
 from __future__ import annotations
 

@@ -3,6 +3,17 @@
 A frame counts only when its id is in the dialect and its checksum is right. Anything else moves the search on by ONE
 byte, so that a stray start byte costs nothing (pymavlink discards the whole claimed length: 12 frames, 0.65 s at 20
 Hz). Received bytes never raise. Payloads are not decoded here. Format: https://mavlink.io/en/guide/serialization.html.
+
+Operations wanted: return each complete frame of a read at once, wait for one that is cut in two, and find the next
+frame behind damage. Most reads hold whole frames, so `_scan` unpacks a header, looks up its id and computes one
+checksum, without another call; `_slow` has every other case.
+
+Worst case: each byte is a start byte. Each position is then tried as a frame of 280 bytes at most, so the time grows
+with the bytes and not with their square. On a stream a forged header claims bytes that never come: PARTIAL_DEADLINE
+ends the wait, and no more than one incomplete frame is kept.
+
+Why not simpler: a jump over the claimed length loses the frames inside it, and a state machine that is fed byte by
+byte needs a call of Python for each.
 """
 
 from __future__ import annotations

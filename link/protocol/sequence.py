@@ -9,6 +9,11 @@ the same ids, or of copies of old frames. The runs are kept apart, so that a veh
 
 A program that has restarted may begin a little behind the last number of its former run. A number that the silent
 former run has used for another frame shows that: no copy and no late frame of that run has one.
+
+Worst case: a flood of frames with any numbers. A sender has NUMBERINGS_MAX runs with _RING digests each, and no more.
+
+Why not simpler: numbers compared modulo 256 make a copy that is 128 to 255 numbers old look new, and five old frames
+in a row are a replay as well as a restart (docs/decisions.md).
 """
 
 from __future__ import annotations

@@ -1,6 +1,18 @@
 """Which ground station is in control: who takes it, who succeeds a silent driver, and what others are told.
 
 The rules of identity are in driver.py and conversation.py. Demands and the neutral-first interlock are in control.py.
+
+Operations wanted: say for each message whether its sender may drive, command or take control (`is_driver`,
+`denial_reason`, `takeover_denial_reason`), and pass control on (`take`, `release`, `succeed`).
+
+Worst case: another program sends with the ids of the driver, from its address, or sends recorded frames of it. Ids
+prove nothing then. A driver with a session proves each demand; without one, two runs of numbers at once are a clash
+that bars both for a while, and frames that repeat older ones are a copy, whose demands do not count.
+
+Why not simpler: with the system id as the owner, two ground stations with the default id 255 would drive in turns, and
+a recording of yesterday would drive at all. A rule that only refused strangers would leave a rover without a driver
+after each restart of a ground station, so that succession has rules of its own: silence first, and an act, not a
+heartbeat.
 """
 
 from __future__ import annotations

@@ -1,4 +1,16 @@
-"""Key gate: which intents of keys may pass to the station now. Called by the input thread and the event loop."""
+"""Key gate: which intents of keys may pass to the station now. Called by the input thread and the event loop.
+
+Operations wanted: choose from the keys of one read those that pass, in the input thread and without waiting for a
+drawing (`handle_keys`), and close at once from any thread (`close`).
+
+Worst case: one read holds the key that opens a screen and keys that are meant for that screen, or a text that a line
+has gathered. No command in it passes; stops always do. The event loop may draw meanwhile, so that the gate stays
+closed for OPENING_TIMEOUT until it has opened the screen.
+
+Why not simpler: a gate in the event loop alone would let a stop wait for a drawing, and one in the station alone would
+judge by a state that is a packet old. So both processes have one, set in order on one pipe, and a lock makes a closure
+and the keys of a read follow each other.
+"""
 
 from __future__ import annotations
 
