@@ -16,7 +16,6 @@ from platformdirs import user_log_path
 
 from groundstation.cli.local_verb import UsageError, load_settings, report_mistakes
 from groundstation.cli.options import REPLAY_SETTINGS, build_parser, option_words
-from groundstation.cli.session_report import report_session
 from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.unknown_options import describe_unknown
 from groundstation.client import StationClient
@@ -34,6 +33,9 @@ from link.runtime.whole_file import PRIVATE
 
 if TYPE_CHECKING:
     from groundstation.ui.look.appearance import Look  # the UI is imported while the station starts
+import contextlib
+
+from link.runtime import stdio
 
 MIN_TERMINAL_SIZE = (40, 10)
 """Columns and rows below which not even the message fits that the terminal is too small."""
@@ -256,3 +258,27 @@ def docs_file(requested: str | None) -> Path | None:
             return path.absolute()
     except OSError as error:
         raise UsageError(f"--param-docs {path}: {error.strerror}") from error
+
+
+def report_session(armed: Sequence[str], logs: Sequence[str]) -> None:
+    """Print what is left armed, and the logs of the session; the terminal may be closed."""
+    with contextlib.suppress(OSError):
+        for line in (*armed, *map(_describe_log, logs)):
+            sys.stderr.write(f"groundstation: {stdio.escape(line)}\n")
+            sys.stderr.flush()
+
+
+def _describe_log(name: str) -> str:
+    """Return where a log is, how long it is, and for how long a vehicle drove in it."""
+    from groundstation.ui.base.local_files import short_path
+    from groundstation.ui.files.log_summary import read_summary
+    from groundstation.ui.replay.model import duration_text
+
+    path = Path(name)
+    found = read_summary(path)
+    if found is None or found.length is None:
+        return f"log: {short_path(path)}"
+    driven = (
+        f", driven {duration_text(found.driven)}" if found.driven else ", nothing was armed" if found.armed == 0 else ""
+    )
+    return f"log: {short_path(path)} ({duration_text(found.length)}{driven})"

@@ -1,4 +1,4 @@
-"""CSV files, JSON lines, and a part of a log as a log again."""
+"""CSV files, JSON lines, and a part of a log as a log again. Numbers have as many digits as their type, and no more."""
 
 from __future__ import annotations
 
@@ -6,16 +6,41 @@ import contextlib
 import io
 import json
 import math
+import struct
+from collections.abc import Iterator
 from typing import Any, TextIO
 
-from dialects.messages import Message
+from dialects.messages import Message, field_value
 from groundstation.disk.new_file import NewFile, NewFolder
 from groundstation.export.exporter import ExportError, LogInfo
 from groundstation.export.log_time import iso_time
 from groundstation.export.sample import Sample
-from groundstation.export.values import field_values
 from groundstation.formats.csv_row import csv_row
 from link.tlog.tlog import encode_record
+
+_FLOAT = struct.Struct("<f")
+
+
+def field_values(message: Message) -> Iterator[tuple[str, Any]]:
+    """Yield name and value of each field: numbers, texts, and lists of numbers."""
+    kind = type(message)
+    for name, of in zip(kind.fieldnames, kind.fieldtypes, strict=True):
+        value = field_value(message, name)
+        if of == "float":
+            value = [shortest(each) for each in value] if isinstance(value, list) else shortest(value)
+        yield name, value
+
+
+def shortest(value: float) -> float:
+    """Return the number with the fewest digits that is the same float32: 0.1 and not 0.10000000149011612."""
+    if not math.isfinite(value):
+        return value
+    for digits in (7, 8):
+        near = float(f"{value:.{digits}g}")
+        if abs(near) < 3.4e38 and _FLOAT.unpack(_FLOAT.pack(near))[0] == value:
+            return near
+    return float(f"{value:.9g}")
+
 
 _HEAD = ("time", "seconds", "system", "component")
 CSV_SUFFIX = ".csv"

@@ -1,23 +1,63 @@
-"""ProgramSet: the programs that use a station: screens, verbs, and shells that complete names."""
+"""ProgramSet: the programs that use a station: screens, verbs, and shells that ask for names or for what runs."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 
-from groundstation.host.about import answer_about
 from groundstation.host.listener import Caller, ProgramListener
-from groundstation.host.names import answer_names
 from groundstation.host.run_port import RunPort
 from groundstation.host.screens import ScreenSet
 from groundstation.host.verb_port import VerbPort
 from groundstation.ipc import protocol_version
 from groundstation.station.station import Station
 from groundstation.station_socket import about, names, verb_run
+from groundstation.station_socket.about import About, encode_about
 from groundstation.station_socket.hello import ABOUT, NAMES, SCREEN, VERB, Hello
+from groundstation.station_socket.names import MODES, PARAMS, VEHICLES, Names, encode_names
 from groundstation.station_socket.verb_run import VerbReady
+from groundstation.vehicles.requests.mode_requests import listed_or_known
+
+
+def answer_names(sock: socket.socket, kind: str, station: Station) -> None:
+    """Send the names of this kind, none of an unknown kind, and close the connection."""
+    names = tuple(sorted(set(_SOURCES[kind](station)))) if kind in _SOURCES else ()
+    with sock, contextlib.suppress(OSError):  # the shell waits no longer
+        sock.send(encode_names(Names(names)))
+
+
+def _params(station: Station) -> Iterable[str]:
+    """Return those heard, and those that came in a file (MAVLink FTP)."""
+    services = [contact.services for contact in station.fleet if contact.services is not None]
+    return station.params.names.union(*(each.params.client.params for each in services))
+
+
+def _modes(station: Station) -> Iterable[str]:
+    for contact in station.fleet:
+        model = (contact.state.autopilot, contact.state.kind)
+        identity = contact.services.identity if contact.services else None
+        yield from (mode.name for mode in listed_or_known(identity, model))
+
+
+def _vehicles(station: Station) -> Iterable[str]:
+    return (contact.state.fleet_name or str(contact.state.system) for contact in station.fleet)
+
+
+_SOURCES: Mapping[str, Callable[[Station], Iterable[str]]] = {PARAMS: _params, MODES: _modes, VEHICLES: _vehicles}
+"""Kind of names -> where they are."""
+
+
+def answer_about(sock: socket.socket, station: Station, screens: ScreenSet) -> None:
+    """Send what this station is, and close the connection."""
+    selected = station.fleet.selected
+    others = [contact for contact in station.fleet if contact is not selected]
+    contacts = others if selected is None else [selected, *others]
+    about = About(tuple(each.state.name for each in contacts), station.station_info.endpoints, screens.names)
+    with sock, contextlib.suppress(OSError):  # the program waits no longer
+        sock.send(encode_about(about))
 
 
 class VerbSet:

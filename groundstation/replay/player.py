@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import heapq
 from bisect import bisect_left
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from dialects import messages as m
+from dialects.codec import decode_frame
 from groundstation.intents.charts import PinSeries
 from groundstation.intents.vehicle import SelectNextVehicle, SelectVehicle
 from groundstation.replay.feed import BASE, BuildStation, StationFeed
 from groundstation.replay.log_index import LogIndex
-from groundstation.replay.shown_plans import ShownPlans
-from groundstation.replay.state import state_before
+from groundstation.replay.plans import PlanChange
 from groundstation.station.station import Station
 from groundstation.views.base import ViewRequest
 from groundstation.views.charts import FieldId, SeriesRequest
-from link.tlog.scan import LogFrame
+from link.services.mission.items import MissionItem, from_message
+from link.tlog.scan import LogFrame, id_of
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 
@@ -269,3 +272,86 @@ class ReplayPlayer:
             self.marks, self.loop = (self.position, None), False
         else:
             self.marks = min(first, self.position), max(first, self.position)
+
+
+TRACK = 200
+"""Positions from before, one of each interval: the track on the map."""
+
+TEXTS = 150
+"""Texts from before."""
+
+MAX_FRAMES = 4000
+"""Frames in all; a station reads them in 0.2 s."""
+
+_TRACKED = {m.GlobalPositionInt.id, m.LocalPositionNed.id, m.VfrHud.id}
+
+
+def state_before(index: LogIndex, number: int) -> Iterator[tuple[float, LogFrame]]:
+    """Yield times and frames from before an interval, in the order of the file.
+
+    HEARTBEATs go first, at time 0: without them a station does not know the vehicles that the others are from.
+    """
+    start = index.starts[number]
+    places: set[int] = set()
+    first: list[int] = []
+    for key, offsets in index.places.items():
+        if at := bisect_left(offsets, start):
+            count = TRACK if id_of(key) in _TRACKED else 1
+            places.update(offsets[max(0, at - count) : at])
+            if id_of(key) == m.Heartbeat.id:
+                first.append(offsets[at - 1])
+    places.update(index.findings.kept_before(start, TEXTS))
+    places.update(index.findings.params_before(start))
+    yield from ((0.0, frame) for frame in _read(index, first))
+    latest = index.times[number]
+    for frame in _read(index, heapq.nlargest(MAX_FRAMES, places)):
+        yield min(latest, index.clock.elapsed(frame.at, frame.stamp)), frame
+
+
+def _read(index: LogIndex, offsets: Iterable[int]) -> Iterator[LogFrame]:
+    for offset in sorted(offsets):
+        frame = index.read_frame(offset)
+        if frame is not None:
+            yield frame
+
+
+class ShownPlans:
+    """The plans of one station, which begins at an offset of the log."""
+
+    def __init__(self, index: LogIndex, station: Station, offset: int) -> None:
+        """Give it the newest plan of each vehicle and kind from before the offset."""
+        self._index = index
+        self._station = station
+        self._next = 0
+        newest: dict[tuple[int, int], tuple[int, PlanChange]] = {}
+        changes = index.findings.plans.changes
+        while self._next < len(changes) and changes[self._next].offset < offset:
+            change = changes[self._next]
+            self._next += 1
+            newest[change.system, change.kind] = self._next, change
+        for number, change in newest.values():
+            self._show(number, change)
+
+    def advance(self, offset: int) -> None:
+        """Give it the plans up to the record at an offset."""
+        changes = self._index.findings.plans.changes
+        while self._next < len(changes) and changes[self._next].offset <= offset:
+            self._next += 1
+            self._show(self._next, changes[self._next - 1])
+
+    def _show(self, number: int, change: PlanChange) -> None:
+        contact = self._station.fleet.get(change.system)
+        if contact is None:
+            return
+        plans = self._station.services.services_of(contact).plans
+        found = [self._read(offset) for offset in change.items or ()]
+        items = [item for item in found if item is not None]
+        if change.items is None or len(items) < len(found):
+            plans.forget(change.kind)
+        else:
+            plans.take(change.kind, tuple(items), number, change.plan_id)
+
+    def _read(self, offset: int) -> MissionItem | None:
+        frame = self._index.read_frame(offset)
+        message = None if frame is None else decode_frame(frame.message_id, frame.raw)
+        return from_message(message) if isinstance(message, (m.MissionItem, m.MissionItemInt)) else None

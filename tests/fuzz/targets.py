@@ -37,7 +37,7 @@ from vehicle.config.config import parse_config
 from vehicle.params import Params
 from vehicle.rover import Rover
 from vehicle.storage.checksummed_file import CorruptFileError, add_checksum
-from vehicle.storage.param_file import decode as decode_params
+from vehicle.storage.param_store import decode as decode_params
 
 IDS = sorted(m.MESSAGES)
 VEHICLE, STATION = (1, 1), (255, 190)

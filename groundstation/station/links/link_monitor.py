@@ -6,15 +6,46 @@ from collections.abc import Sequence
 
 from dialects import messages as m
 from dialects.enums import Severity
+from groundstation.snapshot import RecordingView
 from groundstation.station.links.ground_stations import GroundStations, IdConflict
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.links.station_info import StationInfo
 from groundstation.vehicles.state.message_log import MessageLog
 from link.core import LinkReport, Received
 from link.protocol.link_events import LinkEvents
 from link.services.param.values import name_from_wire
 from link.services.timesync import TimesyncClient
+
+NO_LINK = "no link yet: Connect opens one"
+
+
+class StationInfo:
+    """The newest of each; set by the station process."""
+
+    def __init__(self, endpoints: Sequence[str]) -> None:
+        self.endpoints = tuple(endpoints)
+        """Of all links, as the user wrote them."""
+        self.not_open: tuple[LinkReport, ...] = ()
+        """Reports of the links that are not open."""
+        self.simulator: str | None = None
+        """State of the simulator; None without one."""
+        self.simulated: frozenset[int] = frozenset()
+        """System ids of the simulators that end with this station."""
+        self.recording: RecordingView | None = None
+        """The recording; None without one."""
+        self.addresses: tuple[str, ...] = ()
+        """IPv4 addresses of this machine."""
+
+    def set_links(self, endpoints: Sequence[str], not_open: Sequence[LinkReport]) -> None:
+        """Record the endpoints of all links, and the reports of those that are not open."""
+        self.endpoints, self.not_open = tuple(endpoints), tuple(not_open)
+
+    def waiting(self, *, has_traffic: bool) -> str:
+        """Return what the station waits for while there is no vehicle."""
+        if has_traffic:
+            return "receiving data, but no HEARTBEAT of a vehicle yet"
+        return f"waiting for a vehicle on {', '.join(self.endpoints)}" if self.endpoints else NO_LINK
+
 
 MAX_NAMES = 20_000
 """Of all vehicles; ArduPilot has 1200, PX4 1000."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dialects.modes import Mode, base_mode
-from groundstation.cli.session_report import report_session
+from groundstation.cli.console import report_session
 from tests.groundstation.ui.files.test_log_summary import heartbeat, log, speed
 
 ARMED = heartbeat(1, autopilot=0, mode=base_mode(Mode.MANUAL, armed=True))

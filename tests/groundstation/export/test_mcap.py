@@ -16,7 +16,7 @@ from dialects import messages as m
 from dialects.messages import MESSAGES
 from groundstation.export.export import Choice
 from groundstation.export.log_time import LogTime, iso_time
-from groundstation.export.ros_types import RosType, type_name
+from groundstation.export.mcap_file import RosType, type_name
 from tests.groundstation.export.logs import (
     ARDUROVER,
     BEAT,

@@ -15,7 +15,7 @@ from dialects import messages as m
 from groundstation.export.export import Choice
 from groundstation.export.exporter import ExportError, NothingToExportError
 from groundstation.export.log_time import LogTime
-from groundstation.export.values import shortest
+from groundstation.export.text_files import shortest
 from link.tlog.tlog import read_records
 from tests.groundstation.export.logs import ARDUROVER, BEAT, START, STEP, drive, run, sent, session
 from tests.link.routing.test_router import unknown

@@ -16,7 +16,7 @@ from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
 from vehicle.cli.check import run_checks
 from vehicle.config.template import build_template
-from vehicle.storage.param_file import encode
+from vehicle.storage.param_store import encode
 
 FREE = 'endpoints = ["udpout:127.0.0.1:9"]\n'
 QUIET = "[sensors]\ncomputer = false\n"

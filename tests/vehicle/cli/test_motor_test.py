@@ -22,7 +22,7 @@ from vehicle.cli.motor_test import MotorTestOptions, RefusedError, build_options
 from vehicle.motors import MotorError
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
-from vehicle.storage.param_file import encode
+from vehicle.storage.param_store import encode
 
 pytestmark = pytest.mark.xdist_group("motor drivers")  # each driver can be used by one vehicle at a time
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from vehicle.params import PARAMETERS
 from vehicle.storage.checksummed_file import CorruptFileError
-from vehicle.storage.param_file import decode, encode
+from vehicle.storage.param_store import decode, encode
 
 NUMBERS = st.dictionaries(st.sampled_from(sorted(PARAMETERS)), st.floats(allow_nan=False, allow_infinity=False))
 

@@ -6,8 +6,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot
-from groundstation.vehicles.readings.foreign_drive import ForeignDrive, drive_params
-from groundstation.vehicles.readings.pulses import pulse_fraction
+from groundstation.vehicles.readings.foreign_drive import ForeignDrive, drive_params, pulse_fraction
 
 LIMITS = {"MIN": 1100.0, "TRIM": 1500.0, "MAX": 1900.0, "REVERSED": 0.0}
 SERVOS = m.ServoOutputRaw(0, 0, 1700, 0, 1300, 0, 0, 0, 0, 0)
