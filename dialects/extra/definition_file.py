@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from dialects.extra.attributes import Attributes, read_entry, read_field, read_id, read_name
-from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, Field, FilePosition, MessageDefinition
+from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, ExtraDefinition, Field, FilePosition
 from dialects.extra.errors import DialectError
 from dialects.printable import printable
 
@@ -59,7 +59,7 @@ class _Parser:
         self._text: list[str] = []
         """Of the include that is open."""
         self._includes: list[tuple[str, FilePosition]] = []
-        self._messages: list[MessageDefinition] = []
+        self._messages: list[ExtraDefinition] = []
         self._enums: list[EnumDefinition] = []
         self._head: tuple[str, int, bool, FilePosition] = ("", 0, False, FilePosition(name, 0))
         """Of the message or enum that is open: name, id, whether it is a bitmask, place."""
@@ -165,7 +165,7 @@ class _Parser:
     def _end_message(self) -> None:
         name, number, _, place = self._head
         base = len(self._fields) if self._base_fields is None else self._base_fields
-        message = MessageDefinition(number, name, tuple(self._fields[:base]), tuple(self._fields[base:]), place)
+        message = ExtraDefinition(number, name, tuple(self._fields[:base]), tuple(self._fields[base:]), place)
         if not base:
             raise DialectError(f"{place}: {name} has no fields: add one, at least one before the extensions")
         if message.size > PAYLOAD_MAX:

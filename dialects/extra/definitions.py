@@ -59,7 +59,7 @@ class Field(msgspec.Struct, frozen=True):
         return f"{self.length or ''}{TYPES[self.type]}"
 
 
-class MessageDefinition(msgspec.Struct, frozen=True):
+class ExtraDefinition(msgspec.Struct, frozen=True):
     """One message. `fields` and `extensions` are in the order of the file."""
 
     id: int
@@ -120,5 +120,5 @@ class DefinitionFile(msgspec.Struct, frozen=True):
     """The content of one file."""
 
     includes: tuple[tuple[str, FilePosition], ...]
-    messages: tuple[MessageDefinition, ...]
+    messages: tuple[ExtraDefinition, ...]
     enums: tuple[EnumDefinition, ...]

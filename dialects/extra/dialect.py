@@ -11,7 +11,7 @@ import pymavlink
 from msgspec.structs import replace
 
 from dialects.extra.definition_file import read_definitions
-from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, FilePosition, MessageDefinition
+from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, ExtraDefinition, FilePosition
 from dialects.extra.errors import DialectError
 from dialects.printable import printable
 
@@ -33,7 +33,7 @@ class Enum(msgspec.Struct, frozen=True):
 class Dialect(msgspec.Struct, frozen=True):
     """The messages and enums of a file and of those that it includes."""
 
-    messages: tuple[MessageDefinition, ...]
+    messages: tuple[ExtraDefinition, ...]
     enums: Mapping[str, Enum]
 
 
@@ -98,9 +98,9 @@ def _missing(text: str, place: FilePosition | None) -> str:
     return f"{place}: include {text[:80]!a} is neither beside this file nor among pymavlink's: copy it there"
 
 
-def _join_messages(parts: Iterable[DefinitionFile]) -> tuple[MessageDefinition, ...]:
-    ids: dict[int, MessageDefinition] = {}
-    names: dict[str, MessageDefinition] = {}
+def _join_messages(parts: Iterable[DefinitionFile]) -> tuple[ExtraDefinition, ...]:
+    ids: dict[int, ExtraDefinition] = {}
+    names: dict[str, ExtraDefinition] = {}
     for message in (each for part in parts for each in part.messages):
         twin = ids.setdefault(message.id, message)
         if twin is not message:
@@ -111,7 +111,7 @@ def _join_messages(parts: Iterable[DefinitionFile]) -> tuple[MessageDefinition, 
     return tuple(ids.values())
 
 
-def _at(message: MessageDefinition) -> str:
+def _at(message: ExtraDefinition) -> str:
     return f"{message.name} ({message.place})"
 
 

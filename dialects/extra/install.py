@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dialects import codec, messages, targets
 from dialects.enum_names import add_enum_names, enum_names
 from dialects.enums import Severity
-from dialects.extra.definitions import Field, MessageDefinition
+from dialects.extra.definitions import ExtraDefinition, Field
 from dialects.extra.dialect import Dialect
 from dialects.extra.errors import DialectError
 from dialects.extra.message_class import make_class, make_decoder, make_encoder
@@ -26,9 +26,9 @@ def install(dialect: Dialect, file: str) -> tuple[Note, ...]:
     """Add a dialect read from `file`; return what to tell the user. Raises DialectError; nothing is changed then."""
     _check_enums(dialect)
     read = messages.read_by_programs()
-    added: list[MessageDefinition] = []
-    replaced: list[MessageDefinition] = []
-    kept: list[MessageDefinition] = []
+    added: list[ExtraDefinition] = []
+    replaced: list[ExtraDefinition] = []
+    kept: list[ExtraDefinition] = []
     for each in dialect.messages:
         built_in = messages.MESSAGES.get(each.id)
         if built_in is None:
@@ -46,7 +46,7 @@ def install(dialect: Dialect, file: str) -> tuple[Note, ...]:
     )
 
 
-def _register(definition: MessageDefinition, dialect: Dialect) -> None:
+def _register(definition: ExtraDefinition, dialect: Dialect) -> None:
     message = make_class(definition, dialect.enums)
     decoder, encoder = make_decoder(message, definition), make_encoder(message, definition)
     codec.register(message, definition.base_size, decoder, encoder)
@@ -62,18 +62,18 @@ def _check_enums(dialect: Dialect) -> None:
                 )
 
 
-def _fields(message: MessageDefinition) -> Iterable[Field]:
+def _fields(message: ExtraDefinition) -> Iterable[Field]:
     return (*message.fields, *message.extensions)
 
 
-def _names(found: list[MessageDefinition]) -> str:
+def _names(found: list[ExtraDefinition]) -> str:
     if not found:
         return ""
     names = ", ".join(each.name for each in found[:NAMES_MAX])
     return f": {names}{', ...' if len(found) > NAMES_MAX else ''}"
 
 
-def _why_kept(message: MessageDefinition) -> str:
+def _why_kept(message: ExtraDefinition) -> str:
     built_in = messages.MESSAGES[message.id]
     return (
         f"{message.place}: {message.name} (id {message.id}) is not the built-in {built_in.msgname}, which this program "

@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from dialects.extra.definitions import TYPES, Field, MessageDefinition
+from dialects.extra.definitions import TYPES, ExtraDefinition, Field
 from dialects.extra.dialect import Enum
 from dialects.messages import ExtraMessage, Message
 
 
-def make_class(definition: MessageDefinition, enums: Mapping[str, Enum]) -> type[ExtraMessage]:
+def make_class(definition: ExtraDefinition, enums: Mapping[str, Enum]) -> type[ExtraMessage]:
     """Return the class of a message."""
     fields, order = (*definition.fields, *definition.extensions), definition.wire_order
     return type(
@@ -38,13 +38,13 @@ def make_class(definition: MessageDefinition, enums: Mapping[str, Enum]) -> type
     )
 
 
-def make_decoder(message: type[ExtraMessage], definition: MessageDefinition) -> Callable[[bytes], Message]:
+def make_decoder(message: type[ExtraMessage], definition: ExtraDefinition) -> Callable[[bytes], Message]:
     """Return a function from a whole payload to the message."""
     order, unpack = definition.wire_order, message.unpacker.unpack
     return lambda payload: message(dict(_values(order, unpack(payload))))
 
 
-def make_encoder(message: type[ExtraMessage], definition: MessageDefinition) -> Callable[[Any], bytes]:
+def make_encoder(message: type[ExtraMessage], definition: ExtraDefinition) -> Callable[[Any], bytes]:
     """Return a function from the message to its whole payload."""
     order, pack = definition.wire_order, message.unpacker.pack
     return lambda given: pack(*_items(order, given.values))

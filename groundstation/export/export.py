@@ -20,7 +20,7 @@ from link.tlog.scan import MAX_RECORD, Gap, LogFrame, foreign_log
 from link.tlog.tlog import read_log
 
 
-class Choice(msgspec.Struct, frozen=True):
+class ExportChoice(msgspec.Struct, frozen=True):
     """Which messages are exported: from `begin` on, before `end`; patterns are names in upper case."""
 
     begin: LogTime | None = None
@@ -58,7 +58,7 @@ class Damage(msgspec.Struct, frozen=True):
     after: int
 
 
-class Result(msgspec.Struct):
+class ExportResult(msgspec.Struct):
     """What an export has done."""
 
     written: list[Written] = msgspec.field(default_factory=list)
@@ -84,11 +84,11 @@ KEPT_DAMAGE = 20
 class Export:
     """Reads `path` and writes the outputs. Files appear when all of it is done, and not at all otherwise."""
 
-    def __init__(self, path: str, outputs: Sequence[Output], choice: Choice) -> None:
+    def __init__(self, path: str, outputs: Sequence[Output], choice: ExportChoice) -> None:
         self._path = path
         self._outputs = outputs
         self._choice = choice
-        self.result = Result()
+        self.result = ExportResult()
         self.size = 0
         """Bytes of the log."""
 
@@ -124,7 +124,7 @@ class Export:
 class _Pass:
     """Goes through the records of a log. Raises ExportError if there is none."""
 
-    def __init__(self, path: str, file: BinaryIO, choice: Choice, result: Result) -> None:
+    def __init__(self, path: str, file: BinaryIO, choice: ExportChoice, result: ExportResult) -> None:
         if foreign := foreign_log(file.read(MAX_RECORD)):
             raise ExportError(f"{path}: {foreign}")
         begin = next((each.stamp for part in read_log(file) for each in part if isinstance(each, LogFrame)), None)

@@ -15,7 +15,7 @@ from groundstation.disk.new_file import NewFile
 from groundstation.export.exporter import LogInfo
 from groundstation.export.log_time import iso_time
 from groundstation.export.sample import Sample
-from groundstation.export.track import Position, Remark, Track, Tracks
+from groundstation.export.track import Position, RecordedTrack, Remark, Tracks
 
 _XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
 GPX = "http://www.topografix.com/GPX/1/1"
@@ -29,7 +29,7 @@ class MapFormat(msgspec.Struct, frozen=True):
     """Returns the lines of a point."""
     pause: str
     """Lines between two segments of a track."""
-    lines: Callable[[Tracks, LogInfo], Iterator[str | Track]]
+    lines: Callable[[Tracks, LogInfo], Iterator[str | RecordedTrack]]
     """Yields the lines of the file, and each track where its points are."""
 
 
@@ -57,7 +57,7 @@ class MapExport:
         """Write the file."""
         file = self.target.file
         for each in self._form.lines(self._tracks, self._log):
-            if isinstance(each, Track):
+            if isinstance(each, RecordedTrack):
                 file.writelines(each.read())
             else:
                 file.write(f"{each}\n".encode())
@@ -68,7 +68,7 @@ class MapExport:
         self.target.discard()
 
 
-def _gpx_lines(tracks: Tracks, log: LogInfo) -> Iterator[str | Track]:
+def _gpx_lines(tracks: Tracks, log: LogInfo) -> Iterator[str | RecordedTrack]:
     yield f'{_XML}<gpx version="1.1" creator="mavhelm" xmlns="{GPX}">'
     yield f"<metadata><name>{_text(log.name)}</name><time>{iso_time(log.begin)}</time></metadata>"
     for each in tracks.remarks:
@@ -80,7 +80,7 @@ def _gpx_lines(tracks: Tracks, log: LogInfo) -> Iterator[str | Track]:
     yield "</gpx>"
 
 
-def _kml_lines(tracks: Tracks, log: LogInfo) -> Iterator[str | Track]:
+def _kml_lines(tracks: Tracks, log: LogInfo) -> Iterator[str | RecordedTrack]:
     """Yield a line for each vehicle, on the ground."""
     yield f'{_XML}<kml xmlns="{KML}"><Document><name>{_text(log.name)}</name>'
     yield '<Style id="track"><LineStyle><color>ff3399ff</color><width>3</width></LineStyle></Style>'
@@ -112,7 +112,7 @@ def _kml_place(at: Position) -> str:
     return f"{at.longitude:.7f},{at.latitude:.7f},{at.altitude:.3f}"
 
 
-def _kml_head(system: int, track: Track) -> Iterator[str]:
+def _kml_head(system: int, track: RecordedTrack) -> Iterator[str]:
     assert track.first is not None
     assert track.last is not None
     begin, end = sorted((track.first.microseconds, track.last.microseconds))

@@ -39,7 +39,7 @@ class Remark(msgspec.Struct, frozen=True):
     position: Position
 
 
-class Track(msgspec.Struct):
+class RecordedTrack(msgspec.Struct):
     """The points of one vehicle, in a file without a name: a long track needs no memory. `write` formats a point."""
 
     write: Callable[[Position], str]
@@ -72,7 +72,7 @@ class Tracks:
 
     def __init__(self, write: Callable[[Position], str], between: str) -> None:
         self._write, self._between = write, between
-        self.of: dict[int, Track] = {}
+        self.of: dict[int, RecordedTrack] = {}
         """System id -> its track."""
         self.remarks: list[Remark] = []
         self.count = 0
@@ -104,7 +104,7 @@ class Tracks:
                 track.broken = True
             return
         if track is None:
-            track = self.of[sample.system] = Track(self._write, self._between)
+            track = self.of[sample.system] = RecordedTrack(self._write, self._between)
         track.estimated = isinstance(message, GlobalPositionInt)
         track.add(Position(sample.microseconds, *place, message.alt / 1000))
         self.count += 1

@@ -47,7 +47,7 @@ _NAMES = {MissionType.MISSION: "mission", MissionType.FENCE: "fence", MissionTyp
 _KINDS = tuple(_NAMES)
 
 
-class PlanChange(NamedTuple):
+class RecordedPlan(NamedTuple):
     """A plan that a vehicle has from a record on, or is seen to have."""
 
     offset: int
@@ -79,7 +79,7 @@ class _Transfer(msgspec.Struct):
     """Sequences of the items that are replaced, the others stay; None: all."""
 
     @classmethod
-    def of_part(cls, message: m.MissionWritePartialList, before: PlanChange | None) -> _Transfer:
+    def of_part(cls, message: m.MissionWritePartialList, before: RecordedPlan | None) -> _Transfer:
         """Return the upload of a part. It is never whole if the plan before is not known."""
         parts = range(message.start_index, message.end_index + 1)
         kept = before.items if before is not None else None
@@ -102,11 +102,11 @@ class PlanHistory:
     """Takes the messages of PLAN_IDS in the order of the file."""
 
     def __init__(self) -> None:
-        self.changes: list[PlanChange] = []
+        self.changes: list[RecordedPlan] = []
         self._open: dict[_Key, _Transfer] = {}
         self._items = 0
 
-    def add(self, frame: LogFrame, vehicles: Iterable[int]) -> list[PlanChange]:
+    def add(self, frame: LogFrame, vehicles: Iterable[int]) -> list[RecordedPlan]:
         """Add a message; return the changes that end with it. `vehicles`: their systems, as far as they are known."""
         message: Any = decode_frame(frame.message_id, frame.raw)
         target, from_vehicle = message.target_system, frame.system in vehicles
@@ -130,32 +130,32 @@ class PlanHistory:
         self.changes += found
         return found
 
-    def _newest(self, key: _Key) -> PlanChange | None:
+    def _newest(self, key: _Key) -> RecordedPlan | None:
         changes = reversed(self.changes)
         return next((each for each in changes if (each.system, each.kind) == (key.vehicle, key.kind)), None)
 
-    def _begin(self, key: _Key, transfer: _Transfer, frame: LogFrame) -> list[PlanChange]:
+    def _begin(self, key: _Key, transfer: _Transfer, frame: LogFrame) -> list[RecordedPlan]:
         self._open.pop(key, None)
         if len(self._open) >= MAX_OPEN:
             self._open.pop(next(iter(self._open)))
         self._open[key] = transfer
         return self._end_download(key, transfer, frame)
 
-    def _add_item(self, key: _Key, sequence: int, frame: LogFrame) -> list[PlanChange]:
+    def _add_item(self, key: _Key, sequence: int, frame: LogFrame) -> list[RecordedPlan]:
         transfer = self._open.get(key)
         if transfer is None or not transfer.takes(sequence):
             return []
         transfer.items[sequence] = frame.at
         return self._end_download(key, transfer, frame)
 
-    def _end_download(self, key: _Key, transfer: _Transfer, frame: LogFrame) -> list[PlanChange]:
+    def _end_download(self, key: _Key, transfer: _Transfer, frame: LogFrame) -> list[RecordedPlan]:
         """Return the plan of a download that is whole; the ACK of the station may not be in the log."""
         if key.upload or key.kind not in _KINDS or len(transfer.items) < transfer.count:
             return []
         del self._open[key]
         return [self._change(key, MissionType(key.kind), transfer.offsets, transfer.plan_id, frame)]
 
-    def _end_upload(self, key: _Key, message: m.MissionAck, frame: LogFrame) -> list[PlanChange]:
+    def _end_upload(self, key: _Key, message: m.MissionAck, frame: LogFrame) -> list[RecordedPlan]:
         """Return the plans that a vehicle has accepted; before that it has the old ones."""
         transfer = self._open.pop(key, None)
         if transfer is None or message.type != MissionResult.ACCEPTED:
@@ -165,13 +165,13 @@ class PlanHistory:
 
     def _change(
         self, key: _Key, kind: MissionType, items: array[int] | None, plan_id: int, frame: LogFrame
-    ) -> PlanChange:
+    ) -> RecordedPlan:
         self._items += len(items or ())
         kept = items if self._items <= MAX_ITEMS else None
-        return PlanChange(frame.at, key.vehicle, kind, kept, plan_id if items else 0, key.upload)
+        return RecordedPlan(frame.at, key.vehicle, kind, kept, plan_id if items else 0, key.upload)
 
 
-def describe(change: PlanChange) -> str:
+def describe(change: RecordedPlan) -> str:
     """Return what a vehicle has accepted, in a few words."""
     name = _NAMES[change.kind]
     if change.items is None:

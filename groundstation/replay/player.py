@@ -12,7 +12,7 @@ from groundstation.intents.charts import PinSeries
 from groundstation.intents.vehicle import SelectNextVehicle, SelectVehicle
 from groundstation.replay.feed import BASE, BuildStation, StationFeed
 from groundstation.replay.log_index import LogIndex
-from groundstation.replay.plans import PlanChange
+from groundstation.replay.plans import RecordedPlan
 from groundstation.station.station import Station
 from groundstation.views.base import ViewRequest
 from groundstation.views.charts import FieldId, SeriesRequest
@@ -323,7 +323,7 @@ class ShownPlans:
         self._index = index
         self._station = station
         self._next = 0
-        newest: dict[tuple[int, int], tuple[int, PlanChange]] = {}
+        newest: dict[tuple[int, int], tuple[int, RecordedPlan]] = {}
         changes = index.findings.plans.changes
         while self._next < len(changes) and changes[self._next].offset < offset:
             change = changes[self._next]
@@ -339,7 +339,7 @@ class ShownPlans:
             self._next += 1
             self._show(self._next, changes[self._next - 1])
 
-    def _show(self, number: int, change: PlanChange) -> None:
+    def _show(self, number: int, change: RecordedPlan) -> None:
         contact = self._station.fleet.get(change.system)
         if contact is None:
             return

@@ -11,10 +11,10 @@ import msgspec
 
 from groundstation.ros.freshness import MAX_LATENESS, LatenessCheck
 from groundstation.ros.rmw.attachment import Attachment, gid_of
-from groundstation.ros.rmw.names import BEST_EFFORT_5, RELIABLE_10, Endpoint, Kind, Node
+from groundstation.ros.rmw.names import BEST_EFFORT_5, RELIABLE_10, Kind, RmwEndpoint, RmwNode
 from groundstation.ros.types import BadMessageError, RosTypes
 from groundstation.ros.vehicle import Values
-from groundstation.ros2.router import Router
+from groundstation.ros2.router import RosRouter
 from groundstation.ros2.wire import Arrived, Request, Wire, WireEvents
 
 MAX_CALLS = 32
@@ -29,7 +29,7 @@ Serve = Callable[[Any], Awaitable[Values]]
 class NodeNames(msgspec.Struct, frozen=True):
     """How the node is called, and where it lives."""
 
-    router: Router
+    router: RosRouter
     domain: int
     namespace: str
     name: str
@@ -47,7 +47,7 @@ class _Plan(msgspec.Struct):
 class _Topic(msgspec.Struct):
     """A topic that is published."""
 
-    endpoint: Endpoint
+    endpoint: RmwEndpoint
     gid: bytes
     count: int = 0
 
@@ -115,11 +115,11 @@ class Ros2Node(msgspec.Struct):
     # ---- events ----
 
     def _opened(self, session: str) -> None:
-        node = Node(self.names.domain, session, self.names.namespace, self.names.name)
+        node = RmwNode(self.names.domain, session, self.names.namespace, self.names.name)
         endpoints = []
         for number, plan in enumerate(self._plans, 1):
             whole = node.resolve(plan.name)
-            endpoint = Endpoint(node, number, plan.kind, whole, plan.type, self.types.hash(plan.type), plan.qos)
+            endpoint = RmwEndpoint(node, number, plan.kind, whole, plan.type, self.types.hash(plan.type), plan.qos)
             endpoints.append(endpoint)
             if plan.kind is Kind.PUBLISHER:
                 self._topics[plan.name] = _Topic(endpoint, gid_of(endpoint.token))

@@ -27,14 +27,14 @@ SETTINGS: dict[str, Any] = {
 _LOCATOR = re.compile(r"(tcp|udp|tls|quic|ws)/\S+:\d+(\?\S*)?")
 
 
-class Router(msgspec.Struct, frozen=True):
+class RosRouter(msgspec.Struct, frozen=True):
     """The router of a session."""
 
     locator: str
     config: zenoh.Config
 
 
-def load_router(text: str) -> Router:
+def load_router(text: str) -> RosRouter:
     """Return the router of a locator such as tcp/localhost:7447, or of a file. Raises LinkError, in one line."""
     if ".json" in text:
         return _load_file(text)
@@ -42,10 +42,10 @@ def load_router(text: str) -> Router:
         raise LinkError(f"{text!r} is neither a locator such as tcp/localhost:7447 nor a file .json5")
     config = zenoh.Config()
     apply_settings(config, SETTINGS | {"connect/endpoints": [text]})
-    return Router(text, config)
+    return RosRouter(text, config)
 
 
-def _load_file(text: str) -> Router:
+def _load_file(text: str) -> RosRouter:
     path = Path(text).expanduser()
     try:
         path.read_bytes()
@@ -59,4 +59,4 @@ def _load_file(text: str) -> Router:
     if not isinstance(locators, list) or not locators:
         raise LinkError(f"{path} names no router; add it to connect/endpoints")
     apply_settings(config, SETTINGS)
-    return Router(str(locators[0]), config)
+    return RosRouter(str(locators[0]), config)

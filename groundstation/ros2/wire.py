@@ -17,8 +17,8 @@ import msgspec
 import zenoh
 
 from groundstation.ros.rmw.attachment import Attachment, decode, gid_of
-from groundstation.ros.rmw.names import Endpoint, Kind, publisher_tokens
-from groundstation.ros2.router import Router
+from groundstation.ros.rmw.names import Kind, RmwEndpoint, publisher_tokens
+from groundstation.ros2.router import RosRouter
 from link.fleet.router_session import RouterSession, direct
 
 CLOSE_WITHIN = 2.0
@@ -31,7 +31,7 @@ LONGEST_MESSAGE = 65536
 class Arrived(NamedTuple):
     """A message of a topic."""
 
-    endpoint: Endpoint
+    endpoint: RmwEndpoint
     data: bytes
     attachment: Attachment
 
@@ -39,7 +39,7 @@ class Arrived(NamedTuple):
 class Request(msgspec.Struct, frozen=True):
     """A request to a service; `reply` takes the response, once."""
 
-    endpoint: Endpoint
+    endpoint: RmwEndpoint
     data: bytes
     attachment: Attachment
     reply: Callable[[bytes], None]
@@ -61,7 +61,7 @@ class WireEvents(msgspec.Struct, frozen=True):
 class Wire:
     """One session, from start() to close()."""
 
-    def __init__(self, router: Router, events: WireEvents) -> None:
+    def __init__(self, router: RosRouter, events: WireEvents) -> None:
         self._events = events
         self._loop = asyncio.get_running_loop()
         self._held: list[Any] = []
@@ -74,7 +74,7 @@ class Wire:
         """Connect, and try again until it succeeds."""
         self._router.start()
 
-    def declare(self, domain: int, tokens: Sequence[str], endpoints: Sequence[Endpoint]) -> None:
+    def declare(self, domain: int, tokens: Sequence[str], endpoints: Sequence[RmwEndpoint]) -> None:
         """Show the tokens; take the messages and requests of the endpoints."""
         session, self._held = self._router.session, []
         if session is None:  # lost meanwhile
@@ -107,7 +107,7 @@ class Wire:
     def _failed(self, problem: str) -> None:
         self._call(self._events.problem, problem)
 
-    def _subscribe(self, session: zenoh.Session, domain: int, endpoint: Endpoint) -> None:
+    def _subscribe(self, session: zenoh.Session, domain: int, endpoint: RmwEndpoint) -> None:
         def take(sample: zenoh.Sample) -> None:
             attachment = decode(bytes(sample.attachment or b""))
             data = bytes(sample.payload)
@@ -125,7 +125,7 @@ class Wire:
         self._held.append(session.declare_subscriber(endpoint.key, direct(take)))
         self._held.append(session.liveliness().declare_subscriber(tokens, direct(note)))
 
-    def _query_taker(self, endpoint: Endpoint) -> Callable[[zenoh.Query], None]:
+    def _query_taker(self, endpoint: RmwEndpoint) -> Callable[[zenoh.Query], None]:
         def take(query: zenoh.Query) -> None:
             attachment = decode(bytes(query.attachment or b""))
             data = bytes(query.payload or b"")

@@ -13,7 +13,7 @@ from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.driving.permission import Permission
 from groundstation.station.intent_handler import Rows
-from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_detail import MessageInspector
 from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.station.notes.station_notes import StationNotes
 from groundstation.station.views.param_texts import ParamTexts
@@ -30,7 +30,7 @@ class ScreenFeed(DoctorFeed):
         super().__init__(parts)
         fleet, links = parts.fleet, parts.links
         self._traffic = MessageTraffic(*parts.ids)
-        self._detail = MessageDetail(self._traffic)
+        self._detail = MessageInspector(self._traffic)
         self._charts = ChartRecorder(fleet, self._traffic, links.stats, links.timesync)
         self.notes = StationNotes(parts.operator, fleet)
         parts.log.listener = self.notes.add_line

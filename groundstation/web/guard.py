@@ -41,7 +41,7 @@ class WebRequest(msgspec.Struct, frozen=True):
     cookie: str | None
 
 
-class Refusal(msgspec.Struct, frozen=True):
+class RequestRefusal(msgspec.Struct, frozen=True):
     """An HTTP status and one line."""
 
     status: int
@@ -60,15 +60,15 @@ class Guard(msgspec.Struct, frozen=True):
         """Name of the cookie: browsers do not keep the ports of a host apart."""
         return f"mavhelm-{self.port}"
 
-    def refuse(self, request: WebRequest) -> Refusal | None:
+    def refuse(self, request: WebRequest) -> RequestRefusal | None:
         """Return why a request is not answered; None if it is."""
         names = {f"{host}:{self.port}" for host in HOSTS}
         if len(request.hosts) != 1 or request.hosts[0].lower() not in names:
-            return Refusal(403, f"wrong Host: open http://127.0.0.1:{self.port}")
+            return RequestRefusal(403, f"wrong Host: open http://127.0.0.1:{self.port}")
         if not self._may_origin(request):
-            return Refusal(403, "wrong Origin: only this server's own page may open it")
+            return RequestRefusal(403, "wrong Origin: only this server's own page may open it")
         if not self.admits(request):
-            return Refusal(401, "no valid token: open the address that `groundstation serve --web` has printed")
+            return RequestRefusal(401, "no valid token: open the address that `groundstation serve --web` has printed")
         return None
 
     def admits(self, request: WebRequest) -> bool:

@@ -64,7 +64,7 @@ def read_frame(data: bytes, framer: Framer | None = None) -> Frame | None:
     return frames[0] if len(frames) == 1 and frames[0][4] == data else None
 
 
-class Place(msgspec.Struct, frozen=True):
+class FleetPlace(msgspec.Struct, frozen=True):
     """What a key says of the frame under it."""
 
     sender: str
@@ -129,7 +129,7 @@ class FleetKeys(msgspec.Struct, frozen=True):
         word = f"{(role or needed_role(frame)).word}/" if self.me else ""
         return f"{base}/{word}{traffic_class(frame[0]).word}/{message_word(frame[0])}"
 
-    def parse(self, key: str) -> Place | None:
+    def parse(self, key: str) -> FleetPlace | None:
         """Return what a key says of the frame under it; None if it is the key of no frame to this program."""
         chunks = key.split("/")
         roles, rest = chunks[_CHUNKS:-2], chunks[-2:]
@@ -139,7 +139,7 @@ class FleetKeys(msgspec.Struct, frozen=True):
         if message_id is None or traffic_class(message_id).word != rest[0]:
             return None
         sender = chunks[2] if self.me else "/".join(chunks[4:_CHUNKS])
-        return Place(sender, message_id, "".join(roles), rest[0] == TELEMETRY.word)
+        return FleetPlace(sender, message_id, "".join(roles), rest[0] == TELEMETRY.word)
 
     @property
     def _base(self) -> str:
@@ -151,10 +151,10 @@ class KeyReader:
 
     def __init__(self, keys: FleetKeys) -> None:
         self._keys = keys
-        self._places: dict[str, Place | None] = {}
+        self._places: dict[str, FleetPlace | None] = {}
         self._framer = new_framer()
 
-    def find(self, key: str) -> Place | None:
+    def find(self, key: str) -> FleetPlace | None:
         """Return what a key says, as FleetKeys.parse(); may be called from any thread."""
         place = self._places.get(key, self)
         if place is self:
@@ -163,7 +163,7 @@ class KeyReader:
             place = self._places[key] = self._keys.parse(key)
         return place  # type: ignore[return-value]
 
-    def read(self, key: str, data: bytes) -> tuple[Place, Frame] | None:
+    def read(self, key: str, data: bytes) -> tuple[FleetPlace, Frame] | None:
         """Return what arrived; None unless `data` is exactly the one frame that its key names."""
         place, frame = self.find(key), read_frame(data, self._framer)
         return None if place is None or frame is None or not place.fits(frame) else (place, frame)

@@ -20,7 +20,7 @@ from link.fleet.arrivals import PACE, Arrivals
 from link.fleet.brevity import BriefTelemetry
 from link.fleet.config import VEHICLE_ROLE, FleetConfig, load_config
 from link.fleet.inbox import BATCH, Inbox
-from link.fleet.keys import MAX_KEYS, FleetKeys, KeyReader, Place, new_framer, read_frame
+from link.fleet.keys import MAX_KEYS, FleetKeys, FleetPlace, KeyReader, new_framer, read_frame
 from link.fleet.presence import Presence
 from link.fleet.rights.circumstances import Circumstances
 from link.fleet.roles import WatchCondition, depends_on_content, needed_role, target_of, watch_condition
@@ -256,7 +256,7 @@ class FleetTransport:
         taken, more = self._inbox.take(now)
         return taken + fresh, more or not self._arrivals.is_empty
 
-    def _check(self, key: str, data: bytes) -> Place | None:
+    def _check(self, key: str, data: bytes) -> FleetPlace | None:
         """Return who sent a frame, if it is the one that its key names."""
         found = self._reader.read(key, data)
         if found is None:
@@ -266,7 +266,7 @@ class FleetTransport:
         place, frame = found
         return place if self._keys.me or self._is_allowed(place, frame) else None
 
-    def _is_allowed(self, place: Place, frame: Frame) -> bool:
+    def _is_allowed(self, place: FleetPlace, frame: Frame) -> bool:
         """Return whether a frame to this vehicle may come from its sender now."""
         now = time.monotonic()
         if place.is_conditional(frame) and not self._circumstances.allows_watcher(frame, place.sender, now):

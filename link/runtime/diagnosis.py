@@ -42,7 +42,7 @@ class Finding(msgspec.Struct, frozen=True):
     """What to do; "" without a remedy."""
 
 
-class Row(msgspec.Struct, Generic[Found], frozen=True):
+class ReportRow(msgspec.Struct, Generic[Found], frozen=True):
     """One row of a report."""
 
     id: str
@@ -58,9 +58,9 @@ class Check(msgspec.Struct, Generic[Facts, Found], frozen=True):
     find: Callable[[Facts], Found]
 
 
-def run_checks(checks: Iterable[Check[Facts, Found]], facts: Facts) -> tuple[Row[Found], ...]:
+def run_checks(checks: Iterable[Check[Facts, Found]], facts: Facts) -> tuple[ReportRow[Found], ...]:
     """Return what each check of a table has found, in order."""
-    return tuple(Row(each.id, each.title, each.find(facts)) for each in checks)
+    return tuple(ReportRow(each.id, each.title, each.find(facts)) for each in checks)
 
 
 def ok(evidence: str) -> Finding:
@@ -89,14 +89,14 @@ def fault_of(text: str) -> Finding:
     return fault(evidence, advice)
 
 
-def format_row(row: Row[Finding]) -> Iterator[str]:
+def format_row(row: ReportRow[Finding]) -> Iterator[str]:
     """Return the row as lines: what was found, and below it what to do."""
     yield f"{MARKS[row.found.health]:<3}{row.title:<{TITLE_WIDTH}}{row.found.evidence}"
     if row.found.advice and row.found.health in ADVISED:
         yield f"{'':<{TITLE_WIDTH + 3}}-> {row.found.advice}"
 
 
-def row_record(row: Row[Finding]) -> dict[str, str]:
+def row_record(row: ReportRow[Finding]) -> dict[str, str]:
     """Return the row for JSON."""
     return {
         "row": row.id,
@@ -106,6 +106,6 @@ def row_record(row: Row[Finding]) -> dict[str, str]:
     }
 
 
-def find_faults(rows: Iterable[Row[Finding]]) -> list[Row[Finding]]:
+def find_faults(rows: Iterable[ReportRow[Finding]]) -> list[ReportRow[Finding]]:
     """Return the rows that are faults."""
     return [row for row in rows if row.found.health is Health.FAULT]

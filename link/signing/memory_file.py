@@ -9,7 +9,7 @@ import msgspec
 from link.runtime.whole_file import PRIVATE, replace_file
 from link.signing.signature import STAMP_MAX
 from link.signing.signing import SigningMemory
-from link.signing.streams import MAX_SPANS, MAX_STREAMS, Span, Stream
+from link.signing.streams import MAX_SPANS, MAX_STREAMS, SignedStream, Span
 
 FILE = "signing.json"
 """Name of the file, beside the key file."""
@@ -48,7 +48,10 @@ def load_memory(path: Path) -> SigningMemory:
     stamps += [stamp for row in content.spans for stamp in row[1:]]
     if not all(0 <= stamp <= STAMP_MAX for stamp in stamps) or not _fits(content):
         raise MemoryFileError(f"{path}: damaged; remove it, once the computer's clock is right")
-    newest, spans = {Stream(*row[:4]): row[4] for row in content.streams}, tuple(Span(*row) for row in content.spans)
+    newest, spans = (
+        {SignedStream(*row[:4]): row[4] for row in content.streams},
+        tuple(Span(*row) for row in content.spans),
+    )
     return SigningMemory(content.stamp, newest, content.floors, spans, content.ended)
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from link.signing.clock import TICKS, SigningClock
 from link.signing.keys import KeyRing, SigningKey
 from link.signing.signature import STAMP_MAX, SecretHash
-from link.signing.streams import Span, Stream, StreamTable
+from link.signing.streams import SignedStream, Span, StreamTable
 from link.signing.verifier import AHEAD_MAX, NEW_STREAM_WINDOW, Verifier
 
 CRASH_TIME = NEW_STREAM_WINDOW / TICKS
@@ -23,7 +23,7 @@ class SigningMemory:
 
     stamp: int = 0
     """Time of the signing clock, 10 us since 2015-01-01; 0: no earlier run."""
-    newest: Mapping[Stream, int] = field(default_factory=dict)
+    newest: Mapping[SignedStream, int] = field(default_factory=dict)
     floors: Mapping[str, int] = field(default_factory=dict)
     """Of streams that lost their place (streams.py)."""
     spans: tuple[Span, ...] = ()

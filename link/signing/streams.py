@@ -24,7 +24,7 @@ SPAN = 30 * 86_400 * 100_000
 """Length of a span: 30 days. A clock that is years ahead is set right before long."""
 
 
-class Stream(NamedTuple):
+class SignedStream(NamedTuple):
     """Who sends, over which link, with which key."""
 
     key: str
@@ -48,12 +48,12 @@ class StreamTable:
 
     def __init__(
         self,
-        newest: Mapping[Stream, int] | None = None,
+        newest: Mapping[SignedStream, int] | None = None,
         floors: Mapping[str, int] | None = None,
         spans: Iterable[Span] = (),
     ) -> None:
-        self.newest: dict[Stream, int] = {}
-        self.stored: set[Stream] = set()
+        self.newest: dict[SignedStream, int] = {}
+        self.stored: set[SignedStream] = set()
         """Those of the last run that have brought nothing in this one."""
         self._counts: Counter[str] = Counter()
         self.floors: dict[str, int] = dict(floors or {})
@@ -64,7 +64,7 @@ class StreamTable:
             self.record(stream, stamp)
         self.stored.update(self.newest)
 
-    def is_replay(self, stream: Stream, stamp: int) -> bool:
+    def is_replay(self, stream: SignedStream, stamp: int) -> bool:
         """Return whether a timestamp is not newer than all of its stream."""
         last = self.newest.get(stream)
         if stamp <= (self.floors.get(stream.key, -1) if last is None else last):
@@ -96,7 +96,7 @@ class StreamTable:
         after, until = min([after, *(each.after for each in joined)]), max([until, *(each.until for each in joined)])
         self.spans = [*kept, Span(key, after, until)][-MAX_SPANS:]
 
-    def record(self, stream: Stream, stamp: int) -> None:
+    def record(self, stream: SignedStream, stamp: int) -> None:
         """Note the newest timestamp of a stream."""
         if stream not in self.newest:
             if len(self.newest) >= MAX_STREAMS:
@@ -105,7 +105,7 @@ class StreamTable:
         self.newest[stream] = stamp
         self.stored.discard(stream)
 
-    def is_running(self, stream: Stream) -> bool:
+    def is_running(self, stream: SignedStream) -> bool:
         """Return whether a stream has brought a frame in this run."""
         return stream in self.newest and stream not in self.stored
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from link.signing.clock import DAY, FOLLOWED_MAX, TICKS, SigningClock
 from link.signing.keys import SigningKey
 from link.signing.signature import SecretHash, link_and_stamp
-from link.signing.streams import MAX_STREAMS, Stream, StreamTable
+from link.signing.streams import MAX_STREAMS, SignedStream, StreamTable
 
 NEW_STREAM_WINDOW = 60 * TICKS
 """How far the first timestamp of a stream in this run may be behind our clock: the specification's minute."""
@@ -106,7 +106,7 @@ class Verifier:
         if known is None:
             return Refusal.BAD_SIGNATURE
         link_id, stamp = link_and_stamp(frame)
-        stream = Stream(known.fingerprint, system, component, link_id)
+        stream = SignedStream(known.fingerprint, system, component, link_id)
         streams = self.streams
         if streams.is_replay(stream, stamp):
             return Refusal.REPLAYED
@@ -146,7 +146,7 @@ class Verifier:
             return own
         return max(own, int(now * TICKS + self._offsets[fingerprint]))
 
-    def _is_too_old(self, stream: Stream, stamp: int, now: float) -> bool:
+    def _is_too_old(self, stream: SignedStream, stamp: int, now: float) -> bool:
         system, behind = stream.system, self._reference(stream.key, now) - stamp
         if behind <= (CRASH_WINDOW if now < self._crash_until else NEW_STREAM_WINDOW):
             self.behind.pop(system, None)

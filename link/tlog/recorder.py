@@ -30,7 +30,7 @@ SLOW = "the disk is too slow, frames are missing"
 Batch = list[tuple[float, Sequence[bytes]]]
 
 
-class LogFile(Protocol):
+class TlogFile(Protocol):
     """An open file, used only in the recorder's thread."""
 
     def write(self, data: bytes) -> None:
@@ -65,7 +65,7 @@ class Recorder:
         self._size = 0
         self._handed_over = float("-inf")
         self._worker = Worker("recorder", round(PENDING * PERIOD / period))
-        self._file: LogFile | None = None
+        self._file: TlogFile | None = None
 
     @property
     def failure(self) -> str | None:
@@ -77,7 +77,7 @@ class Recorder:
         """Why frames are not recorded, or not all, in one line."""
         return self._failure or (SLOW if self.lost else None)
 
-    def start(self, open_file: Callable[[], LogFile]) -> None:
+    def start(self, open_file: Callable[[], TlogFile]) -> None:
         """Start a new file, opened in the thread; it begins with the current batch. Clears errors.
 
         The file before ends with the same batch: without it, a drive shorter than a period would leave an empty file.
@@ -127,7 +127,7 @@ class Recorder:
 
     # ---- in the thread ----
 
-    def _open(self, open_file: Callable[[], LogFile]) -> None:
+    def _open(self, open_file: Callable[[], TlogFile]) -> None:
         self._close()
         self._failure, self._since, self._newest = None, self._offset(), 0  # errors of the file before are over
 

@@ -25,7 +25,7 @@ from link.signing.keys import SigningKey
 from link.signing.role import Role
 from link.signing.signature import link_and_stamp
 from link.signing.signing import Signing, SigningMemory
-from link.signing.streams import Stream
+from link.signing.streams import SignedStream
 from tests.link.signing.signed import DAY, DRIVER, NOON, NOW, WATCHER, keep, signed
 from tests.vehicle.bench import BEAT, MESSAGE_IDS
 from vehicle.params import Params
@@ -239,7 +239,7 @@ def test_a_memory_that_was_poisoned_before_is_no_obstacle(synchronized: bool) ->
     assert (newest < NOW + DAY) is synchronized
 
 
-def _streams() -> list[Stream]:
+def _streams() -> list[SignedStream]:
     signing = keep(DRIVER)
     signing.verifier.check(signed(), 255, 190, 0.0)
     return list(signing.memory(0.0).newest)

@@ -28,7 +28,7 @@ from vehicle.commands.params import ParamService
 from vehicle.commands.preflight import PreflightCommands
 from vehicle.commands.preflight_storage import PreflightStorage
 from vehicle.commands.reboot import RebootRequest
-from vehicle.commands.requests import MessageRequests
+from vehicle.commands.requests import MessageRequestHandler
 from vehicle.commands.signing import Pairing, SigningCommands
 from vehicle.storage.logbook import Logbook, LogRecorder
 from vehicle.storage.param_store import ParamStore
@@ -63,7 +63,7 @@ class Dispatcher:
         go_to = GoToItems(context, guided.drive_to)
         self._mission = MissionService(context, do_items(do_tables), go_to.handle, stores.plans)
         self._files = FileServices(context, self.logbook, self._mission.folder())
-        requests = MessageRequests(reporting, self._files.message_builders())
+        requests = MessageRequestHandler(reporting, self._files.message_builders())
         storage = PreflightStorage(context, self._params, self._mission)
 
         self.commands: CommandTable = (

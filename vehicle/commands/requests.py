@@ -30,7 +30,7 @@ MAX_INTERVAL = 2147.0
 MessageBuilders = Mapping[int, Callable[[TelemetryView], m.Message]]
 
 
-class MessageRequests:
+class MessageRequestHandler:
     """Answers requests for messages and rates."""
 
     def __init__(self, reporting: Reporting, builders: MessageBuilders) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from link.protocol.log_tap import LogTap
 from link.tlog.recorder import Recorder
 from vehicle.storage.disk_folder import DiskFolder
-from vehicle.storage.tlog_files import MEGABYTE, SUFFIX, LogFiles, LogLimits, log_time
+from vehicle.storage.tlog_files import MEGABYTE, SUFFIX, FlightLogLimits, LogFiles, log_time
 
 LOGS = "logs"
 """Name of the default log folder, in the state folder."""
@@ -30,7 +30,7 @@ class VehicleRecorder:
 
     def start(self, files: int, megabytes_free: int) -> None:
         """Start a new log. Never blocks and never raises."""
-        limits = LogLimits(files, megabytes_free * MEGABYTE)
+        limits = FlightLogLimits(files, megabytes_free * MEGABYTE)
         self._recorder.start(lambda: self._files.open(limits))
 
     def stop(self) -> None:

@@ -33,7 +33,7 @@ _NAME = re.compile(r"(\d{8})(?:_(\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ))?\.tlog")
 _TIME = "%Y-%m-%dT%H-%M-%SZ"
 
 
-class LogLimits(NamedTuple):
+class FlightLogLimits(NamedTuple):
     """Limits for the space of older logs."""
 
     files: int
@@ -90,7 +90,7 @@ class LogFiles:
         if not os.access(self._folder, os.W_OK | os.X_OK):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self._folder))
 
-    def open(self, limits: LogLimits) -> SplitFile:
+    def open(self, limits: FlightLogLimits) -> SplitFile:
         """Start a new log after removing the oldest ones as needed; it does so for each file. Raises OSError."""
         self.require_writable()
         return SplitFile(
@@ -101,7 +101,7 @@ class LogFiles:
             sync_interval=SYNC_INTERVAL,
         )
 
-    def _open_within(self, limits: LogLimits) -> RawFile:
+    def _open_within(self, limits: FlightLogLimits) -> RawFile:
         self.remove_oldest(limits)
         return self.open_next_file()
 
@@ -124,7 +124,7 @@ class LogFiles:
         if self._free(self._folder) < FREE_SPACE_MIN:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self._folder))
 
-    def remove_oldest(self, limits: LogLimits) -> None:
+    def remove_oldest(self, limits: FlightLogLimits) -> None:
         """Remove the oldest logs until `limits` are met. Raises OSError."""
         names = self._names()
         while names and (len(names) >= limits.files or self._free(self._folder) < limits.free):

@@ -31,7 +31,7 @@ class Kind(StrEnum):
     CLIENT = "SC"
 
 
-class Node(msgspec.Struct, frozen=True):
+class RmwNode(msgspec.Struct, frozen=True):
     """A node of one session. `namespace` begins with a slash, as in ROS."""
 
     domain: int
@@ -57,10 +57,10 @@ class Node(msgspec.Struct, frozen=True):
         return f"{ADMIN_SPACE}/{self.domain}/{self.session}/0/{entity}/{kind}/{names}"
 
 
-class Endpoint(msgspec.Struct, frozen=True):
+class RmwEndpoint(msgspec.Struct, frozen=True):
     """A publisher, subscription, service or client of a node. `number` is > 0 and its own in the session."""
 
-    node: Node
+    node: RmwNode
     number: int
     kind: Kind
     name: str

@@ -43,7 +43,7 @@ WATCHED_FOR = 2.0
 TAPS = "detail"
 
 
-class MessageDetail:
+class MessageInspector:
     """Keeps the messages of one kind, the chosen one, only while a screen requests it."""
 
     def __init__(self, traffic: MessageTraffic) -> None:

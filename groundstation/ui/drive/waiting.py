@@ -9,7 +9,7 @@ from textual.strip import Strip
 
 from groundstation.snapshot import Snapshot
 from groundstation.ui.display.display_state import DisplayState
-from groundstation.ui.drive.waiting_advice import Advice, AdviceKind, advise, describe_link
+from groundstation.ui.drive.waiting_advice import AdviceKind, WaitingAdvice, advise, describe_link
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
@@ -90,7 +90,7 @@ class WaitingPage(Instrument[WaitingValue]):
         return [*keys, (" starts a simulated rover, ", style(TEXT)), *connect]
 
 
-def _advice(advice: Advice, width: int) -> list[list[Part]]:
+def _advice(advice: WaitingAdvice, width: int) -> list[list[Part]]:
     """Return the lines of one advice; a command stays in one."""
     if advice.kind is AdviceKind.COMMAND:
         return [[(f"    {advice.text}", style(TEXT, bold=True))]]

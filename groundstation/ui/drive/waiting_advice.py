@@ -26,14 +26,14 @@ class AdviceKind(Enum):
     WARNING = auto()
 
 
-class Advice(msgspec.Struct, frozen=True):
+class WaitingAdvice(msgspec.Struct, frozen=True):
     """One line."""
 
     kind: AdviceKind
     text: str
 
 
-def describe_link(link: LinkView) -> Advice:
+def describe_link(link: LinkView) -> WaitingAdvice:
     """Return what a link has received so far, and what is wrong with that."""
     if not link.bytes_received:
         if link.dropped and link.name.startswith("udpout:"):
@@ -47,9 +47,9 @@ def describe_link(link: LinkView) -> Advice:
     return _warning(f"{link.name}: {link.frames} frames received{heard}, no HEARTBEAT of a vehicle{bad}")
 
 
-def advise(snapshot: Snapshot, quit_key: str) -> list[Advice]:
+def advise(snapshot: Snapshot, quit_key: str) -> list[WaitingAdvice]:
     """Return what to try, link after link; `quit_key` as it is printed."""
-    lines: list[Advice] = []
+    lines: list[WaitingAdvice] = []
     for text in snapshot.endpoints:
         try:
             endpoint = parse_endpoint(text)
@@ -60,7 +60,7 @@ def advise(snapshot: Snapshot, quit_key: str) -> list[Advice]:
     return lines
 
 
-def _listening(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[Advice]:
+def _listening(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[WaitingAdvice]:
     """For udpin and tcpin: who can send here, and how."""
     kind = "udpout" if endpoint.scheme == "udpin" else "tcpout"
     if is_loopback(endpoint.host):
@@ -82,7 +82,7 @@ def _listening(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> I
     yield _text(f"Other autopilots: send to {reachable[0]}, {protocol} port {endpoint.port}; firewalls must let it in.")
 
 
-def _sending(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[Advice]:
+def _sending(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[WaitingAdvice]:
     """For udpout and tcpout: what must listen at the other end."""
     kind = "udpin" if endpoint.scheme == "udpout" else "tcpin"
     if is_loopback(endpoint.host):
@@ -93,7 +93,7 @@ def _sending(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Ite
     yield _command(f"vehicle --config rover.toml {kind}:0.0.0.0:{endpoint.port}")
 
 
-def _serial(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[Advice]:
+def _serial(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[WaitingAdvice]:
     """For a serial port: what is wrong most often."""
     yield _text("Check that the vehicle and both radios have power, and at the cable:")
     yield _text("  TX goes to RX and RX to TX, and the grounds are connected")
@@ -101,7 +101,7 @@ def _serial(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iter
     yield _text("  the autopilot sends MAVLink on that port (ArduPilot: SERIALn_PROTOCOL 2)")
 
 
-def _fleet(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[Advice]:
+def _fleet(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[WaitingAdvice]:
     """For a router: what the vehicle starts, with a file of its own."""
     vehicle = endpoint.vehicle or "rover1"
     is_file = ".json" in endpoint.locator
@@ -111,23 +111,23 @@ def _fleet(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Itera
     yield _text("docs/fleet.md tells how its file is made, and what the router says of those who connect.")
 
 
-def _text(text: str) -> Advice:
-    return Advice(AdviceKind.TEXT, text)
+def _text(text: str) -> WaitingAdvice:
+    return WaitingAdvice(AdviceKind.TEXT, text)
 
 
-def _command(text: str) -> Advice:
-    return Advice(AdviceKind.COMMAND, text)
+def _command(text: str) -> WaitingAdvice:
+    return WaitingAdvice(AdviceKind.COMMAND, text)
 
 
-def _warning(text: str) -> Advice:
-    return Advice(AdviceKind.WARNING, text)
+def _warning(text: str) -> WaitingAdvice:
+    return WaitingAdvice(AdviceKind.WARNING, text)
 
 
 def _bracketed(host: str) -> str:
     return f"[{host}]" if ":" in host else host
 
 
-_BY_SCHEME: dict[str, Callable[[Endpoint, Sequence[str], str], Iterator[Advice]]] = {
+_BY_SCHEME: dict[str, Callable[[Endpoint, Sequence[str], str], Iterator[WaitingAdvice]]] = {
     "udpin": _listening,
     "tcpin": _listening,
     "udpout": _sending,

@@ -8,7 +8,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from groundstation.export.export import Choice, Export, Result
+from groundstation.export.export import Export, ExportChoice, ExportResult
 from groundstation.export.export import Output as ExportOutput
 from groundstation.export.exporter import ExportError, NothingToExportError
 from groundstation.export.log_time import FORMS, LogTime, describe_offset, parse_log_time
@@ -78,7 +78,7 @@ def _check_place(output: ExportOutput, *, overwrite: bool) -> None:
 async def run(session: None, options: argparse.Namespace, output: Output) -> int:
     """Write the outputs, and say what is missing in them."""
     patterns = tuple(each.upper() for each in options.messages)
-    export = Export(options.file, options.outputs, Choice(options.begin, options.end, patterns, options.system))
+    export = Export(options.file, options.outputs, ExportChoice(options.begin, options.end, patterns, options.system))
     try:
         told = time.monotonic()
         for done in export.steps():
@@ -98,7 +98,7 @@ async def run(session: None, options: argparse.Namespace, output: Output) -> int
     return _report(export.result, output)
 
 
-def _report(result: Result, output: Output) -> int:
+def _report(result: ExportResult, output: Output) -> int:
     for each in result.written:
         output.note(f"{each.count} {FORMATS[each.format].counts} in {each.path}")
     for empty in result.empty:
@@ -116,7 +116,7 @@ def _report(result: Result, output: Output) -> int:
     return ExitCode.DONE if result.whole else ExitCode.PARTLY
 
 
-def _print_losses(result: Result, output: Output) -> None:
+def _print_losses(result: ExportResult, output: Output) -> None:
     if result.damage:
         first = result.damage[0]
         parts = "1 damaged part" if result.damaged_parts == 1 else f"{result.damaged_parts} damaged parts"

@@ -100,7 +100,7 @@ class Ros1:
         python, name = self._options.python, f"mavhelm_{self._session.vehicle.system}"
         try:
             async with running_node(python, name, TOPICS) as node:
-                telemetry = Telemetry(self._session, node)
+                telemetry = Ros1Telemetry(self._session, node)
                 self._session.core.taps.append(telemetry.take)
                 try:
                     while await self._handle(await node.read(), telemetry):
@@ -114,7 +114,7 @@ class Ros1:
         finally:
             self._forget()
 
-    async def _handle(self, line: dict[str, Any], telemetry: Telemetry) -> bool:
+    async def _handle(self, line: dict[str, Any], telemetry: Ros1Telemetry) -> bool:
         """Handle a line of the node; return whether it goes on. Raises VerbError."""
         note = self._output.note
         match line:
@@ -154,7 +154,7 @@ class Ros1:
             self._driver.remove(key)
 
 
-class Telemetry:
+class Ros1Telemetry:
     """Telemetry of the vehicle, published by a node once it is ready."""
 
     def __init__(self, session: VerbSession, node: NodeProcess) -> None:

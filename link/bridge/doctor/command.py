@@ -19,7 +19,7 @@ from link.bridge.doctor.table import examine
 from link.endpoint import EndpointError, endpoint_help, parse_endpoints
 from link.runtime import stdio
 from link.runtime.command_line import USAGE_ERROR, CommandLineParser
-from link.runtime.diagnosis import STOPPED, Finding, Row, find_faults, format_row, row_record
+from link.runtime.diagnosis import STOPPED, Finding, ReportRow, find_faults, format_row, row_record
 
 DEFAULT_TIME = 5.0
 """s: each system sends a HEARTBEAT a second, and three frames prove another dialect."""
@@ -75,7 +75,7 @@ def _examine(options: argparse.Namespace) -> int:
     return _finish(faults, options.json)
 
 
-def _print(endpoint: str, found: Iterable[Row[Finding]], as_json: bool) -> list[dict[str, str]]:
+def _print(endpoint: str, found: Iterable[ReportRow[Finding]], as_json: bool) -> list[dict[str, str]]:
     """Print the rows of an endpoint ("" for those of the machine); return its faults for JSON."""
     rows, of = tuple(found), {"endpoint": endpoint} if endpoint else {}
     lines = [endpoint] if endpoint else []

@@ -21,7 +21,7 @@ class Source(msgspec.Struct, frozen=True):
     """Its newest frame was signed."""
 
 
-class Route(msgspec.Struct, frozen=True):
+class ForwardRoute(msgspec.Struct, frozen=True):
     """Where the frames of one source would go."""
 
     system: int
@@ -63,7 +63,7 @@ class EndpointFacts(msgspec.Struct, frozen=True):
     holders: tuple[str, ...] = ()
     """Programs that have its port."""
     heard: TrafficSample = TrafficSample()
-    routes: tuple[Route, ...] = ()
+    routes: tuple[ForwardRoute, ...] = ()
     alone: bool = False
     """No other endpoint was given."""
     others_heard: bool = False

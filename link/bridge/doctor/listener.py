@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from dialects import codec
 from dialects.messages import Heartbeat
-from link.bridge.doctor.facts import Route, Source, TrafficSample
+from link.bridge.doctor.facts import ForwardRoute, Source, TrafficSample
 from link.protocol.frame import MAX_UNKNOWN, Frame, FramerCounts, find_mismatches
 from link.protocol.framer import Framer
 from link.routing.router import Router
@@ -73,15 +73,15 @@ class EndpointListener:
             sources=tuple(endpoint.sources[key] for key in sorted(endpoint.sources)),
         )
 
-    def routes(self, link: int, names: Sequence[str]) -> tuple[Route, ...]:
+    def routes(self, link: int, names: Sequence[str]) -> tuple[ForwardRoute, ...]:
         """Return where the sources of a link would be forwarded to; `names` of the links, "" for one that fails."""
         return tuple(self._route(link, key, names) for key in sorted(self._endpoints[link].sources))
 
-    def _route(self, link: int, key: tuple[int, int], names: Sequence[str]) -> Route:
+    def _route(self, link: int, key: tuple[int, int], names: Sequence[str]) -> ForwardRoute:
         ways = self._router.broadcast_links(link, key)
         doubles = (other for other, each in enumerate(self._endpoints) if other != link and key in each.sources)
         broadcasts = tuple(names[each] for each in sorted(ways) if names[each])
-        return Route(*key, broadcasts, tuple(names[each] for each in doubles))
+        return ForwardRoute(*key, broadcasts, tuple(names[each] for each in doubles))
 
     @staticmethod
     def _framer(endpoint: _Endpoint, address: Hashable) -> Framer | None:

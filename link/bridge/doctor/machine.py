@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from link.endpoint import DEFAULT_BAUD
-from link.runtime.diagnosis import Finding, Row, fault, ok, unknown, warn
+from link.runtime.diagnosis import Finding, ReportRow, fault, ok, unknown, warn
 from link.transport.processes import Kind, find_socket_holders
 from link.transport.serial_ports import SerialPort, find_serial_ports
 
@@ -13,15 +13,15 @@ USUAL_PORTS: tuple[tuple[Kind, int], ...] = (("udp", 14550), ("udp", 14551), ("u
 """Ports of ground stations, of a second one, of offboard programs (PX4), and of ArduPilot's simulator."""
 
 
-def examine_machine() -> Iterator[Row[Finding]]:
+def examine_machine() -> Iterator[ReportRow[Finding]]:
     """Yield a row for each serial port and each usual port."""
     ports = find_serial_ports()
     for port in ports:
-        yield Row(f"serial {port.path}", "serial", _serial(port))
+        yield ReportRow(f"serial {port.path}", "serial", _serial(port))
     if not ports:
-        yield Row("serial", "serial", unknown("no serial port is there", "plug the radio or autopilot in"))
+        yield ReportRow("serial", "serial", unknown("no serial port is there", "plug the radio or autopilot in"))
     for kind, number in USUAL_PORTS:
-        yield Row(f"{kind} {number}", f"{kind} {number}", _socket(kind, number))
+        yield ReportRow(f"{kind} {number}", f"{kind} {number}", _socket(kind, number))
 
 
 def _serial(port: SerialPort) -> Finding:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects.enums import Autopilot, type_name
-from link.bridge.doctor.facts import EndpointFacts, Route, Source
+from link.bridge.doctor.facts import EndpointFacts, ForwardRoute, Source
 from link.endpoint import LISTENING
 from link.runtime.diagnosis import Finding, fault, ok, unknown, warn
 
@@ -124,7 +124,7 @@ def routes(facts: EndpointFacts) -> Finding:
     return ok("; ".join(map(_route, facts.routes[:SHOWN])))
 
 
-def _route(route: Route) -> str:
+def _route(route: ForwardRoute) -> str:
     name = f"{route.system}/{route.component}"
     where = ", ".join(route.broadcasts)
     return f"{name} -> {where}" if where else f"{name} -> nobody is there yet"

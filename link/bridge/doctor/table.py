@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from link.bridge.doctor import rows
 from link.bridge.doctor.facts import EndpointFacts
-from link.runtime.diagnosis import Check, Finding, Row, run_checks
+from link.runtime.diagnosis import Check, Finding, ReportRow, run_checks
 
 ROWS: tuple[Check[EndpointFacts, Finding], ...] = (
     Check("opens", "opens", rows.opens),
@@ -17,6 +17,6 @@ ROWS: tuple[Check[EndpointFacts, Finding], ...] = (
 )
 
 
-def examine(facts: EndpointFacts) -> tuple[Row[Finding], ...]:
+def examine(facts: EndpointFacts) -> tuple[ReportRow[Finding], ...]:
     """Return all rows of one endpoint."""
     return run_checks(ROWS, facts)

@@ -15,7 +15,7 @@ from link.core import Outgoing, Received
 from link.services.ftp.download import Download
 from link.services.ftp.job import MAX_SIZE, TRIES, FtpJob, FtpLine, FtpOperation, FtpOutcome, encode_path
 from link.services.ftp.protocol import SEQUENCE_MASK, parse_packet
-from link.services.ftp.single import ListFolder, SingleRequest
+from link.services.ftp.single import ListFolderRequest, SingleRequest
 from link.services.ftp.upload import Upload
 
 JobFactory = Callable[[FtpLine, bytes], FtpJob]
@@ -66,7 +66,7 @@ class FtpClient:
 
     def list_folder(self, path: str, now: float) -> int:
         """List a folder; return the number of the job."""
-        return self._add(FtpOperation.LIST, path, now, lambda line, raw: ListFolder(line, path, raw))
+        return self._add(FtpOperation.LIST, path, now, lambda line, raw: ListFolderRequest(line, path, raw))
 
     def remove(self, path: str, now: float) -> int:
         """Remove a file; return the number of the job."""

@@ -15,7 +15,7 @@ CHECKSUM_TRIES = 48
 
 
 @dataclass(slots=True)
-class ListFolder:
+class ListFolderRequest:
     """An FtpJob."""
 
     line: FtpLine

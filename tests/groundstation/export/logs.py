@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from dialects import messages as m
-from groundstation.export.export import Choice, Export, Output, Result
+from groundstation.export.export import Export, ExportChoice, ExportResult, Output
 from link.tlog.tlog import encode_record
 from tests.link.frames import frame
 
@@ -74,9 +74,9 @@ def battery(current: int = 1234, remaining: int = 55) -> m.BatteryStatus:
     )  # fmt: skip
 
 
-def run(log: Path, *outputs: tuple[str, Path], choice: Choice | None = None) -> Result:
+def run(log: Path, *outputs: tuple[str, Path], choice: ExportChoice | None = None) -> ExportResult:
     """Export a log."""
-    export = Export(str(log), [Output(name, str(path)) for name, path in outputs], choice or Choice())
+    export = Export(str(log), [Output(name, str(path)) for name, path in outputs], choice or ExportChoice())
     for done in export.steps():
         assert 0 <= done <= export.size
     return export.result

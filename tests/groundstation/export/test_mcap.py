@@ -14,7 +14,7 @@ from rosbags.highlevel import AnyReader
 
 from dialects import messages as m
 from dialects.messages import MESSAGES
-from groundstation.export.export import Choice
+from groundstation.export.export import ExportChoice
 from groundstation.export.log_time import LogTime, iso_time
 from groundstation.export.mcap_file import RosType, type_name
 from tests.groundstation.export.logs import (
@@ -46,7 +46,7 @@ def of(path: Path, topic: str) -> list[Any]:
     return [message for name, _, message in read(path) if name == topic]
 
 
-def exported(tmp_path: Path, log: bytes, choice: Choice | None = None) -> Path:
+def exported(tmp_path: Path, log: bytes, choice: ExportChoice | None = None) -> Path:
     (tmp_path / "log.tlog").write_bytes(log)
     run(tmp_path / "log.tlog", ("mcap", tmp_path / "log.mcap"), choice=choice)
     return tmp_path / "log.mcap"
@@ -221,7 +221,7 @@ def test_unknown_current_and_percentage_are_nan(tmp_path: Path) -> None:
 
 
 def test_a_part_of_a_log_knows_the_vehicle_from_what_was_before(tmp_path: Path) -> None:
-    part = Choice(LogTime(1_000_000, from_start=True), patterns=("GPS_*", "MANUAL_CONTROL"))
+    part = ExportChoice(LogTime(1_000_000, from_start=True), patterns=("GPS_*", "MANUAL_CONTROL"))
     topics = {topic for topic, _, _ in read(exported(tmp_path, drive(), part))}
     assert topics == {"/sys1/comp1/GPS_RAW_INT", "/sys255/comp190/MANUAL_CONTROL", "/fix", "/cmd_vel"}
 

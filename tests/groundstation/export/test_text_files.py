@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from groundstation.export.export import Choice
+from groundstation.export.export import ExportChoice
 from groundstation.export.exporter import ExportError, NothingToExportError
 from groundstation.export.log_time import LogTime
 from groundstation.export.text_files import shortest
@@ -27,8 +27,8 @@ def log(tmp_path: Path) -> Path:
     return tmp_path / "log.tlog"
 
 
-def second(begin: float, end: float) -> Choice:
-    return Choice(LogTime(round(begin * 1e6), from_start=True), LogTime(round(end * 1e6), from_start=True))
+def second(begin: float, end: float) -> ExportChoice:
+    return ExportChoice(LogTime(round(begin * 1e6), from_start=True), LogTime(round(end * 1e6), from_start=True))
 
 
 def test_a_table_for_each_message(log: Path, tmp_path: Path) -> None:
@@ -47,7 +47,7 @@ def test_a_table_for_each_message(log: Path, tmp_path: Path) -> None:
 
 
 def test_one_message_is_one_table(log: Path, tmp_path: Path) -> None:
-    run(log, ("csv", tmp_path / "a.csv"), choice=Choice(patterns=("ATTITUDE",)))
+    run(log, ("csv", tmp_path / "a.csv"), choice=ExportChoice(patterns=("ATTITUDE",)))
     with (tmp_path / "a.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["pitch"] for row in rows] == ["-0.2"] * 20
@@ -110,7 +110,7 @@ def test_what_is_not_there_is_not_written(log: Path, tmp_path: Path) -> None:
     with pytest.raises(NothingToExportError):
         run(log, ("jsonl", tmp_path / "none.jsonl"), ("gpx", tmp_path / "none.gpx"), choice=second(60, 70))
     assert not list(tmp_path.glob("*none*"))
-    result = run(log, ("jsonl", tmp_path / "a.jsonl"), ("gpx", tmp_path / "a.gpx"), choice=Choice(system=255))
+    result = run(log, ("jsonl", tmp_path / "a.jsonl"), ("gpx", tmp_path / "a.gpx"), choice=ExportChoice(system=255))
     assert [each.path for each in result.empty] == [str(tmp_path / "a.gpx")]
     assert {each.name for each in tmp_path.iterdir()} == {"log.tlog", "a.jsonl"}
 
@@ -120,7 +120,7 @@ def test_an_export_that_is_given_up_leaves_nothing(log: Path, tmp_path: Path) ->
     from groundstation.export.table import FORMATS
 
     outputs = [Output(name, str(tmp_path / f"out.{name}")) for name in FORMATS if name != "csv"]
-    steps = Export(str(log), [*outputs, Output("csv", str(tmp_path / "tables"))], Choice()).steps()
+    steps = Export(str(log), [*outputs, Output("csv", str(tmp_path / "tables"))], ExportChoice()).steps()
     next(steps)
     assert len(list(tmp_path.iterdir())) == 1 + len(FORMATS)
     steps.close()

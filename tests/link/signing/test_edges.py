@@ -9,7 +9,7 @@ from dialects.messages import RoverOperatorPresence
 from link.signing.clock import FOLLOWED_MAX, TICKS, SigningClock, to_stamp
 from link.signing.signature import STAMP_MAX, SecretHash, is_signed, strip_signature
 from link.signing.signing import FrameSigner, Signing, SigningMemory
-from link.signing.streams import Span, Stream, StreamTable
+from link.signing.streams import SignedStream, Span, StreamTable
 from link.signing.verifier import Refusal, Verified
 from tests.link.frames import version_1
 from tests.link.signing.signed import ARM, DAY, DRIVER, HEARTBEAT, NOON, NOW, WATCHER, keep, signed
@@ -17,8 +17,8 @@ from tests.link.signing.signed import ARM, DAY, DRIVER, HEARTBEAT, NOON, NOW, WA
 MINE, THEIRS = DRIVER.fingerprint, WATCHER.fingerprint
 
 
-def stream(number: int, key: str = MINE) -> Stream:
-    return Stream(key, 1 + number // 250, number % 250, 0)
+def stream(number: int, key: str = MINE) -> SignedStream:
+    return SignedStream(key, 1 + number // 250, number % 250, 0)
 
 
 # ---- the table ----

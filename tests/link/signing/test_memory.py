@@ -12,12 +12,12 @@ import pytest
 from link.link_signing import STORE_PERIOD, LinkSigning
 from link.signing.memory_file import FILE, MemoryFileError, load_memory, save_memory
 from link.signing.signing import SigningMemory
-from link.signing.streams import MAX_STREAMS, Span, Stream
+from link.signing.streams import MAX_STREAMS, SignedStream, Span
 from link.signing.verifier import Refusal
 from tests.link.signing.signed import ARM, DRIVER, NOON, NOW, keep, signed
 
 MEMORY = SigningMemory(
-    NOW, {Stream(DRIVER.fingerprint, 255, 190, 2): NOW + 5}, {DRIVER.fingerprint: NOW - 9}, ended=True
+    NOW, {SignedStream(DRIVER.fingerprint, 255, 190, 2): NOW + 5}, {DRIVER.fingerprint: NOW - 9}, ended=True
 )
 MANY = ",".join(['["ab",1,1,1,1]'] * (MAX_STREAMS + 1))
 
@@ -61,7 +61,7 @@ def test_a_full_file_of_the_last_timestamps_is_read(tmp_path: Path) -> None:
     path, last = tmp_path / FILE, (1 << 48) - 1
     full = SigningMemory(
         last,
-        {Stream("ab", 1, number, 0): number and last for number in range(64)},
+        {SignedStream("ab", 1, number, 0): number and last for number in range(64)},
         {"ab": 0},
         (Span("ab", 0, last),) * 16,
     )

@@ -9,13 +9,13 @@ import pytest
 
 from link.signing.memory_file import FILE, MemoryFileError, load_memory, save_memory
 from link.signing.signing import Signing, SigningMemory
-from link.signing.streams import Span, Stream, StreamTable
+from link.signing.streams import SignedStream, Span, StreamTable
 from link.signing.system_clock import is_synchronized
 from link.signing.verifier import Refusal, Verified
 from tests.link.signing.signed import ARM, DAY, DRIVER, NOON, NOW, WATCHER, keep, signed
 
 FAR = NOW + 40 * 365 * DAY
-MINE = Stream(DRIVER.fingerprint, 255, 190, 0)
+MINE = SignedStream(DRIVER.fingerprint, 255, 190, 0)
 
 
 def spoilt(wall: float = NOON, *, synchronized: bool, stamp: int = FAR) -> Signing:
@@ -79,7 +79,7 @@ def test_spans_are_stored_and_files_without_them_are_read(tmp_path: Path) -> Non
     save_memory(path, memory)
     assert load_memory(path) == memory
     path.write_text('{"stamp":5,"streams":[["ab",1,1,1,7]],"floors":{},"ended":true}')
-    assert load_memory(path) == SigningMemory(5, {Stream("ab", 1, 1, 1): 7}, ended=True)
+    assert load_memory(path) == SigningMemory(5, {SignedStream("ab", 1, 1, 1): 7}, ended=True)
     many = ",".join(['["ab",1,2]'] * 17)
     for spans in (many, '["ab",-1,2]', f'["ab",1,{1 << 48}]'):
         path.write_text(f'{{"stamp":5,"streams":[],"floors":{{}},"spans":[{spans}]}}')

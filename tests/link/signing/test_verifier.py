@@ -11,7 +11,7 @@ from link.signing.keys import KeyRing, SigningKey
 from link.signing.role import Role
 from link.signing.signature import STAMP_MAX
 from link.signing.signing import Signing, SigningMemory
-from link.signing.streams import MAX_STREAMS, Stream
+from link.signing.streams import MAX_STREAMS, SignedStream
 from link.signing.verifier import Refusal, Verified
 from tests.link.signing.signed import ARM, DAY, DRIVER, NOON, NOW, STRANGER, WATCHER, keep, signed
 
@@ -153,7 +153,7 @@ def test_81_100000_streams_keep_64_places_and_spare_other_keys() -> None:
     assert check(signing, mine) is DRIVER
     streams = signing.verifier.streams
     for n in range(100_000):  # 10^5 streams
-        streams.record(Stream(WATCHER.fingerprint, 1 + n // 256 % 250, n // 64_000, n % 256), NOW + n)
+        streams.record(SignedStream(WATCHER.fingerprint, 1 + n // 256 % 250, n // 64_000, n % 256), NOW + n)
     assert len(streams.newest) == MAX_STREAMS == 64
     assert streams.floors == {WATCHER.fingerprint: NOW + 99_999 - (MAX_STREAMS - 1)}
     assert check(signing, mine) is Refusal.REPLAYED

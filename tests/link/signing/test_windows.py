@@ -8,7 +8,7 @@ from link.signing.clock import FOLLOWED_MAX, TICKS, SigningClock
 from link.signing.keys import KeyRing
 from link.signing.signature import is_signed, link_and_stamp
 from link.signing.signing import FrameSigner, Signing, SigningMemory
-from link.signing.streams import Span, Stream, StreamTable
+from link.signing.streams import SignedStream, Span, StreamTable
 from link.signing.system_clock import is_right
 from link.signing.verifier import Refusal, Verified, Verifier
 from tests.link.signing.signed import DAY, DRIVER, NOON, NOW, STRANGER, WATCHER, keep, signed
@@ -128,28 +128,28 @@ def test_by_default_nothing_is_ahead_and_no_run_has_crashed() -> None:
 # ---- the table of streams ----
 
 
-def streams(count: int) -> dict[Stream, int]:
-    return {Stream(MINE, 1, number, 0): 1000 + number for number in range(count)}
+def streams(count: int) -> dict[SignedStream, int]:
+    return {SignedStream(MINE, 1, number, 0): 1000 + number for number in range(count)}
 
 
 def test_a_floor_never_falls() -> None:
     table = StreamTable(streams(64), {MINE: 5000})
-    table.record(Stream(MINE, 2, 1, 0), 6000)
+    table.record(SignedStream(MINE, 2, 1, 0), 6000)
     assert table.floors == {MINE: 5000}
 
 
 def test_a_stream_that_began_at_0_leaves_that_floor() -> None:
     table = StreamTable({each: number for number, each in enumerate(streams(64))})
-    table.record(Stream(MINE, 2, 1, 0), 6000)
+    table.record(SignedStream(MINE, 2, 1, 0), 6000)
     assert table.floors == {MINE: 0}
-    assert not table.is_replay(Stream(MINE, 1, 0, 0), 1)
+    assert not table.is_replay(SignedStream(MINE, 1, 0, 0), 1)
 
 
 def test_a_key_that_is_gone_does_not_count() -> None:
     table = StreamTable(streams(64))
     table.keep_keys([STRANGER.fingerprint])
     for number in range(65):
-        table.record(Stream(STRANGER.fingerprint, 3, number, 0), number)
+        table.record(SignedStream(STRANGER.fingerprint, 3, number, 0), number)
     assert len(table.newest) == 64
 
 
@@ -171,7 +171,7 @@ def test_a_floor_of_years_ahead_is_healed() -> None:
     ],
 )
 def test_spans_that_touch_are_joined(kept: Span, spans: int) -> None:
-    table = StreamTable({Stream(MINE, 1, 1, 0): NOW + 10 * DAY}, spans=[kept])
+    table = StreamTable({SignedStream(MINE, 1, 1, 0): NOW + 10 * DAY}, spans=[kept])
     table.heal(NOW, DAY)
     assert len(table.spans) == spans
     low, high = min(each.after for each in table.spans), max(each.until for each in table.spans)

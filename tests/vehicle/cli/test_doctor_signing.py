@@ -8,7 +8,7 @@ import pytest
 
 from link.runtime.diagnosis import Health
 from vehicle.cli.check import CheckResult
-from vehicle.cli.doctor.facts import Clock, DoctorFacts
+from vehicle.cli.doctor.facts import Clock, VehicleDoctorFacts
 from vehicle.cli.doctor.signing_row import CLOSE, NEW_KEY, signing
 from vehicle.config.signing import SigningSettings
 from vehicle.readings import ComputerReadings
@@ -36,7 +36,7 @@ KEYS = ("laptop (setup, 01234567)",)
 )
 def test_what_it_says(facts: dict[str, Any], health: Health, said: str, advice: str) -> None:
     found = signing(
-        DoctorFacts(
+        VehicleDoctorFacts(
             path="rover.toml",
             user="pi",
             checks=(CheckResult("settings", True, ""),),

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from vehicle.storage import tlog_files
-from vehicle.storage.tlog_files import FREE_SPACE_MIN, LogFiles, LogLimits, log_name, log_number, log_time
+from vehicle.storage.tlog_files import FREE_SPACE_MIN, FlightLogLimits, LogFiles, log_name, log_number, log_time
 
 NOW = 1_795_269_909.5  # 2026-11-21 14:05:09 UTC
-MANY = LogLimits(500, 0)
+MANY = FlightLogLimits(500, 0)
 PLENTY = 10**9
 
 
@@ -73,7 +73,7 @@ def test_logs_sort_by_number_also_where_the_clock_was_wrong(tmp_path: Path) -> N
 def test_the_oldest_goes_where_there_are_too_many(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     for _ in range(5):
-        files(tmp_path).open(LogLimits(3, 0)).close()
+        files(tmp_path).open(FlightLogLimits(3, 0)).close()
     assert [log_number(name) for name in names(tmp_path)] == [3, 4, 5, None]
 
 
@@ -81,7 +81,7 @@ def test_the_oldest_go_until_enough_is_free(tmp_path: Path) -> None:
     for _ in range(5):
         files(tmp_path).open(MANY).close()
     free = iter([10, 20, 30, 40, PLENTY])
-    LogFiles(tmp_path, clock=lambda: NOW, free=lambda path: next(free)).open(LogLimits(500, 40)).close()
+    LogFiles(tmp_path, clock=lambda: NOW, free=lambda path: next(free)).open(FlightLogLimits(500, 40)).close()
     assert [log_number(name) for name in names(tmp_path)] == [4, 5, 6]
 
 
@@ -99,7 +99,7 @@ def test_writes_are_there_at_once_under_the_final_name(tmp_path: Path) -> None:
 def test_a_log_that_grows_long_goes_on_in_another_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tlog_files, "FILE_SIZE_MAX", 10)
     folder = files(tmp_path)
-    log = folder.open(LogLimits(2, 0))
+    log = folder.open(FlightLogLimits(2, 0))
     for data in (b"one", b"two", b"three", b"four", b"more than a file"):
         log.write(data)
         assert folder.current == names(tmp_path)[-1]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from link.runtime.diagnosis import Finding, fault, fault_of, ok, unknown, warn
 from vehicle.cli.check import CheckResult
-from vehicle.cli.doctor.facts import DoctorFacts
+from vehicle.cli.doctor.facts import VehicleDoctorFacts
 
 AFTER_CONFIG = unknown("after the errors of the file are corrected")
 IN_USE = "in use by the vehicle that runs: not examined"
@@ -14,7 +14,7 @@ STOP_FIRST = "to examine it: sudo systemctl stop rover, then again"
 STOPPED_AT = ("settings", "parameters")
 
 
-def config(facts: DoctorFacts) -> Finding:
+def config(facts: VehicleDoctorFacts) -> Finding:
     """Judge the configuration file and the saved parameters."""
     failed = [each for each in facts.select(*STOPPED_AT) if not each.ok]
     if failed and failed[0].item == "parameters":
@@ -27,17 +27,17 @@ def config(facts: DoctorFacts) -> Finding:
     return ok(f"{facts.path}; parameters: {counts}")
 
 
-def motors(facts: DoctorFacts) -> Finding:
+def motors(facts: VehicleDoctorFacts) -> Finding:
     """Judge the motors' driver, opened in neutral and without power."""
     return _judge(facts, facts.select("motors"))
 
 
-def accessories(facts: DoctorFacts) -> Finding:
+def accessories(facts: VehicleDoctorFacts) -> Finding:
     """Judge relays and servos, opened in their safe state."""
     return _judge(facts, facts.select("relay", "servo"))
 
 
-def sensors(facts: DoctorFacts) -> Finding:
+def sensors(facts: VehicleDoctorFacts) -> Finding:
     """Judge battery monitor, GPS and encoders. A sensor that fails does not stop the rover."""
     found = _judge(facts, [each for each in facts.select("sensors.") if each.item != "sensors.computer"])
     failed = [each for each in facts.select("sensors.") if not each.ok and each.item != "sensors.computer"]
@@ -46,12 +46,12 @@ def sensors(facts: DoctorFacts) -> Finding:
     return found
 
 
-def links(facts: DoctorFacts) -> Finding:
+def links(facts: VehicleDoctorFacts) -> Finding:
     """Judge the endpoints, opened and closed again."""
     return _judge(facts, facts.select("endpoint"))
 
 
-def _judge(facts: DoctorFacts, checks: Sequence[CheckResult]) -> Finding:
+def _judge(facts: VehicleDoctorFacts, checks: Sequence[CheckResult]) -> Finding:
     """Return the first failure, or what all of them found."""
     if not facts.readable:
         return AFTER_CONFIG

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from link.runtime.diagnosis import Finding, fault, ok, unknown
 from vehicle.cli.doctor.check_rows import AFTER_CONFIG
-from vehicle.cli.doctor.facts import Device, DoctorFacts
+from vehicle.cli.doctor.facts import Device, VehicleDoctorFacts
 
 CONSOLE = "sudo raspi-config nonint do_serial_cons 1 removes the login console, then reboot"
 LOGINS = ("getty", "agetty")
 
 
-def permissions(facts: DoctorFacts) -> Finding:
+def permissions(facts: VehicleDoctorFacts) -> Finding:
     """Judge whether this user may open the device files."""
     if not facts.readable:
         return AFTER_CONFIG
@@ -26,7 +26,7 @@ def permissions(facts: DoctorFacts) -> Finding:
     return ok(f"{facts.user} may open {', '.join(each.path for each in present)}")
 
 
-def serial_ports(facts: DoctorFacts) -> Finding:
+def serial_ports(facts: VehicleDoctorFacts) -> Finding:
     """Judge the serial ports of motors and links."""
     if not facts.readable:
         return AFTER_CONFIG
@@ -40,7 +40,7 @@ def serial_ports(facts: DoctorFacts) -> Finding:
     return ok(", ".join(f"{each.path} is there and free" for each in facts.serial))
 
 
-def _port_fault(port: Device, facts: DoctorFacts) -> Finding | None:
+def _port_fault(port: Device, facts: VehicleDoctorFacts) -> Finding | None:
     if not port.present:
         return fault(f"{port.path} is not there", "plug it in; names in /dev/serial/by-id/ stay the same")
     if port.console:
@@ -51,7 +51,7 @@ def _port_fault(port: Device, facts: DoctorFacts) -> Finding | None:
     return fault(f"{port.path} is open in {port.holder}", CONSOLE if login else "end that program")
 
 
-def pins(facts: DoctorFacts) -> Finding:
+def pins(facts: VehicleDoctorFacts) -> Finding:
     """Judge the pins of the header and the I2C buses."""
     if not facts.readable:
         return AFTER_CONFIG

@@ -42,7 +42,7 @@ class Space(msgspec.Struct, frozen=True):
     """Bytes that this user may use."""
 
 
-class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
+class VehicleDoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     """All facts. Those of the configuration are empty if the file has errors."""
 
     path: str

@@ -22,7 +22,7 @@ from link.signing.key_file import FILE, KeyFileError, load_keys
 from link.transport.reach import find_trust, missing_interfaces
 from link.transport.serial_ports import find_holders
 from vehicle.cli.check import run_checks
-from vehicle.cli.doctor.facts import Clock, Device, DoctorFacts, Space
+from vehicle.cli.doctor.facts import Clock, Device, Space, VehicleDoctorFacts
 from vehicle.config.config import load
 from vehicle.config.conflicts import iter_taken
 from vehicle.config.effective_params import load_effective_params
@@ -40,11 +40,11 @@ TIMEX_SIZE, TIME_ERROR = 512, 5
 _BUS = re.compile(r"on I2C bus (\d+)$")
 
 
-def gather_facts(path: str, state: str | None) -> DoctorFacts:
+def gather_facts(path: str, state: str | None) -> VehicleDoctorFacts:
     """Return the facts for the configuration file `path`. `state` replaces its state folder."""
     checks = tuple(run_checks(path, state))
     known = _of_file(path, state) if checks and checks[0].ok else {}
-    return DoctorFacts(
+    return VehicleDoctorFacts(
         path=path,
         user=_user(),
         checks=checks,

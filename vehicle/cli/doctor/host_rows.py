@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from link.runtime.diagnosis import Finding, fault, fault_of, ok, unknown, warn
-from vehicle.cli.doctor.facts import DoctorFacts
+from vehicle.cli.doctor.facts import VehicleDoctorFacts
 
 WARM = 80.0
 """degrees C from which on a Pi slows its processor down."""
@@ -14,7 +14,7 @@ KEPT_FREE = 8
 JOURNAL = "journalctl -u rover -n 20 shows why"
 
 
-def service(facts: DoctorFacts) -> Finding:
+def service(facts: VehicleDoctorFacts) -> Finding:
     """Judge the unit that starts the vehicle with the computer."""
     unit = facts.service
     if unit is None:
@@ -34,7 +34,7 @@ def service(facts: DoctorFacts) -> Finding:
     return unknown(f"rover.service is {state or 'stopped'}", "sudo systemctl start rover")
 
 
-def power(facts: DoctorFacts) -> Finding:
+def power(facts: VehicleDoctorFacts) -> Finding:
     """Judge supply voltage and temperature, as the failsafe of the vehicle does (FS_PI_TEMP)."""
     health, limit = facts.health, facts.params.get("FS_PI_TEMP", 85.0)
     degrees = "temperature unknown" if health.temperature is None else f"{health.temperature:.0f} degrees C"
@@ -49,7 +49,7 @@ def power(facts: DoctorFacts) -> Finding:
     return ok(f"supply voltage ok, {degrees}")
 
 
-def clock(facts: DoctorFacts) -> Finding:
+def clock(facts: VehicleDoctorFacts) -> Finding:
     """Judge the wall clock: logs have its time. The control loop does not use it."""
     if facts.clock.year < OLDEST_YEAR:
         return warn(f"the clock says {facts.clock.year}: logs get wrong times", "connect to a network, or set it")
@@ -60,7 +60,7 @@ def clock(facts: DoctorFacts) -> Finding:
     return ok("synchronized")
 
 
-def disk(facts: DoctorFacts) -> Finding:
+def disk(facts: VehicleDoctorFacts) -> Finding:
     """Judge the folders that the vehicle writes to, and their free space."""
     failed = [each for each in facts.select("state", "log.") if not each.ok]
     if failed:

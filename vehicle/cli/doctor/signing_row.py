@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from link.runtime.diagnosis import Finding, fault, fault_of, ok, warn
 from vehicle.cli.doctor.check_rows import AFTER_CONFIG
-from vehicle.cli.doctor.facts import DoctorFacts
+from vehicle.cli.doctor.facts import VehicleDoctorFacts
 
 NEW_KEY = "vehicle key new NAME, then install it at the ground station (docs/security.md)"
 SHOWN = "write each name under [signing] private as `ip link` shows it, and restart after the tunnel has come up"
 CLOSE = "remove allow_unsigned; each ground station then needs a key (docs/security.md)"
 
 
-def signing(facts: DoctorFacts) -> Finding:
+def signing(facts: VehicleDoctorFacts) -> Finding:
     """Judge keys, and the links that a whole network reaches."""
     if not facts.readable:
         return AFTER_CONFIG

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from link.runtime.diagnosis import Check, Finding, Row, run_checks
+from link.runtime.diagnosis import Check, Finding, ReportRow, run_checks
 from vehicle.cli.doctor import check_rows, device_rows, host_rows, signing_row
-from vehicle.cli.doctor.facts import DoctorFacts
+from vehicle.cli.doctor.facts import VehicleDoctorFacts
 
-ROWS: tuple[Check[DoctorFacts, Finding], ...] = (
+ROWS: tuple[Check[VehicleDoctorFacts, Finding], ...] = (
     Check("config", "config", check_rows.config),
     Check("service", "service", host_rows.service),
     Check("permissions", "permissions", device_rows.permissions),
@@ -24,6 +24,6 @@ ROWS: tuple[Check[DoctorFacts, Finding], ...] = (
 """Causes come before their effects: a running service explains motors in use."""
 
 
-def examine(facts: DoctorFacts) -> tuple[Row[Finding], ...]:
+def examine(facts: VehicleDoctorFacts) -> tuple[ReportRow[Finding], ...]:
     """Return all rows."""
     return run_checks(ROWS, facts)

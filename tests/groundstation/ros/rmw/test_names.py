@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.ros.rmw.names import Endpoint, Kind, Node, name_fault, namespace_fault, publisher_tokens
+from groundstation.ros.rmw.names import Kind, RmwEndpoint, RmwNode, name_fault, namespace_fault, publisher_tokens
 
 STRING, STRING_HASH = "std_msgs/msg/String", "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 SESSION = "8b20917502ee955ac4476e0266340d5c"
-TALKER = Node(2, SESSION, "/", "talker")
+TALKER = RmwNode(2, SESSION, "/", "talker")
 
 
-def endpoint(node: Node, kind: Kind, name: str, qos: str = "::,7:,:,:,,") -> Endpoint:
-    return Endpoint(node, 10, kind, name, STRING, STRING_HASH, qos)
+def endpoint(node: RmwNode, kind: Kind, name: str, qos: str = "::,7:,:,:,,") -> RmwEndpoint:
+    return RmwEndpoint(node, 10, kind, name, STRING, STRING_HASH, qos)
 
 
 def test_the_token_of_a_node() -> None:
-    node = Node(2, "aac3178e146ba6f1fc6e6a4085e77f21", "/", "listener")
+    node = RmwNode(2, "aac3178e146ba6f1fc6e6a4085e77f21", "/", "listener")
     assert node.token == "@ros2_lv/2/aac3178e146ba6f1fc6e6a4085e77f21/0/0/NN/%/%/listener"
 
 
@@ -27,8 +27,8 @@ def test_the_token_of_a_publisher() -> None:
 
 
 def test_the_token_of_a_service() -> None:
-    node = Node(2, "f9980ee0495eaafb3e38f0d19e2eae12", "/", "add_two_ints_server")
-    made = Endpoint(node, 10, Kind.SERVICE, "/add_two_ints", "example_interfaces/srv/AddTwoInts", "RIHS01_e1")
+    node = RmwNode(2, "f9980ee0495eaafb3e38f0d19e2eae12", "/", "add_two_ints_server")
+    made = RmwEndpoint(node, 10, Kind.SERVICE, "/add_two_ints", "example_interfaces/srv/AddTwoInts", "RIHS01_e1")
     assert made.token == (
         "@ros2_lv/2/f9980ee0495eaafb3e38f0d19e2eae12/0/10/SS/%/%/add_two_ints_server/%add_two_ints/"
         "example_interfaces::srv::dds_::AddTwoInts_/RIHS01_e1/::,10:,:,:,,"
@@ -37,7 +37,7 @@ def test_the_token_of_a_service() -> None:
 
 
 def test_a_namespace_is_in_keys_and_mangled_in_tokens() -> None:
-    node = Node(0, SESSION, "/robot1", "talker")
+    node = RmwNode(0, SESSION, "/robot1", "talker")
     made = endpoint(node, Kind.SUBSCRIPTION, node.resolve("chatter"))
     assert made.key == f"0/robot1/chatter/std_msgs::msg::dds_::String_/{STRING_HASH}"
     assert made.token.startswith(f"@ros2_lv/0/{SESSION}/0/10/MS/%/%robot1/talker/%robot1%chatter/")
@@ -54,7 +54,7 @@ def test_a_namespace_is_in_keys_and_mangled_in_tokens() -> None:
     ],
 )
 def test_names_are_resolved_as_in_ros(namespace: str, name: str, whole: str) -> None:
-    assert Node(0, SESSION, namespace, "talker").resolve(name) == whole
+    assert RmwNode(0, SESSION, namespace, "talker").resolve(name) == whole
 
 
 def test_tokens_of_all_publishers_have_as_many_parts_as_one() -> None:

@@ -13,7 +13,7 @@ from dialects import codec
 from dialects import messages as m
 from groundstation.ipc import MAX_PACKET, encode
 from groundstation.station.messages.message_capture import KEPT, MessageCapture
-from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_detail import MessageInspector
 from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.views.messages import CapturePage, CaptureRequest, MessageRequest, MessageView
 
@@ -29,7 +29,7 @@ class Chosen:
 
     def __init__(self) -> None:
         self.traffic = MessageTraffic(255, 190)
-        self.detail = MessageDetail(self.traffic)
+        self.detail = MessageInspector(self.traffic)
 
     def view(self, now: float, request: MessageRequest = REQUEST) -> MessageView:
         view = self.detail.sources[MessageRequest].build(request, now, 0.0)

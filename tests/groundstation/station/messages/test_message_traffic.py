@@ -7,7 +7,7 @@ import pytest
 from dialects import messages as m
 from groundstation.intents.watch import Watch
 from groundstation.ipc import MAX_PACKET, encode
-from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_detail import MessageInspector
 from groundstation.station.messages.message_traffic import MAX_KINDS, MAX_ROWS, MessageTraffic
 from groundstation.views.base import View
 from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
@@ -141,7 +141,7 @@ def test_a_flood_of_invented_ids_is_bounded_and_spares_a_vehicle() -> None:
 
 
 def test_a_message_comes_with_its_fields() -> None:
-    build = MessageDetail(traffic()).sources[MessageRequest].build
+    build = MessageInspector(traffic()).sources[MessageRequest].build
     view = build(MessageRequest(1, 1, False, "HEARTBEAT"), 9.9, 0.0)
     assert isinstance(view, MessageView)
     assert (view.id, view.count, view.length) == (0, 10, 21)

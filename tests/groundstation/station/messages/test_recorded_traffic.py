@@ -10,7 +10,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
 from dialects.messages import MESSAGES
-from groundstation.station.messages.message_detail import MessageDetail
+from groundstation.station.messages.message_detail import MessageInspector
 from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.views.messages import MessageRequest, MessagesRequest, MessageView
 from link.protocol.channel import Channel
@@ -48,7 +48,7 @@ def replay() -> tuple[MessageTraffic, Counter[tuple[int, int, str]], dict[tuple[
 
 
 def build(traffic: MessageTraffic, request: MessageRequest, now: float, wall: float) -> MessageView | None:
-    view = MessageDetail(traffic).sources[MessageRequest].build(request, now, wall)
+    view = MessageInspector(traffic).sources[MessageRequest].build(request, now, wall)
     assert view is None or isinstance(view, MessageView)
     return view
 

@@ -7,7 +7,7 @@ import pytest
 from link.runtime.diagnosis import Finding, Health
 from vehicle.cli.check import CheckResult
 from vehicle.cli.doctor import device_rows, host_rows
-from vehicle.cli.doctor.facts import Clock, Device, DoctorFacts, Space
+from vehicle.cli.doctor.facts import Clock, Device, Space, VehicleDoctorFacts
 from vehicle.cli.doctor.gather import parse_properties, read_clock
 from vehicle.readings import ComputerReadings
 
@@ -15,7 +15,7 @@ LOADED = "LoadState=loaded\nUnitFileState=enabled\nNRestarts=0\nExecMainStatus=0
 """As `systemctl show` of systemd 252 prints it."""
 
 
-def facts(**given: object) -> DoctorFacts:
+def facts(**given: object) -> VehicleDoctorFacts:
     """Facts of a computer without faults, but for those given."""
     usual: dict[str, object] = {
         "path": "rover.toml",
@@ -24,7 +24,7 @@ def facts(**given: object) -> DoctorFacts:
         "health": ComputerReadings(temperature=48.0, under_voltage=False, throttled=False),
         "clock": Clock(2026, True),
     }
-    return DoctorFacts(**(usual | given))  # type: ignore[arg-type]
+    return VehicleDoctorFacts(**(usual | given))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
