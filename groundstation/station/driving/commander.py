@@ -27,7 +27,7 @@ from groundstation.vehicles.demand.stop_commands import (
     shows_hold,
 )
 from groundstation.vehicles.state.message_log import MessageLog
-from groundstation.vehicles.state.senders import HeartbeatSender
+from groundstation.vehicles.state.senders import ReportingSender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -46,7 +46,7 @@ class _Stop(msgspec.Struct):
     vehicle: VehicleState
     label: str
     stop: StopCommand
-    is_done: Callable[[HeartbeatSender], bool]
+    is_done: Callable[[ReportingSender], bool]
     due: float
     until: float
     tries: int = 1
@@ -266,7 +266,7 @@ class Commander:
         vehicle: VehicleState,
         label: str,
         stop: StopCommand,
-        is_done: Callable[[HeartbeatSender], bool],
+        is_done: Callable[[ReportingSender], bool],
         now: float,
     ) -> None:
         key = vehicle.system, stop.command

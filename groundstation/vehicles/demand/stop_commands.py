@@ -14,7 +14,7 @@ from dialects.enums import Command, ModeFlag
 from dialects.kinds import AUTOPILOT_COMPONENT
 from dialects.mode_tables import HOLD
 from dialects.modes import set_mode_params
-from groundstation.vehicles.state.senders import HeartbeatSender
+from groundstation.vehicles.state.senders import ReportingSender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.services.command.client import CommandClient
 
@@ -75,7 +75,7 @@ def hold_command(state: VehicleState) -> StopCommand | None:
     return None if number is None else StopCommand(Command.DO_SET_MODE, set_mode_params(number, state.autopilot))
 
 
-def shows_hold(state: VehicleState, sender: HeartbeatSender) -> bool:
+def shows_hold(state: VehicleState, sender: ReportingSender) -> bool:
     """Return whether a sender of the vehicle's id shows that it holds.
 
     A script on board that claims to be the autopilot has modes of its own; it must be disarmed.

@@ -41,7 +41,7 @@ TELLING = frozenset({m.Heartbeat, m.AutopilotVersion, m.SystemTime, m.Attitude})
 Key = tuple[int, int, Hashable, int]
 
 
-class HeartbeatSender(msgspec.Struct):
+class ReportingSender(msgspec.Struct):
     """One path from a vehicle."""
 
     component: int
@@ -83,7 +83,7 @@ class Senders:
     """The senders of one system id."""
 
     def __init__(self) -> None:
-        self._senders: dict[Key, HeartbeatSender] = {}
+        self._senders: dict[Key, ReportingSender] = {}
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a HEARTBEAT of a vehicle, and what tells vehicles apart."""
@@ -120,7 +120,7 @@ class Senders:
         return any(each.armed for each in live) if live is not found else max(live, key=lambda each: each.at).armed
 
     def find_doubt(
-        self, now: float, is_done: Callable[[HeartbeatSender], bool] = lambda sender: not sender.armed
+        self, now: float, is_done: Callable[[ReportingSender], bool] = lambda sender: not sender.armed
     ) -> str:
         """Return which sender does not show that a stop is done, in words; "" if the last report of each does."""
         for sender in sorted(self._senders.values(), key=lambda each: each.at):
@@ -149,7 +149,7 @@ class Senders:
         if sender is None:
             self._make_room(now)
             where = _where(received)
-            sender = HeartbeatSender(
+            sender = ReportingSender(
                 received.component, where, message.autopilot, message.type, armed, message.custom_mode, now
             )
             if received.clash:
@@ -160,7 +160,7 @@ class Senders:
         sender.at, sender.clash = now, received.clash
         self._compare(sender, now)
 
-    def _compare(self, sender: HeartbeatSender, now: float) -> None:
+    def _compare(self, sender: ReportingSender, now: float) -> None:
         others = [each for each in self._senders.values() if each is not sender and each.component == sender.component]
         differs = any(each.is_live(now) and _state(each) != _state(sender) for each in others)
         sender.differs_since = min(sender.differs_since, now) if differs else math.inf
@@ -171,7 +171,7 @@ class Senders:
             oldest = min(self._senders, key=lambda key: self._senders[key].at)
             del self._senders[oldest]
 
-    def _counts(self, sender: HeartbeatSender, now: float) -> bool:
+    def _counts(self, sender: ReportingSender, now: float) -> bool:
         """Return whether what a sender reported last is still the newest that is known of its vehicle."""
         if sender.is_live(now) or not any(each.is_live(now) for each in self._senders.values()):
             return True
@@ -179,7 +179,7 @@ class Senders:
             return False
         return not any(each.is_live(now) and _is_same(sender, each) for each in self._senders.values())
 
-    def _name(self, sender: HeartbeatSender) -> str:
+    def _name(self, sender: ReportingSender) -> str:
         several = len({each.component for each in self._senders.values()}) > 1
         alone = len(self._senders) == 1
         if alone:
@@ -198,11 +198,11 @@ def _where(received: Received) -> str:
     return f"{where} (numbering {received.numbering})" if received.clash else where
 
 
-def _state(sender: HeartbeatSender) -> tuple[bool, int]:
+def _state(sender: ReportingSender) -> tuple[bool, int]:
     return sender.armed, sender.custom_mode
 
 
-def _is_same(sender: HeartbeatSender, other: HeartbeatSender) -> bool:
+def _is_same(sender: ReportingSender, other: ReportingSender) -> bool:
     """Return whether two senders are known to be one vehicle on two paths."""
     if sender.component != other.component:
         return False
@@ -213,7 +213,7 @@ def _is_same(sender: HeartbeatSender, other: HeartbeatSender) -> bool:
     return abs(sender.booted_at - other.booted_at) <= BOOT_DIFFERS
 
 
-def _are_two(sender: HeartbeatSender, other: HeartbeatSender, now: float) -> bool:
+def _are_two(sender: ReportingSender, other: ReportingSender, now: float) -> bool:
     """Return whether two senders are known to be two vehicles."""
     if sender.clash and other.clash:
         return True
@@ -225,7 +225,7 @@ def _are_two(sender: HeartbeatSender, other: HeartbeatSender, now: float) -> boo
     return now - max(sender.differs_since, other.differs_since) >= DIFFERS_FOR
 
 
-def _pairs(senders: list[HeartbeatSender]) -> Iterator[tuple[HeartbeatSender, HeartbeatSender]]:
+def _pairs(senders: list[ReportingSender]) -> Iterator[tuple[ReportingSender, ReportingSender]]:
     return ((one, other) for at, one in enumerate(senders) for other in senders[at + 1 :])
 
 
