@@ -34,6 +34,8 @@ from link.transport.receive_buffer import ReceiveBuffer
 
 log = logging.getLogger(__name__)
 
+GONE = "the shell with the file has ended"
+
 MAX_BATCH = 1 << 15
 """Bytes after which what a verb has printed goes into another packet."""
 
@@ -90,6 +92,9 @@ class RunPort:
         loop.remove_reader(self._socket)
         loop.remove_writer(self._socket)
         self._socket.close()
+        for number, answer in self._answers.items():
+            if not answer.done():
+                answer.set_result(FileAnswered(number, error=GONE))
         if self._task is not None:
             self._task.cancel()
 
@@ -119,6 +124,8 @@ class RunPort:
 
     async def _ask_for_file(self, asked: FileAsked) -> FileAnswered:
         """Have the shell work on a file; return its answer."""
+        if not self._open:
+            return FileAnswered(asked.number, error=GONE)
         answer: asyncio.Future[FileAnswered] = asyncio.get_running_loop().create_future()
         self._answers[asked.number] = answer
         self._send(encode(asked))

@@ -107,6 +107,8 @@ class ShellVerb:
         finally:
             if verb.cancel():
                 await asyncio.wait({verb}, timeout=END_WITHIN)
+                if verb.done() and not verb.cancelled() and (error := verb.exception()):
+                    log.info("%s: %s", self._name, error)  # as of a file that cannot be kept: its shell has ended
             core.leave()
 
     def _note_vehicle(self, name: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import random
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -60,6 +61,27 @@ def test_an_interrupted_download_is_kept_and_resumed(vehicle: ForeignVehicle, he
         assert part == DATA[: len(part)]
         assert (await shells.run("ftp", "get", "/logs/1.bin")).code == ExitCode.DONE
         assert (here / "1.bin").read_bytes() == DATA
+
+    with_station(vehicle, use)
+
+
+@pytest.mark.parametrize("words", [("ftp", "get", "/logs/1.bin"), ("param", "load", "pipe")])
+def test_a_killed_shell_leaves_no_verb_that_waits_for_it(
+    words: tuple[str, ...], vehicle: ForeignVehicle, here: Path
+) -> None:
+    async def use(shells: Shells) -> None:
+        os.mkfifo(here / "pipe")
+        before = asyncio.all_tasks()
+        link = shells.connect()
+        verb = asyncio.ensure_future(VerbClient(link, Output(words[0], as_json=False, quiet=True)).run(words, None))
+        if words[0] == "ftp":
+            await shells.see(lambda: len(vehicle.of("FILE_TRANSFER_PROTOCOL")) > 4)
+        else:
+            await shells.see(lambda: shells.station.relay.busy)
+        link.sock.shutdown(socket.SHUT_RDWR)
+        verb.cancel()
+        await shells.see(lambda: asyncio.all_tasks() <= before)
+        assert not shells.station.relay.busy
 
     with_station(vehicle, use)
 
