@@ -118,7 +118,7 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         main(["--config", str(file)])
     assert ended.value.code == 2
     assert capsys.readouterr().err == (
-        f"vehicle: {file}: motors.prot: unknown key; did you mean port? (and 1 more; see `vehicle check`)\n"
+        f"vehicle: {file}: motors.prot: unknown key; did you mean port? (and 2 more; see `vehicle check`)\n"
     )
 
 
