@@ -109,9 +109,9 @@ def test_it_ends_when_the_vehicle_disarms_itself() -> None:
 @pytest.mark.parametrize(
     ("words", "error"),
     [
-        ([], "--throttle PERCENT --for S"),
-        (["--throttle", "30"], "--throttle PERCENT --for S"),
-        (["--throttle", "0", "--for", "1"], "--throttle PERCENT --for S"),
+        ([], "write --throttle or --steering PERCENT with --for S"),
+        (["--throttle", "30"], "write --throttle or --steering PERCENT with --for S"),
+        (["--throttle", "0", "--for", "1"], "write --throttle or --steering PERCENT with --for S"),
         (["--throttle", "101", "--for", "1"], "'101' is not from -100 to 100 %"),
         (["--throttle", "30", "--for", "12"], "--for: 9 s at most; --script drives longer"),
         (["--script", "run.keys", "--for", "1"], "--script cannot be combined with"),
