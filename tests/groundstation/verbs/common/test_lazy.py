@@ -22,7 +22,8 @@ HEAVY = ("textual", "groundstation.station.station", "groundstation.config.setti
          "groundstation.ipc", "groundstation.watchdog", "groundstation.export", "groundstation.views.union",
          "groundstation.vehicles.requests.file", "groundstation.vehicles.requests.param",
          "groundstation.formats.param_file",
-         "link.services.ftp", "link.services.param.client", "link.services.mission", "link.services.log",
+         "link.services.ftp", "link.services.param.server", "link.services.log",
+         "link.services.mission.client", "link.services.mission.download", "link.services.mission.upload",
          "link.signing.keys")  # fmt: skip
 
 
