@@ -15,8 +15,6 @@ from hypothesis import HealthCheck, settings
 from dialects.fingerprint import fault
 from tests import order, suite
 
-XDIST_WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
-"""Name of this worker of xdist: gw0, gw1...; empty without xdist."""
 MAY_RAISE_PRIORITY = os.geteuid() == 0 and os.getpriority(os.PRIO_PROCESS, 0) == 0
 """Only root may take a lower priority and go back to the one before."""
 LOW_PRIORITY = 10
@@ -98,25 +96,8 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return True if config.option.suite == suite.SHORT and suite.is_long_file(collection_path) else None
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_make_collect_report(
-    collector: pytest.Collector,
-) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Let each worker of xdist begin with another file.
-
-    In a fresh clone pytest compiles 500 files of tests. Workers in the same order would all compile each of them at the
-    same time; so a worker finds what the others have compiled, and the collection takes a quarter less CPU.
-    """
-    report = yield
-    if XDIST_WORKER and isinstance(collector, pytest.Directory):
-        report.result = order.turned(report.result, XDIST_WORKER)
-    return report
-
-
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Choose the suite, and spread the tests that wait."""
-    if XDIST_WORKER:
-        items.sort(key=order.path_of)  # xdist demands the same order of all workers
     ours, others = suite.split(items, config.option.suite)
     if others:
         config.hook.pytest_deselected(items=others)

@@ -39,20 +39,6 @@ def mix(items: Sequence[pytest.Item]) -> list[pytest.Item]:
     return list(spread(sorted(waiting, key=_is_short), sorted(computing, key=lambda item: not computes_long(item))))
 
 
-def turned(nodes: Sequence[Each], worker: str) -> list[Each]:
-    """Return nodes as a worker of xdist collects them: gw0 forwards, gw1 backwards, gw2 from a third on, and so on."""
-    number = int(worker.removeprefix("gw") or 0)
-    if number % 2:
-        return [*reversed(nodes)]
-    start = (number // 2) * len(nodes) // 3 % max(1, len(nodes))
-    return [*nodes[start:], *nodes[:start]]
-
-
-def path_of(item: pytest.Item) -> tuple[str, ...]:
-    """Return the key by which items are in the order of their files; those of one file stay in theirs."""
-    return item.path.parts
-
-
 def spread(few: Sequence[Each], many: Sequence[Each]) -> Iterator[Each]:
     """Yield one of `few` and then its share of `many`, the rest of `many` at the end."""
     share = LAST * len(many) / max(1, len(few))

@@ -45,17 +45,5 @@ def test_what_waits_is_spread_and_has_begun_before_the_end(few: int, many: int) 
         assert len(mixed) - places[-1] > many * (1 - order.LAST)
 
 
-@pytest.mark.parametrize("worker", ["gw0", "gw1", "gw2", "gw3", "gw4", "gw7"])
-@pytest.mark.parametrize("count", [0, 1, 2, 10])
-def test_each_worker_collects_all_files(worker: str, count: int) -> None:
-    nodes = list(range(count))
-    assert sorted(order.turned(nodes, worker)) == nodes
-
-
-def test_workers_begin_with_different_files() -> None:
-    firsts = [order.turned(range(9), f"gw{number}")[0] for number in range(3)]
-    assert firsts == [0, 8, 3]
-
-
 def test_a_test_that_computes_gives_way(request: pytest.FixtureRequest) -> None:
     assert order.gives_way(request.node)
