@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 
 from dialects.mode_tables import HOLD
 from groundstation.intents.driving import EmergencyStop, Stop
@@ -22,11 +23,22 @@ def _need_selected(session: LineSession) -> None:
         raise VerbError(ExitCode.USAGE, f"{session.vehicle.name} is not selected: n selects the next vehicle")
 
 
+async def _wait_stopped(session: LineSession, find_doubt: Callable[[], str]) -> tuple[bool, str]:
+    """Wait until the last report of each sender of its id shows the stop; return whether it does, and else who not.
+
+    What was so before counts with a HEARTBEAT that has come since: the vehicle may have been armed after the last one.
+    """
+    began, was_so = session.now, not find_doubt()
+
+    def is_stopped() -> bool:
+        return not find_doubt() and (not was_so or session.vehicle.heartbeat_at > began)
+
+    done = await session.wait_for(is_stopped, STOPPED_WITHIN)
+    return done, "" if done else find_doubt() or "it is not heard"
+
+
 async def _wait_disarmed(session: LineSession) -> tuple[bool, str]:
-    """Wait until the last report of each sender of its id says disarmed; return whether it does, and else who not."""
-    senders = session.vehicle.senders
-    done = await session.wait_for(lambda: not senders.find_doubt(session.now), STOPPED_WITHIN)
-    return done, senders.find_doubt(session.now)
+    return await _wait_stopped(session, lambda: session.vehicle.senders.find_doubt(session.now))
 
 
 async def disarm(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
@@ -45,8 +57,8 @@ async def stop(session: LineSession, options: argparse.Namespace, output: LineOu
     def find_doubt() -> str:
         return state.senders.find_doubt(session.now, lambda sender: shows_hold(state, sender))
 
-    done = await session.wait_for(lambda: not find_doubt(), STOPPED_WITHIN)
-    output.note(f"{state.name} {'holds' if done else f'is not known to hold: {find_doubt()}'}")
+    done, doubt = await _wait_stopped(session, find_doubt)
+    output.note(f"{state.name} {'holds' if done else f'is not known to hold: {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 
 
