@@ -8,6 +8,7 @@ companion, two components), the confirmation by each sender (two vehicles with o
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import socket
@@ -39,6 +40,8 @@ VERBS = {"disarm": "is disarmed", "stop": "holds", "estop": "has stopped"}
 STOPS = (Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE)
 ANSWER_WITHIN = 0.5
 """s for a station to answer a stop."""
+PRESSED_AGAIN = 5.0
+"""s for a key to open the line, before it is pressed again."""
 BRIDGE_PLACES = 140
 """More than a link of a bridge has."""
 
@@ -207,12 +210,28 @@ def test_lines_with_a_companion_and_two_vehicles_of_one_id(tmux: Callable[..., T
     for verb, said in (("disarm", "rover 1 is disarmed"), ("stop", "rover 1 holds"), ("estop", "rover 1: emergency")):
         row.drive()
         see(terminal, row, lambda screen: "ESC closes" not in screen)
-        terminal.press(":")  # what is typed behind it in the same read is lost
-        see(terminal, row, lambda screen: "ESC closes" in screen)
+        open_line(terminal, row)
         terminal.press(*verb)
         see(terminal, row, lambda screen, verb=verb: f":{verb}" in screen)  # type: ignore[misc]
         press(terminal, row, "Enter")
         see(terminal, row, lambda screen, said=said: said in screen)  # type: ignore[misc]
+
+
+def open_line(terminal: Tmux, row: Row) -> None:
+    """Press `:` until the line is open: one that closes at the same moment takes the key, as it takes all others.
+
+    What is typed behind it in the same read is lost.
+    """
+    pressed_at = -math.inf
+
+    def is_open(screen: str) -> bool:
+        nonlocal pressed_at
+        if "ESC closes" not in screen and time.monotonic() - pressed_at > PRESSED_AGAIN:
+            terminal.press(":")
+            pressed_at = time.monotonic()
+        return "ESC closes" in screen
+
+    see(terminal, row, is_open)
 
 
 def see(terminal: Tmux, row: Row, condition: Callable[[str], bool]) -> None:
