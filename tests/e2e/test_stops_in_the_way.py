@@ -218,7 +218,7 @@ def test_lines_with_a_companion_and_two_vehicles_of_one_id(tmux: Callable[..., T
 
 
 def open_line(terminal: Tmux, row: Row) -> None:
-    """Press `:` until the line is open: one that closes at the same moment takes the key, as it takes all others.
+    """Press `:` until the line is open: one that still waits for an answer takes only stops.
 
     What is typed behind it in the same read is lost.
     """
