@@ -15,6 +15,7 @@ from tests.groundstation.ui import frames
 MISSION = ((4.0, 0.6), (4.4, 3.4), (0.4, 3.0), (0.6, 6.2), (4.4, 6.6))
 FENCE = ((-2.2, -2.0), (6.6, -1.4), (6.8, 5.4), (4.8, 9.6), (-2.4, 9.0))
 EXCLUDED, RALLY, ADDED = (2.4, 4.9), (-1.2, 7.6), (0.8, 8.2)
+FENCE_QUESTION = "switched off: switch it on"
 Wait = Callable[[Callable[[], bool]], Awaitable[None]]
 
 
@@ -33,6 +34,9 @@ async def map_picture(app: ConsoleApp, pilot: Pilot[int], wait: Wait) -> frames.
     await pilot.press("tab", "tab", "enter", *"circle out", "enter", "down", "down", "down", "down", "enter", "end")
     await pilot.press("backspace", "1", "enter", *["tab"] * 1)
     await _upload(pilot, model, wait)
+    await wait(lambda: FENCE_QUESTION in frames.text(app))
+    await pilot.press("y")
+    await wait(lambda: FENCE_QUESTION not in frames.text(app))
     await pilot.press("e")
     await _draw(pilot, model, (RALLY,))
     await _upload(pilot, model, wait)
