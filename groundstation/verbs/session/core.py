@@ -69,6 +69,8 @@ class VerbCore:
 
     def hear(self, received: Received, now: float) -> None:
         """Handle one message, which the station has handled; the HEARTBEAT of a vehicle begins the conversation."""
+        if type(received.message) is m.SetupSigning:
+            received = received._replace(message=m.hide_key(received.message))
         if is_vehicle(received.message):
             self._heartbeat.greet(received.peer, now)
             self.add_vehicles(now)
@@ -175,8 +177,6 @@ class OwnCore(VerbCore):
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message."""
-        if type(received.message) is m.SetupSigning:
-            received = received._replace(message=m.hide_key(received.message))
         self.station.receive(received, now)
         self.station.services.collect(now)
         self.hear(received, now)

@@ -88,7 +88,7 @@ def fit_view(value: TrackValue, across: int, down: int) -> MapView:
 
 
 def _zoomed(view: MapView, zoom: int, vehicle: Point, dots: int) -> MapView:
-    """Return a view that shows less (zoom > 0), around the vehicle, or more of the station_info."""
+    """Return a view that shows less (zoom > 0), around the vehicle, or more of the surroundings."""
     scale = max(MIN_SCALE / 4, view.scale * 0.5**zoom)
     ring = _ring(scale * max(8, dots) / 5)
     north, east = vehicle if zoom > 0 else (view.north, view.east)

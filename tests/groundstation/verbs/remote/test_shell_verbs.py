@@ -20,6 +20,7 @@ from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.station_core import StationCore
+from link.core import Received
 from link.links import open_links
 from link.runner import Runner
 from tests.fakes.params import Param
@@ -118,6 +119,26 @@ def test_an_interrupted_or_killed_shell_ends_its_verb_in_order(killed: bool) -> 
 
     with foreign_vehicle() as vehicle:
         vehicle.on_command[MAG_CAL_START] = lambda: vehicle.send(progress(40))
+        with_station(vehicle, use)
+
+
+def test_a_verb_gets_no_signing_key_that_is_heard() -> None:
+    heard: list[m.SetupSigning] = []
+
+    def tap(received: Received, now: float) -> None:
+        if isinstance(received.message, m.SetupSigning):
+            heard.append(received.message)
+
+    async def use(shells: Shells) -> None:
+        core = StationCore(shells.station, 1, "a shell", shells.flush)
+        core.taps.append(tap)
+        core.join()
+        vehicle.send(m.SetupSigning(255, 190, [7] * 32, 1))
+        await shells.see(lambda: bool(heard))
+        assert not any(heard[0].secret_key)
+        core.leave()
+
+    with foreign_vehicle() as vehicle:
         with_station(vehicle, use)
 
 
