@@ -15,7 +15,7 @@ Fetch = Callable[[bytes], Awaitable[tuple[RequestReport, bytes]]]
 """Downloads behind the beginning that is there already; returns the report and what arrived from the start."""
 
 
-class Arrived:
+class PartialDownload:
     """What has arrived of a download, also when it is interrupted. `beginning_of` takes the number of the request."""
 
     def __init__(self, beginning_of: Callable[[int], bytes]) -> None:
@@ -38,7 +38,7 @@ class Arrived:
 
 
 async def download_to(
-    files: Files, file: str, fetch: Fetch, arrived: Arrived, *, overwrite: bool, resumable: bool = True
+    files: Files, file: str, fetch: Fetch, arrived: PartialDownload, *, overwrite: bool, resumable: bool = True
 ) -> RequestReport:
     """Download into `file`. What has arrived is kept every few seconds, and when the verb is interrupted."""
     await files.check_new(file, overwrite=overwrite)
@@ -68,7 +68,7 @@ async def download_to(
     return report
 
 
-async def _keep_regularly(files: Files, file: str, arrived: Arrived, size: int) -> None:
+async def _keep_regularly(files: Files, file: str, arrived: PartialDownload, size: int) -> None:
     """Keep what has arrived if it is more than `size` bytes, again and again."""
     while True:
         await asyncio.sleep(KEEP_PERIOD)

@@ -11,7 +11,7 @@ from groundstation.vehicles.requests.disk_jobs import name_problem
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.common.transfer import Arrived, download_to
+from groundstation.verbs.common.transfer import PartialDownload, download_to
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
 from link.services.ftp.job import FtpOutcome
@@ -39,7 +39,7 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
     if not options.local and (problem := name_problem(local)):
         raise VerbError(ExitCode.USAGE, f"{problem}: name the local file, too")
 
-    arrived = Arrived(files.beginning_of)
+    arrived = PartialDownload(files.beginning_of)
 
     async def fetch(have: bytes) -> tuple[RequestReport, bytes]:
         return await download_file(session, options.remote, have, arrived)
@@ -84,7 +84,9 @@ async def crc(session: VerbSession, options: argparse.Namespace, output: Output)
     return ExitCode.DIFFERS
 
 
-async def download_file(session: VerbSession, path: str, have: bytes, arrived: Arrived) -> tuple[RequestReport, bytes]:
+async def download_file(
+    session: VerbSession, path: str, have: bytes, arrived: PartialDownload
+) -> tuple[RequestReport, bytes]:
     """Download a file behind the beginning `have`; return how that ended, and what is there from the start."""
     files = session.services.files
 

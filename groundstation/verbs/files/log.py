@@ -13,7 +13,7 @@ from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.requests.transfer_requests import LOG_FOLDER, log_ending, log_path
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.common.transfer import Arrived, download_to
+from groundstation.verbs.common.transfer import PartialDownload, download_to
 from groundstation.verbs.files.ftp import download_file
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
@@ -40,7 +40,7 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
     path = await _path(session, log)
     file = options.file or f"{session.vehicle.system}-{log.number:05}{log_ending(session.vehicle.autopilot)}"
 
-    arrived = Arrived(requests.beginning_of if path is None else files.beginning_of)
+    arrived = PartialDownload(requests.beginning_of if path is None else files.beginning_of)
 
     async def fetch(have: bytes) -> tuple[RequestReport, bytes]:
         if path is not None:

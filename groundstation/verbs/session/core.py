@@ -35,6 +35,26 @@ Tap = Callable[[Received, float], None]
 """Takes each message that arrives, and the time."""
 
 
+class Waiters:
+    """Conditions that a verb waits for, checked whenever something may have changed."""
+
+    def __init__(self) -> None:
+        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+
+    def add(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
+        """Return a future that is done once `condition` holds at a check."""
+        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters.append((condition, found))
+        return found
+
+    def check(self) -> None:
+        """End those whose condition holds, and forget those that have ended."""
+        for condition, found in self._waiters:
+            if not found.done() and condition():
+                found.set_result(None)
+        self._waiters = [each for each in self._waiters if not each[1].done()]
+
+
 class VerbCore:
     """A verb on `station`: that of its own process (OwnCore), or of one that runs (StationCore).
 
@@ -65,7 +85,7 @@ class VerbCore:
         """Our system and component id."""
         self._wanted = wanted
         self._heartbeat = HeartbeatSender(0.0)
-        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+        self._waiters = Waiters()
 
     def hear(self, received: Received, now: float) -> None:
         """Handle one message, which the station has handled; the HEARTBEAT of a vehicle begins the conversation."""
@@ -82,7 +102,7 @@ class VerbCore:
             tap(received, now)
         if self.chosen is None and not self.has_heard_all:
             self._choose(now)
-        self._look()
+        self._waiters.check()
 
     def add_vehicles(self, now: float) -> None:
         """Take the vehicles of the station that are heard, and leave out those for which it has no place."""
@@ -98,7 +118,7 @@ class VerbCore:
         contact = self.contacts.get(m.target_system(message))
         if contact is not None:
             contact.handle_refused(message, why)
-            self._look()
+            self._waiters.check()
 
     def tick(self, now: float) -> None:
         """Send heartbeats, repeat what is overdue."""
@@ -108,7 +128,7 @@ class VerbCore:
             self._choose(now)
         for contact in self.contacts.values():
             contact.tick(now)
-        self._look()
+        self._waiters.check()
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Keep the reports of the links."""
@@ -135,9 +155,7 @@ class VerbCore:
 
     def add_waiter(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
         """Return a future that is done once `condition` holds, checked after each message and tick."""
-        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._waiters.append((condition, found))
-        return found
+        return self._waiters.add(condition)
 
     def _choose(self, now: float) -> None:
         """Choose the vehicle. One that is not heard as an autopilot yet may be a script on board of it."""
@@ -148,12 +166,6 @@ class VerbCore:
             ):
                 self.chosen = contact
                 return
-
-    def _look(self) -> None:
-        for condition, found in self._waiters:
-            if not found.done() and condition():
-                found.set_result(None)
-        self._waiters = [each for each in self._waiters if not each[1].done()]
 
 
 class OwnCore(VerbCore):

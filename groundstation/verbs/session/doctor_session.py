@@ -14,6 +14,7 @@ from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.operator_core import OperatorCore
 from groundstation.verbs.common.arguments import is_chosen
+from groundstation.verbs.session.core import Waiters
 from groundstation.verbs.session.link_reasons import describe_silence
 from groundstation.verbs.session.running import VerbLinks, run_beside
 from groundstation.verbs.session.station_link import StationRunner
@@ -32,7 +33,7 @@ class DoctorSession:
     ) -> None:
         self._core, self._feed, self._request, self._runner = core, feed, request, runner
         self._numbers = 0
-        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+        self._waiters = Waiters()
 
     def take_number(self) -> int:
         """Return the number of the next request."""
@@ -57,8 +58,7 @@ class DoctorSession:
 
     async def until(self, condition: Callable[[], bool], within: float) -> bool:
         """Wait until a condition holds, `within` s at most; return whether it does."""
-        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._waiters.append((condition, found))
+        found = self._waiters.add(condition)
         self.look()
         try:
             async with asyncio.timeout(within):
@@ -69,10 +69,7 @@ class DoctorSession:
 
     def look(self) -> None:
         """Check what the verb waits for."""
-        for condition, found in self._waiters:
-            if not found.done() and condition():
-                found.set_result(None)
-        self._waiters = [each for each in self._waiters if not each[1].done()]
+        self._waiters.check()
 
     async def find_vehicle(self, wait: float, wanted: int | str | None) -> bool:
         """Wait for a vehicle and select it; return whether it is there."""
