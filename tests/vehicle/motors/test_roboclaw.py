@@ -15,7 +15,7 @@ from tests.vehicle.motors.serial_contract import (
     SerialContract,
     fault_of,
 )
-from tests.waits import Waits
+from tests.waits import Waits, wait_until
 from vehicle.motors import MotorError, MotorSettingsError, arming_check
 from vehicle.motors.drivers import open_motors
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
@@ -86,7 +86,16 @@ class TestRoboClaw(SerialContract):
             motors.disable()
         assert min(self.refused_in(motors) for _ in range(10)) < 0.06  # the best of them: the machine is shared
         line.controller.mute = False
-        motors.disable()
+        wait_until(lambda: self.is_stopped(motors), "acknowledged again")  # one try a cycle, 20 ms: the line may be late
+
+    @staticmethod
+    def is_stopped(motors: RoboClawMotors) -> bool:
+        """Return whether `disable` succeeds."""
+        try:
+            motors.disable()
+        except MotorError:
+            return False
+        return True
 
     @staticmethod
     def refused_in(motors: RoboClawMotors) -> float:
