@@ -35,7 +35,7 @@ class ExportChoice(msgspec.Struct, frozen=True):
         return "" if any(each in name for each in "*?[") else name
 
 
-class Output(msgspec.Struct, frozen=True):
+class ExportOutput(msgspec.Struct, frozen=True):
     """A file to write. `format` is a key of FORMATS."""
 
     format: str
@@ -62,7 +62,7 @@ class ExportResult(msgspec.Struct):
     """What an export has done."""
 
     written: list[Written] = msgspec.field(default_factory=list)
-    empty: list[Output] = msgspec.field(default_factory=list)
+    empty: list[ExportOutput] = msgspec.field(default_factory=list)
     """Outputs for which there was nothing: they are not written."""
     damage: list[Damage] = msgspec.field(default_factory=list)
     """The first of them."""
@@ -84,7 +84,7 @@ KEPT_DAMAGE = 20
 class Export:
     """Reads `path` and writes the outputs. Files appear when all of it is done, and not at all otherwise."""
 
-    def __init__(self, path: str, outputs: Sequence[Output], choice: ExportChoice) -> None:
+    def __init__(self, path: str, outputs: Sequence[ExportOutput], choice: ExportChoice) -> None:
         self._path = path
         self._outputs = outputs
         self._choice = choice

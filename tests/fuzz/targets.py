@@ -32,8 +32,7 @@ from link.signing.signature import STAMP_MAX
 from link.tlog.tlog import read_records
 from tests.fuzz.files import as_file
 from tests.link.signing.signed import DAY, DRIVER, NOW, STRANGER, keep, signed
-from vehicle.config.config import ConfigError as VehicleConfigError
-from vehicle.config.config import parse_config
+from vehicle.config.config import RoverConfigError, parse_config
 from vehicle.params import Params
 from vehicle.rover import Rover
 from vehicle.storage.checksummed_file import CorruptFileError, add_checksum
@@ -192,7 +191,7 @@ TARGETS: dict[str, Callable[[bytes], None]] = {
     "runtime-socket": runtime_socket,
     "config": parser(lambda text: as_file(text, read_config), ConfigError),
     "keymap": parser(lambda text: as_file(text, lambda path: load_keymap(str(path))), KeymapError),
-    "rover-toml": parser(lambda text: parse_config(text, "rover.toml"), VehicleConfigError),
+    "rover-toml": parser(lambda text: parse_config(text, "rover.toml"), RoverConfigError),
     "plan": parser(lambda text: parse_plan(text, "x.plan"), FileFormatError),
     "waypoints": parser(lambda text: parse_waypoints(text, "x.waypoints"), FileFormatError),
     "param-file": parser(lambda text: parse_params(text, "x.param"), FileFormatError),

@@ -20,7 +20,7 @@ from link.transport.transports import open_transports
 from vehicle.accessories import OFF
 from vehicle.accessories.output import AccessorySpec
 from vehicle.accessories.settings import build_specs
-from vehicle.config.config import Config, ConfigError, load
+from vehicle.config.config import Config, RoverConfigError, load
 from vehicle.config.conflicts import find_motor_conflicts
 from vehicle.config.effective_params import EffectiveParams, load_effective_params
 from vehicle.drive.mixer import MIXERS
@@ -63,7 +63,7 @@ def run_checks(path: str, state: str | None = None) -> Iterator[CheckResult]:
     """Yield the results one by one; only those of the file if it has errors. `state` overrides the state folder."""
     try:
         config = load(path)
-    except ConfigError as error:
+    except RoverConfigError as error:
         yield from (CheckResult("settings", False, problem, user_error=True) for problem in error.problems)
         return
     yield CheckResult("settings", True, path)

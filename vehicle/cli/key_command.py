@@ -19,7 +19,7 @@ from link.signing.keys import SigningKey
 from link.signing.missing_package import MissingPackageError
 from link.signing.role import ROLES
 from vehicle.cli.subcommand import DONE, SubcommandError
-from vehicle.config.config import DEFAULT_FILE, ConfigError, load
+from vehicle.config.config import DEFAULT_FILE, RoverConfigError, load
 from vehicle.config.effective_params import state_folder_of
 
 
@@ -30,7 +30,7 @@ def _one_line(run: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Na
     def wrapped(options: argparse.Namespace) -> int:
         try:
             return run(options)
-        except (KeyActionError, KeyFileError, SecretInputError, MissingPackageError, ConfigError) as error:
+        except (KeyActionError, KeyFileError, SecretInputError, MissingPackageError, RoverConfigError) as error:
             raise SubcommandError(str(error)) from None
 
     return wrapped
@@ -92,7 +92,7 @@ def revoke(options: argparse.Namespace) -> int:
 
 
 def key_path(options: argparse.Namespace) -> Path:
-    """Return the key file of the vehicle that `options` select. Raises ConfigError."""
+    """Return the key file of the vehicle that `options` select. Raises RoverConfigError."""
     if options.state or not (options.config or Path(DEFAULT_FILE).exists()):
         return state_folder_of(options.state) / FILE
     return state_folder_of(load(options.config or DEFAULT_FILE).state) / FILE

@@ -81,11 +81,11 @@ def _load_config(options: argparse.Namespace, parser: CommandLineParser) -> Conf
     """Load the configuration file and apply the options of the command line, which take precedence."""
     from msgspec.structs import replace
 
-    from vehicle.config.config import Config, ConfigError, Identity, load
+    from vehicle.config.config import Config, Identity, RoverConfigError, load
 
     try:
         config = Config() if options.config is None else load(options.config)
-    except ConfigError as error:
+    except RoverConfigError as error:
         parser.exit(2, f"vehicle: {error}\n")
     if options.motors:
         config = replace(config, motors={"driver": options.motors})

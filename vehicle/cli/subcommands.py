@@ -175,7 +175,7 @@ def _systemd_unit(options: argparse.Namespace) -> int:
 def _motor_test(options: argparse.Namespace) -> int:
     from vehicle.cli.motor_test import RefusedError, build_options, run_motor_test
     from vehicle.cli.safe_stop import read_motor_table
-    from vehicle.config.config import ConfigError, load
+    from vehicle.config.config import RoverConfigError, load
     from vehicle.config.effective_params import load_effective_params
     from vehicle.motors import MotorError
 
@@ -194,7 +194,7 @@ def _motor_test(options: argparse.Namespace) -> int:
                 "Are the wheels in the air? [y/N] "
             )
         ended = run_motor_test(config.motors, test)
-    except (ConfigError, RefusedError) as error:
+    except (RoverConfigError, RefusedError) as error:
         raise SubcommandError(str(error)) from error
     except MotorError as error:
         sys.stderr.write(f"vehicle motor-test: {error}\n")

@@ -29,7 +29,7 @@ from vehicle.sensors.suite import SensorSettings
 DEFAULT_FILE = "rover.toml"
 
 
-class ConfigError(Exception):
+class RoverConfigError(Exception):
     """The configuration file is invalid. Each of `problems` is one line: file, key, error and remedy."""
 
     def __init__(self, *problems: str) -> None:
@@ -77,27 +77,27 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def load(path: str | Path) -> Config:
-    """Read a configuration file. Raises ConfigError."""
+    """Read a configuration file. Raises RoverConfigError."""
     try:
         return _build(read_toml(path), str(path))
     except TomlError as error:
         absent = isinstance(error.__cause__, FileNotFoundError)
         hint = f"; `vehicle init {path}` writes a template" if absent else ""
-        raise ConfigError(f"{error}{hint}") from error
+        raise RoverConfigError(f"{error}{hint}") from error
 
 
 def parse_config(text: str, name: str) -> Config:
-    """Parse the text of a configuration file. Raises ConfigError."""
+    """Parse the text of a configuration file. Raises RoverConfigError."""
     try:
         return _build(parse_toml(text, name), name)
     except TomlError as error:
-        raise ConfigError(str(error)) from error
+        raise RoverConfigError(str(error)) from error
 
 
 def _build(table: Mapping[str, Any], name: str) -> Config:
     problems = [f"{name}: {problem}" for problem in list(find_unsupported(table)) or _problems(table)]
     if problems:
-        raise ConfigError(*problems)
+        raise RoverConfigError(*problems)
     return msgspec.convert(table, Config)
 
 

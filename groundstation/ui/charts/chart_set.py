@@ -13,7 +13,7 @@ MAX_CHARTS, MAX_LINES = 6, 4
 """Charts of a view, and lines of a chart."""
 
 
-class Chart(msgspec.Struct):
+class ChartSpec(msgspec.Struct):
     """Lines on one scale."""
 
     title: str
@@ -24,14 +24,14 @@ class NamedView(msgspec.Struct):
     """Charts under a name."""
 
     name: str
-    charts: list[Chart]
+    charts: list[ChartSpec]
     own: bool = False
     """Of the user, not a ready one."""
 
 
 def ready_view(ready: ReadyView) -> NamedView:
     """Return the charts of a ready view."""
-    charts = [Chart(each.title, [SeriesSpec(item) for item in each.fields[:MAX_LINES]]) for each in ready.charts]
+    charts = [ChartSpec(each.title, [SeriesSpec(item) for item in each.fields[:MAX_LINES]]) for each in ready.charts]
     return NamedView(ready.name, charts[:MAX_CHARTS])
 
 
@@ -39,7 +39,7 @@ class ChartSet:
     """The charts that are shown, and the cursor in the list of their lines."""
 
     def __init__(self) -> None:
-        self.charts: list[Chart] = []
+        self.charts: list[ChartSpec] = []
         self.name = ""
         """Of the view that was chosen last."""
         self.cursor = 0
@@ -47,7 +47,7 @@ class ChartSet:
 
     def show(self, view: NamedView) -> None:
         """Show the charts of a view; changes do not change the view."""
-        self.charts = [Chart(chart.title, list(chart.lines)) for chart in view.charts]
+        self.charts = [ChartSpec(chart.title, list(chart.lines)) for chart in view.charts]
         self.name, self.cursor = view.name, 0
 
     @property
@@ -94,7 +94,7 @@ class ChartSet:
         if chart is None or chart >= len(self.charts):
             if len(self.charts) >= MAX_CHARTS:
                 return f"{MAX_CHARTS} charts are the most: x removes a field, a number 1-6 behind the name says where"
-            self.charts.append(Chart(spec.field.field))
+            self.charts.append(ChartSpec(spec.field.field))
             chart = len(self.charts) - 1
         lines = self.charts[chart].lines
         if spec in lines:
@@ -122,7 +122,7 @@ class ChartSet:
 
     def copy(self, name: str) -> NamedView:
         """Return what is shown as a view of the user."""
-        return NamedView(name, [Chart(chart.title, list(chart.lines)) for chart in self.charts], own=True)
+        return NamedView(name, [ChartSpec(chart.title, list(chart.lines)) for chart in self.charts], own=True)
 
 
 def next_view(views: Sequence[NamedView], name: str) -> NamedView | None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import msgspec
 
-from groundstation.ui.charts.chart_set import MAX_CHARTS, MAX_LINES, Chart, NamedView
+from groundstation.ui.charts.chart_set import MAX_CHARTS, MAX_LINES, ChartSpec, NamedView
 from groundstation.ui.charts.series import SeriesSpec
 from groundstation.views.charts import FieldId
 from link.runtime.whole_file import replace_file
@@ -58,7 +58,7 @@ def save_views(folder: Path, views: list[NamedView]) -> Path:
     return path
 
 
-def _saved_chart(chart: Chart) -> _SavedChart:
+def _saved_chart(chart: ChartSpec) -> _SavedChart:
     return _SavedChart(
         chart.title, [_SavedLine(line.field, line.factor, line.minus, line.rate) for line in chart.lines]
     )
@@ -66,7 +66,7 @@ def _saved_chart(chart: Chart) -> _SavedChart:
 
 def _view(saved: _SavedView) -> NamedView:
     charts = [
-        Chart(
+        ChartSpec(
             chart.title,
             [SeriesSpec(line.field, line.factor, line.minus, line.rate) for line in chart.lines[:MAX_LINES]],
         )

@@ -20,7 +20,7 @@ BAUDS = (57600, 115200, 921600, 38400, 9600)
 """Baud rates to choose from: radios, USB ports of autopilots, companion computers, old radios, GPS-like devices."""
 
 
-class Panel(IntEnum):
+class ConnectPanel(IntEnum):
     """Panels, in the order of TAB."""
 
     HEARD = 0
@@ -58,11 +58,11 @@ class ConnectModel:
         self._file = file or RecentFile()
         self.recent = RecentEndpoints()
         self.view: ConnectView | None = None
-        self.chosen = Panel.HEARD
+        self.chosen = ConnectPanel.HEARD
         self.baud = BAUDS[0]
         self.search = False
         """Also ask the network for vehicles that announce themselves."""
-        self._cursors = dict.fromkeys(Panel, 0)
+        self._cursors = dict.fromkeys(ConnectPanel, 0)
         self._awaited: AddLink | None = None
         self._wanted_system: int | None = None
         self._wanted_name = ""
@@ -101,15 +101,15 @@ class ConnectModel:
         """Endpoints used before, pinned ones first."""
         return self.recent.listed
 
-    def count(self, panel: Panel) -> int:
+    def count(self, panel: ConnectPanel) -> int:
         """Return how many rows a panel has."""
         return (len(self.heard), len(self.entries), len(self.ports), len(SIMULATORS), len(self.logs))[panel]
 
-    def cursor(self, panel: Panel) -> int:
+    def cursor(self, panel: ConnectPanel) -> int:
         """Return the row of the cursor in a panel."""
         return max(0, min(self._cursors[panel], self.count(panel) - 1))
 
-    def shown_cursor(self, panel: Panel) -> int | None:
+    def shown_cursor(self, panel: ConnectPanel) -> int | None:
         """Return the row to mark: in the chosen panel only, and where there is a row."""
         return self.cursor(panel) if panel is self.chosen and self.count(panel) else None
 
@@ -119,7 +119,7 @@ class ConnectModel:
 
     def choose_panel(self, step: int) -> None:
         """Choose the next panel, or the one before."""
-        panels = [panel for panel in Panel if panel is not Panel.LOGS or self.shows_logs]
+        panels = [panel for panel in ConnectPanel if panel is not ConnectPanel.LOGS or self.shows_logs]
         at = panels.index(self.chosen) if self.chosen in panels else 0
         self.chosen = panels[(at + step) % len(panels)]
 
@@ -140,7 +140,7 @@ class ConnectModel:
     def choice(self) -> Choice:
         """What ENTER would do now."""
         if not self.count(self.chosen):
-            if self.chosen is Panel.HEARD:
+            if self.chosen is ConnectPanel.HEARD:
                 return Choice("starts a simulated rover", simulator=SIMULATORS[0].kind)
             return Choice("")
         at = self.cursor(self.chosen)
@@ -239,16 +239,16 @@ class ConnectModel:
 
     def pin(self) -> None:
         """Pin the endpoint under the cursor, or unpin it."""
-        if self.chosen is Panel.RECENT and self.entries:
-            entry = self.entries[self.cursor(Panel.RECENT)]
+        if self.chosen is ConnectPanel.RECENT and self.entries:
+            entry = self.entries[self.cursor(ConnectPanel.RECENT)]
             self._change(lambda recent: recent.pin(entry.endpoint, not entry.pinned))
-            self._cursors[Panel.RECENT] = [each.endpoint for each in self.entries].index(entry.endpoint)
+            self._cursors[ConnectPanel.RECENT] = [each.endpoint for each in self.entries].index(entry.endpoint)
 
     def forget(self) -> str:
         """Forget the endpoint under the cursor; return it, "" without one."""
-        if self.chosen is not Panel.RECENT or not self.entries:
+        if self.chosen is not ConnectPanel.RECENT or not self.entries:
             return ""
-        entry = self.entries[self.cursor(Panel.RECENT)]
+        entry = self.entries[self.cursor(ConnectPanel.RECENT)]
         self._change(lambda recent: recent.forget(entry.endpoint))
         return entry.endpoint
 

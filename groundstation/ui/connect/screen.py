@@ -15,7 +15,7 @@ from groundstation.intents.vehicle import SelectVehicle
 from groundstation.sitl.simulators import SIMULATORS
 from groundstation.ui.base.list_keys import rows_to_move
 from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
-from groundstation.ui.connect.model import ConnectModel, Panel
+from groundstation.ui.connect.model import ConnectModel, ConnectPanel
 from groundstation.ui.connect.tables import heard_value, logs_value, ports_value, recent_value, simulators_value
 from groundstation.ui.connect.welcome import Welcome, WelcomeValue
 from groundstation.ui.display.display_state import DisplayState, ScreenKey
@@ -41,7 +41,7 @@ class ConnectScreen(ConsoleScreen):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - Textual declares it so
     KEYS = (
         ScreenKey("enter", "Connect", "Connect to what is marked; with nothing heard, start a simulated rover"),
-        ScreenKey("tab", "Panel", "Next list: heard now, recent, serial ports, simulators"),
+        ScreenKey("tab", "ConnectPanel", "Next list: heard now, recent, serial ports, simulators"),
         ScreenKey("colon", "Type one", "Type an endpoint"),
         ScreenKey("s", "Simulator", "Start a simulated rover; the other simulators are listed with their keys"),
         ScreenKey("W", "Watch", "Connect to what is marked, or to a typed endpoint, and never send a byte"),
@@ -124,7 +124,7 @@ class ConnectScreen(ConsoleScreen):
         """Give the arrows to the list of a widget."""
         if widget not in self._tables:
             return None
-        self._model.chosen = Panel(self._tables.index(widget))
+        self._model.chosen = ConnectPanel(self._tables.index(widget))
         self._show()
         return LIST_ARROWS
 
@@ -245,20 +245,20 @@ class ConnectScreen(ConsoleScreen):
     def _show(self) -> None:
         model, snapshot = self._model, self._state.snapshot
         model.shows_logs = self.size.width >= WIDE
-        if model.chosen is Panel.LOGS and not model.shows_logs:
+        if model.chosen is ConnectPanel.LOGS and not model.shows_logs:
             model.choose_panel(1)
         known = {each.name: found for each, found in self._disk.summaries.items()}
-        self._logs.show(logs_value(model.logs, model.shown_cursor(Panel.LOGS), known))
+        self._logs.show(logs_value(model.logs, model.shown_cursor(ConnectPanel.LOGS), known))
         self._logs.border_subtitle = "o replays it · ENTER shows it on the Files screen"
         opened = model.view.endpoints if model.view else ()
-        self._heard.show(heard_value(model.view, model.shown_cursor(Panel.HEARD)))
-        self._recent.show(recent_value(model.entries, opened, model.shown_cursor(Panel.RECENT)))
-        self._ports.show(ports_value(model.ports, opened, model.baud, model.shown_cursor(Panel.PORTS)))
-        self._simulators.show(simulators_value(model.shown_cursor(Panel.SIMULATORS), snapshot.simulator))
+        self._heard.show(heard_value(model.view, model.shown_cursor(ConnectPanel.HEARD)))
+        self._recent.show(recent_value(model.entries, opened, model.shown_cursor(ConnectPanel.RECENT)))
+        self._ports.show(ports_value(model.ports, opened, model.baud, model.shown_cursor(ConnectPanel.PORTS)))
+        self._simulators.show(simulators_value(model.shown_cursor(ConnectPanel.SIMULATORS), snapshot.simulator))
         self._heard.border_subtitle = plain("asked nobody, sent nothing yet" if not opened else f"{len(opened)} open")
         self._recent.border_subtitle = "* pinned · p pins · x forgets"
         self._ports.border_subtitle = "live"
-        for panel, table in zip(Panel, self._tables, strict=True):
+        for panel, table in zip(ConnectPanel, self._tables, strict=True):
             table.set_class(panel is model.chosen, "-chosen")
         turn, endpoints = 0 if self._state.still else int(snapshot.uptime * 4), snapshot.endpoints
         self._welcome.show(

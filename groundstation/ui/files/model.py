@@ -30,7 +30,7 @@ DOWNLOAD = "download "
 """With which the text of a task begins that writes a file here."""
 
 
-class Panel(IntEnum):
+class FilesPanel(IntEnum):
     """Panels, in the order of TAB."""
 
     LOGS = 0
@@ -47,8 +47,8 @@ class FilesModel:
         self.disk = LocalFolder(folder)
         self.view: FilesView | None = None
         self.tasks = TaskList()
-        self.chosen = Panel.LOGS
-        self._cursors = dict.fromkeys(Panel, 0)
+        self.chosen = FilesPanel.LOGS
+        self._cursors = dict.fromkeys(FilesPanel, 0)
         self._open: list[str] = [ROOT]
         self._system: int | None = None
         self._refresh: dict[int, str] = {}
@@ -91,9 +91,9 @@ class FilesModel:
     def mark_here(self, name: str) -> None:
         """Put the cursor on a file of this machine."""
         self.disk.scan()
-        self.chosen = Panel.HERE
+        self.chosen = FilesPanel.HERE
         names = [each.name for each in self.here]
-        self._cursors[Panel.HERE] = names.index(name) if name in names else 0
+        self._cursors[FilesPanel.HERE] = names.index(name) if name in names else 0
 
     @property
     def vehicle(self) -> str:
@@ -123,15 +123,15 @@ class FilesModel:
 
     # ---- cursors ----
 
-    def count(self, panel: Panel) -> int:
+    def count(self, panel: FilesPanel) -> int:
         """Return how many rows a panel has."""
         return (len(self.logs), len(self.tree), len(self.here), len(self.tasks.lines))[panel]
 
-    def cursor(self, panel: Panel) -> int:
+    def cursor(self, panel: FilesPanel) -> int:
         """Return the row of the cursor in a panel."""
         return max(0, min(self._cursors[panel], self.count(panel) - 1))
 
-    def shown_cursor(self, panel: Panel) -> int | None:
+    def shown_cursor(self, panel: FilesPanel) -> int | None:
         """Return the row to mark: in the chosen panel only, and where there is a row."""
         return self.cursor(panel) if panel is self.chosen and self.count(panel) else None
 
@@ -141,27 +141,27 @@ class FilesModel:
 
     def choose_panel(self, step: int) -> None:
         """Choose the next panel, or the one before."""
-        self.chosen = Panel((self.chosen + step) % len(Panel))
+        self.chosen = FilesPanel((self.chosen + step) % len(FilesPanel))
 
     @property
     def log(self) -> VehicleLog | None:
         """The log under the cursor."""
-        return self.logs[self.cursor(Panel.LOGS)] if self.chosen is Panel.LOGS and self.logs else None
+        return self.logs[self.cursor(FilesPanel.LOGS)] if self.chosen is FilesPanel.LOGS and self.logs else None
 
     @property
     def node(self) -> TreeRow | None:
         """The line of the tree under the cursor."""
-        return self.tree[self.cursor(Panel.TREE)] if self.chosen is Panel.TREE else None
+        return self.tree[self.cursor(FilesPanel.TREE)] if self.chosen is FilesPanel.TREE else None
 
     @property
     def local(self) -> LocalFile | None:
         """The file of this machine under its cursor, in whichever panel the arrows are."""
-        return self.here[self.cursor(Panel.HERE)] if self.here else None
+        return self.here[self.cursor(FilesPanel.HERE)] if self.here else None
 
     @property
     def target_folder(self) -> str:
         """Folder of the vehicle into which an upload goes: that of the cursor in the tree."""
-        node = self.tree[self.cursor(Panel.TREE)]
+        node = self.tree[self.cursor(FilesPanel.TREE)]
         return node.path if node.size is None else str(PurePosixPath(node.path).parent)
 
     # ---- requests ----
@@ -222,7 +222,7 @@ class FilesModel:
 
     def compare(self) -> ServiceIntent | None:
         """Return the request to compare the file of the tree's cursor with that of its name here, or the marked one."""
-        node = self.tree[self.cursor(Panel.TREE)]
+        node = self.tree[self.cursor(FilesPanel.TREE)]
         local = self.disk.find(node.name) or self.local
         if node.size is None or local is None:
             return None

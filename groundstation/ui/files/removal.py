@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.display.wrap import clean
-from groundstation.ui.files.model import FilesModel, Panel
+from groundstation.ui.files.model import FilesModel, FilesPanel
 from groundstation.ui.files.tables import size_text
 
 
@@ -83,8 +83,8 @@ class FileRemoval:
         self._screen.say(f"{clean(name)} is deleted" if problem is None else f"{clean(name)}: not deleted: {problem}")
 
 
-_BY_PANEL: dict[Panel, Callable[[FileRemoval], None]] = {
-    Panel.LOGS: FileRemoval._ask_logs,
-    Panel.HERE: FileRemoval._ask_here,
+_BY_PANEL: dict[FilesPanel, Callable[[FileRemoval], None]] = {
+    FilesPanel.LOGS: FileRemoval._ask_logs,
+    FilesPanel.HERE: FileRemoval._ask_here,
 }
-"""Panel with the cursor -> what is asked there."""
+"""FilesPanel with the cursor -> what is asked there."""

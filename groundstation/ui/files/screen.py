@@ -19,7 +19,7 @@ from groundstation.ui.display.display_state import DisplayState, ScreenKey
 from groundstation.ui.display.wrap import clean, plain
 from groundstation.ui.files.export import ChosenLog, FileExport
 from groundstation.ui.files.exports import LOG_SUFFIX, Exports
-from groundstation.ui.files.model import FilesModel, Panel
+from groundstation.ui.files.model import FilesModel, FilesPanel
 from groundstation.ui.files.removal import FileRemoval
 from groundstation.ui.files.tables import (
     here_value,
@@ -45,7 +45,7 @@ class FilesScreen(ConsoleScreen):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (120, "-wide")]  # noqa: RUF012 - Textual declares it so
     KEYS = (
         ScreenKey("D", "Download", "Download the log or file under the cursor; one that was interrupted goes on"),
-        ScreenKey("tab", "Panel", "Next panel: logs there, files there, files here, tasks"),
+        ScreenKey("tab", "FilesPanel", "Next panel: logs there, files there, files here, tasks"),
         ScreenKey("enter", "Open", "Open or close the folder under the cursor"),
         ScreenKey("x", "Stop task", "Stop the task under the cursor, else the newest; what has arrived is kept"),
         ScreenKey("U", "Upload", "Upload a file of this machine into the folder under the cursor", commands=True),
@@ -120,7 +120,7 @@ class FilesScreen(ConsoleScreen):
         """Give the arrows to the list of a widget."""
         if widget not in self._tables:
             return None
-        self._model.chosen = Panel(self._tables.index(widget))
+        self._model.chosen = FilesPanel(self._tables.index(widget))
         self._show()
         return LIST_ARROWS
 
@@ -139,11 +139,11 @@ class FilesScreen(ConsoleScreen):
     def marked_text(self) -> str:
         """The path of the file under the cursor, or what the task is."""
         model = self._model
-        if model.chosen is Panel.HERE:
+        if model.chosen is FilesPanel.HERE:
             return str(model.disk.folder / model.local.name) if model.local is not None else ""
-        if model.chosen is Panel.TASKS:
+        if model.chosen is FilesPanel.TASKS:
             lines = model.tasks.lines
-            return lines[model.cursor(Panel.TASKS)].what if lines else ""
+            return lines[model.cursor(FilesPanel.TASKS)].what if lines else ""
         return model.download_name if model.node is None else model.node.path
 
     def _toggle(self) -> None:
@@ -182,12 +182,12 @@ class FilesScreen(ConsoleScreen):
 
     def _cancel(self) -> None:
         tasks = self._model.tasks
-        at = self._model.cursor(Panel.TASKS) if self._model.chosen is Panel.TASKS else 0
+        at = self._model.cursor(FilesPanel.TASKS) if self._model.chosen is FilesPanel.TASKS else 0
         if at < len(tasks.running) and not self._exports.cancel(tasks.running[at].number):
             self.context.send(CancelRequest(tasks.running[at].number))
 
     def _replay(self) -> None:
-        local = self._model.local if self._model.chosen is Panel.HERE else None
+        local = self._model.local if self._model.chosen is FilesPanel.HERE else None
         self.open_log(self._model.disk.folder / local.name if local is not None else None)
 
     def _chosen_log(self) -> ChosenLog | str:
@@ -230,18 +230,18 @@ class FilesScreen(ConsoleScreen):
         self._logs.show(logs_value(model))
         self._tree.show(tree_value(model))
         self._here.show(here_value(model))
-        self._tasks.show(tasks_value(model.tasks, model.shown_cursor(Panel.TASKS)))
+        self._tasks.show(tasks_value(model.tasks, model.shown_cursor(FilesPanel.TASKS)))
         self._logs.border_subtitle = plain(_sum([log.size for log in model.logs]))
         self._tree.border_subtitle = "MAVLink FTP"
         self._here.border_subtitle = plain(
             f"{short_path(model.disk.folder)} · {_sum([each.size for each in model.here])}"
         )
         self._tasks.border_subtitle = plain(f"{len(model.tasks.running)} running · x stops one")
-        page = Panel.LOGS if model.chosen is Panel.TASKS else model.chosen
-        for panel, table in zip(Panel, self._tables, strict=True):
+        page = FilesPanel.LOGS if model.chosen is FilesPanel.TASKS else model.chosen
+        for panel, table in zip(FilesPanel, self._tables, strict=True):
             table.set_class(panel is model.chosen, "-chosen")
-            table.set_class(panel not in (page, Panel.TASKS), "-other-page")
-        self._there.set_class(page is Panel.HERE, "-other-page")
+            table.set_class(panel not in (page, FilesPanel.TASKS), "-other-page")
+        self._there.set_class(page is FilesPanel.HERE, "-other-page")
 
 
 def _sum(sizes: Sequence[int]) -> str:

@@ -8,7 +8,7 @@ from groundstation.intents.files import DIFFERS
 from groundstation.ui.base.local_files import LocalFile
 from groundstation.ui.display.task_list import TaskList
 from groundstation.ui.files.log_summary import LogSummary
-from groundstation.ui.files.model import PART, FilesModel, Panel
+from groundstation.ui.files.model import PART, FilesModel, FilesPanel
 from groundstation.ui.files.tree import TreeRow
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE
 from groundstation.ui.widgets.columns import Column
@@ -71,7 +71,7 @@ def logs_value(model: FilesModel) -> RowTableValue:
         return RowTableValue(LOG_COLUMNS, notes=(dim(text),))
     rows = tuple(_log(each, model) for each in model.logs)
     notes = _LOG_NOTES if rows else (dim("no logs: the vehicle has none, or keeps none (a simulation without --tlog)"),)
-    return RowTableValue(LOG_COLUMNS, rows, model.shown_cursor(Panel.LOGS), notes)
+    return RowTableValue(LOG_COLUMNS, rows, model.shown_cursor(FilesPanel.LOGS), notes)
 
 
 def _log(log: VehicleLog, model: FilesModel) -> tuple[Cell, ...]:
@@ -107,7 +107,7 @@ def tree_value(model: FilesModel) -> RowTableValue:
         )
         return RowTableValue(TREE_COLUMNS, notes=notes)
     rows = tuple(_node(each) for each in tree)
-    return RowTableValue(TREE_COLUMNS, rows, model.shown_cursor(Panel.TREE), _TREE_NOTES, titled=False)
+    return RowTableValue(TREE_COLUMNS, rows, model.shown_cursor(FilesPanel.TREE), _TREE_NOTES, titled=False)
 
 
 def _node(each: TreeRow) -> tuple[Cell, ...]:
@@ -129,7 +129,7 @@ def here_value(model: FilesModel) -> RowTableValue:
     if recording is not None and recording.path and not any(map(model.disk.is_recorded, model.here)):
         elsewhere = f"● {recording.path}: {length_text(recording.seconds)}, {size_text(recording.size)}"
         notes = (*notes, Cell(elsewhere, RED))
-    return RowTableValue(HERE_COLUMNS, rows, model.shown_cursor(Panel.HERE), notes)
+    return RowTableValue(HERE_COLUMNS, rows, model.shown_cursor(FilesPanel.HERE), notes)
 
 
 def _local(each: LocalFile, model: FilesModel) -> tuple[Cell, ...]:

@@ -106,7 +106,7 @@ class LineCompositor(Compositor):
                     chops[y][cut] = piece
 
 
-class Ground(NamedTuple):
+class Background(NamedTuple):
     """What is behind the lines of a widget."""
 
     colour: Color
@@ -114,7 +114,7 @@ class Ground(NamedTuple):
     """Of what its lines leave blank at their ends."""
 
 
-def find_ground(widget: Widget) -> Ground | None:
+def find_background(widget: Widget) -> Background | None:
     """Return the ground of a widget that is its lines and nothing else; None for one with a frame or effects."""
     styles = widget.styles
     edges = any(edge for edge, _ in styles.outline)
@@ -123,7 +123,7 @@ def find_ground(widget: Widget) -> Ground | None:
         return None
     behind, colour = widget.background_colors
     inner, _ = widget._styles_cache.get_inner_outer(behind, colour)
-    return Ground(colour, inner.rich_style)
+    return Background(colour, inner.rich_style)
 
 
 def mark_changed(widget: Widget, regions: Iterable[Region]) -> None:

@@ -13,7 +13,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from groundstation.ui.look.colours import style, theme_changes
-from groundstation.ui.terminal.painting import Ground, find_ground, mark_changed
+from groundstation.ui.terminal.painting import Background, find_background, mark_changed
 
 Value = TypeVar("Value")
 
@@ -59,7 +59,7 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         self._value = value
         self._strips: list[Strip] = []
         self._drawn_for = (Size(0, 0), theme_changes())
-        self._ground: tuple[int, Ground | None] = (-1, None)
+        self._ground: tuple[int, Background | None] = (-1, None)
 
     @property
     def value(self) -> Value:
@@ -105,7 +105,7 @@ class Instrument(Widget, Generic[Value], can_focus=False):
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return lines of the whole widget; without frame and effects of the styles sooner than Textual would."""
         if self._ground[0] != theme_changes():
-            self._ground = (theme_changes(), find_ground(self))
+            self._ground = (theme_changes(), find_background(self))
         ground = self._ground[1]
         if ground is None:
             return super().render_lines(crop)

@@ -8,8 +8,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from groundstation.export.export import Export, ExportChoice, ExportResult
-from groundstation.export.export import Output as ExportOutput
+from groundstation.export.export import Export, ExportChoice, ExportOutput, ExportResult
 from groundstation.export.exporter import ExportError, NothingToExportError
 from groundstation.export.log_time import FORMS, LogTime, describe_offset, parse_log_time
 from groundstation.export.table import FORMATS

@@ -32,14 +32,14 @@ routers = [{routers}]
 Name = Annotated[str, msgspec.Meta(min_length=1)]
 
 
-class VehicleRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class FleetVehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One vehicle."""
 
     certificate: Name
     """Common name of its certificate: of several that were made for the same name, only this one counts."""
 
 
-class OperatorRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class FleetOperator(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One operator."""
 
     role: Literal["watch", "drive", "setup"]
@@ -52,8 +52,8 @@ class FleetFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fleet: Name
     listen: Annotated[list[Name], msgspec.Meta(min_length=1)]
     routers: Annotated[list[Name], msgspec.Meta(min_length=1)]
-    vehicles: dict[str, VehicleRow] = {}
-    operators: dict[str, OperatorRow] = {}
+    vehicles: dict[str, FleetVehicle] = {}
+    operators: dict[str, FleetOperator] = {}
 
     @property
     def names(self) -> set[str]:

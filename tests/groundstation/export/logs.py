@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from dialects import messages as m
-from groundstation.export.export import Export, ExportChoice, ExportResult, Output
+from groundstation.export.export import Export, ExportChoice, ExportOutput, ExportResult
 from link.tlog.tlog import encode_record
 from tests.link.frames import frame
 
@@ -76,7 +76,7 @@ def battery(current: int = 1234, remaining: int = 55) -> m.BatteryStatus:
 
 def run(log: Path, *outputs: tuple[str, Path], choice: ExportChoice | None = None) -> ExportResult:
     """Export a log."""
-    export = Export(str(log), [Output(name, str(path)) for name, path in outputs], choice or ExportChoice())
+    export = Export(str(log), [ExportOutput(name, str(path)) for name, path in outputs], choice or ExportChoice())
     for done in export.steps():
         assert 0 <= done <= export.size
     return export.result

@@ -116,11 +116,11 @@ def test_what_is_not_there_is_not_written(log: Path, tmp_path: Path) -> None:
 
 
 def test_an_export_that_is_given_up_leaves_nothing(log: Path, tmp_path: Path) -> None:
-    from groundstation.export.export import Export, Output
+    from groundstation.export.export import Export, ExportOutput
     from groundstation.export.table import FORMATS
 
-    outputs = [Output(name, str(tmp_path / f"out.{name}")) for name in FORMATS if name != "csv"]
-    steps = Export(str(log), [*outputs, Output("csv", str(tmp_path / "tables"))], ExportChoice()).steps()
+    outputs = [ExportOutput(name, str(tmp_path / f"out.{name}")) for name in FORMATS if name != "csv"]
+    steps = Export(str(log), [*outputs, ExportOutput("csv", str(tmp_path / "tables"))], ExportChoice()).steps()
     next(steps)
     assert len(list(tmp_path.iterdir())) == 1 + len(FORMATS)
     steps.close()

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.export.export import Export, ExportChoice, Output
+from groundstation.export.export import Export, ExportChoice, ExportOutput
 from groundstation.host.replay_process import ReplayError, open_log
 from groundstation.recording.log_folder import MEGABYTE, LogFolder, LogLimits
 from groundstation.replay.log_check import LogCheck
@@ -69,7 +69,7 @@ def test_a_cut_at_any_byte_of_the_last_records_loses_one_record() -> None:
 def test_an_export_of_it_names_the_loss(tmp_path: Path) -> None:
     log, out = tmp_path / "cut.tlog", tmp_path / "whole.tlog"
     log.write_bytes(LEFT["the last block is zeros"])
-    export = Export(str(log), [Output("tlog", str(out))], ExportChoice())
+    export = Export(str(log), [ExportOutput("tlog", str(out))], ExportChoice())
     list(export.steps())
     (damage,) = export.result.damage
     assert log.stat().st_size - out.stat().st_size == export.result.damaged_bytes == damage.size

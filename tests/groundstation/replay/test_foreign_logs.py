@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from groundstation.export.export import Export, ExportChoice, Output
+from groundstation.export.export import Export, ExportChoice, ExportOutput
 from groundstation.export.exporter import ExportError
 from groundstation.host.replay_process import ReplayError, open_log
 from groundstation.intents import replay as r
@@ -137,7 +137,7 @@ def test_what_is_lost_at_its_ends_is_named(name: str, before: bytes, behind: byt
     log, out = tmp_path / "log.tlog", tmp_path / "out.tlog"
     log.write_bytes(data)
     assert open_log(log).size == len(data)
-    export = Export(str(log), [Output("tlog", str(out))], ExportChoice())
+    export = Export(str(log), [ExportOutput("tlog", str(out))], ExportChoice())
     list(export.steps())
     assert export.result.damaged_bytes == lost == len(data) - out.stat().st_size
 
@@ -158,4 +158,4 @@ def test_a_file_without_times_is_refused_with_what_to_open(tmp_path: Path) -> No
     with pytest.raises(ReplayError, match=r"frames without times.*open the \.tlog"):
         open_log(rlog)
     with pytest.raises(ExportError, match=r"frames without times.*open the \.tlog"):
-        list(Export(str(rlog), [Output("tlog", str(tmp_path / "x.tlog"))], ExportChoice()).steps())
+        list(Export(str(rlog), [ExportOutput("tlog", str(tmp_path / "x.tlog"))], ExportChoice()).steps())

@@ -18,7 +18,7 @@ from tests.vehicle.words import said_by
 from vehicle.accessories.drivers import DRIVERS
 from vehicle.accessories.output import PulseRange
 from vehicle.accessories.settings import COMMON, build_specs, settings_type
-from vehicle.config.config import ConfigError, parse_config
+from vehicle.config.config import RoverConfigError, parse_config
 from vehicle.config.run_settings import RunSettings, Simulation
 from vehicle.config.schema import build_schema
 from vehicle.config.template import build_template
@@ -33,7 +33,7 @@ PWM = '[motors]\ndriver = "sysfs-pwm"\noutputs = [{ drives = "servo", device = "
 
 
 def problem(text: str) -> str:
-    with pytest.raises(ConfigError) as refusal:
+    with pytest.raises(RoverConfigError) as refusal:
         parse_config(text, "f")
     assert len(refusal.value.problems) == 1
     return refusal.value.problems[0].removeprefix("f: ")

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.config.config import Config, ConfigError, Identity, LogSettings, load, parse_config
+from vehicle.config.config import Config, Identity, LogSettings, RoverConfigError, load, parse_config
 from vehicle.sensors.gps import GpsSettings
 from vehicle.sensors.suite import SensorSettings
 
 
 def problems(text: str) -> tuple[str, ...]:
-    with pytest.raises(ConfigError) as refusal:
+    with pytest.raises(RoverConfigError) as refusal:
         parse_config(text, "rover.toml")
     assert not any("\n" in problem for problem in refusal.value.problems)
     return refusal.value.problems
@@ -141,18 +141,20 @@ def test_several_mistakes_are_all_found() -> None:
     assert [each.split(": ")[1] for each in found] == [
         "endpoints[0]", "lgo", "motors.driver", "params.MAN_TIMEOUT", "params.X"
     ]  # fmt: skip
-    assert str(ConfigError(*found)) == f"{found[0]} (and 4 more; see `vehicle check`)"
+    assert str(RoverConfigError(*found)) == f"{found[0]} (and 4 more; see `vehicle check`)"
 
 
 def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes a template"):
+    with pytest.raises(
+        RoverConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes a template"
+    ):
         load(tmp_path / "rover.toml")
-    with pytest.raises(ConfigError, match=r"aaa: File name too long$"):
+    with pytest.raises(RoverConfigError, match=r"aaa: File name too long$"):
         load("a" * 300)
-    with pytest.raises(ConfigError, match="is a directory; name a file in it"):
+    with pytest.raises(RoverConfigError, match="is a directory; name a file in it"):
         load(tmp_path)
     (tmp_path / "noise").write_bytes(b"\xff\xfe")
-    with pytest.raises(ConfigError, match="byte 1 is not UTF-8 text; save the file as UTF-8, or name another one"):
+    with pytest.raises(RoverConfigError, match="byte 1 is not UTF-8 text; save the file as UTF-8, or name another one"):
         load(tmp_path / "noise")
 
 
@@ -163,5 +165,5 @@ def test_the_mark_of_a_windows_editor_is_no_mistake(tmp_path: Path) -> None:
 
 @given(st.text())
 def test_any_text_is_settings_or_a_refusal(text: str) -> None:
-    with contextlib.suppress(ConfigError):
+    with contextlib.suppress(RoverConfigError):
         assert isinstance(parse_config(text, "f"), Config)

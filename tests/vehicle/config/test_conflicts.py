@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle.config.config import ConfigError, load, parse_config
+from vehicle.config.config import RoverConfigError, load, parse_config
 
 CAR = '[motors]\ndriver = "article-car"\n'
 BOARD = '[motors]\ndriver = "pca9685"\nchannels = [{ channel = 0 }]\n'
@@ -34,7 +34,7 @@ def wheels(*pins: int) -> str:
     ],
 )
 def test_what_is_wanted_twice_is_said_before_anything_is_opened(text: str, says: str) -> None:
-    with pytest.raises(ConfigError) as refusal:
+    with pytest.raises(RoverConfigError) as refusal:
         parse_config(text, "f")
     assert len(refusal.value.problems) == 1
     assert refusal.value.problems[0].startswith(f"f: {says}")
@@ -47,7 +47,7 @@ def test_one_serial_port_cannot_be_the_link_and_the_motors(driver: str, tmp_path
     file = tmp_path / "rover.toml"
     motors = f'[motors]\ndriver = "{driver}"\nport = "{tmp_path}/serial0"\n'
     file.write_text(f'endpoints = ["udpin:0.0.0.0:14550", "serial:{tmp_path}/ttyAMA0:57600"]\n{motors}')
-    with pytest.raises(ConfigError, match=r"motors: .*/ttyAMA0 is already used by endpoints\[1\]"):
+    with pytest.raises(RoverConfigError, match=r"motors: .*/ttyAMA0 is already used by endpoints\[1\]"):
         load(file)
 
 

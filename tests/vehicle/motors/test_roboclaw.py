@@ -86,7 +86,9 @@ class TestRoboClaw(SerialContract):
             motors.disable()
         assert min(self.refused_in(motors) for _ in range(10)) < 0.06  # the best of them: the machine is shared
         line.controller.mute = False
-        wait_until(lambda: self.is_stopped(motors), "acknowledged again")  # one try a cycle, 20 ms: the line may be late
+        wait_until(
+            lambda: self.is_stopped(motors), "acknowledged again"
+        )  # one try a cycle, 20 ms: the line may be late
 
     @staticmethod
     def is_stopped(motors: RoboClawMotors) -> bool:

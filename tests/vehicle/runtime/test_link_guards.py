@@ -15,7 +15,7 @@ from tests.link.frames import heartbeat
 from tests.link.signing.signed import ARM, HERE, STRANGER, signed
 from tests.ports import free_port
 from vehicle.cli.main import main
-from vehicle.config.config import ConfigError, parse_config
+from vehicle.config.config import RoverConfigError, parse_config
 from vehicle.config.run_settings import SettingsError
 from vehicle.config.signing import SigningSettings, build_policy
 from vehicle.runtime.link_guards import NO_STATE, NOBODY, LinkGuards
@@ -99,7 +99,7 @@ def test_what_it_says_to_do_closes_the_network(tmp_path: Path) -> None:
     ],
 )
 def test_a_section_that_cannot_hold_is_one_line(text: str, problem: str) -> None:
-    with pytest.raises(ConfigError, match=problem):
+    with pytest.raises(RoverConfigError, match=problem):
         parse_config(f"[signing]\n{text}\n", "rover.toml")
 
 

@@ -16,7 +16,7 @@ from textual.widget import Widget
 
 from groundstation.config.settings import ThemeName
 from groundstation.ui.look.appearance import PLAIN, Look
-from groundstation.ui.terminal.painting import LineCompositor, find_ground
+from groundstation.ui.terminal.painting import LineCompositor, find_background
 from groundstation.ui.widgets.instrument import Instrument
 from tests.groundstation.ui.pilots import Console, console
 
@@ -69,7 +69,7 @@ async def test_the_changed_lines_are_those_that_textual_would_paint() -> None:
 
 def compare_lines(screen: Screen[Any]) -> int:
     """Compare all instruments that draw their lines without Textual's styles; return their number."""
-    drawn = [each for each in screen.query(Instrument) if each.size and find_ground(each) is not None]
+    drawn = [each for each in screen.query(Instrument) if each.size and find_background(each) is not None]
     for each in drawn:
         whole = each.size.region
         assert each.render_lines(whole) == Widget.render_lines(each, whole), each
