@@ -8,6 +8,7 @@ says so. Starting without the other messages of the file would help nobody.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from hashlib import sha256
 
 from dialects import codec, messages, targets
 from dialects.enum_names import add_enum_names, enum_names
@@ -44,6 +45,13 @@ def install(dialect: Dialect, file: str) -> tuple[Note, ...]:
         *([Note(f"dialect {file} replaces built-in definitions{_names(replaced)}")] if replaced else []),
         *(Note(_why_kept(each), Severity.WARNING) for each in kept),
     )
+
+
+def fingerprint(dialect: Dialect) -> str:
+    """Return what is the same for files with the same messages and enums, wherever they are."""
+    messages_of = sorted((each.id, each.name, each.crc_extra) for each in dialect.messages)
+    enums = sorted((enum.name, sorted(enum.names.items())) for enum in dialect.enums.values())
+    return sha256(repr((messages_of, enums)).encode()).hexdigest()
 
 
 def _register(definition: ExtraDefinition, dialect: Dialect) -> None:

@@ -16,6 +16,18 @@ def use_dialect(file: str | None) -> tuple[Note, ...]:
     if file is None:
         return ()
     from dialects.extra.dialect import load  # only here: most sessions need no parser
-    from dialects.extra.install import install
+    from dialects.extra.install import fingerprint, install
 
-    return install(load(file), file)
+    dialect = load(file)
+    notes = install(dialect, file)
+    USED[file] = fingerprint(dialect)
+    return notes
+
+
+USED: dict[str, str] = {}
+"""File in use -> its fingerprint, which is the same for the same definitions."""
+
+
+def used_dialect() -> str:
+    """Return the fingerprint of the file that was read last; "": none is in use."""
+    return next(reversed(USED.values()), "")

@@ -18,18 +18,23 @@ from groundstation.station_socket.verb_run import (
     MAX_PRINTED,
     Alive,
     CancelVerb,
+    CompanionEnded,
     FileAnswered,
     FileAsked,
+    FromCompanion,
     FromShell,
     Printed,
     RunVerb,
     StillHere,
+    ToCompanion,
     VerbEnded,
     VerbOutput,
     VerbReady,
     decode_from_shell,
     encode,
 )
+from groundstation.verbs.common.channel import Channel
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from link.transport.receive_buffer import ReceiveBuffer
 
 log = logging.getLogger(__name__)
@@ -74,6 +79,7 @@ class RunPort:
         self._task: asyncio.Task[None] | None = None
         self._answers: dict[int, asyncio.Future[FileAnswered]] = {}
         """Number of a file of the user -> the answer that its verb waits for."""
+        self._companion = Channel(lambda value: self._send(encode(ToCompanion(value))))
         self._open = True
 
     def start(self, ready: VerbReady) -> None:
@@ -117,6 +123,10 @@ class RunPort:
             self._task.cancel()
         elif isinstance(packet, StillHere):
             self._send(encode(Alive()))
+        elif isinstance(packet, FromCompanion):
+            self._companion.push(packet.value)
+        elif isinstance(packet, CompanionEnded):
+            self._companion.end(VerbError(ExitCode(packet.code), packet.line) if packet.line else None)
         elif isinstance(packet, FileAnswered):
             answer = self._answers.pop(packet.number, None)
             if answer is not None and not answer.done():
@@ -142,6 +152,7 @@ class RunPort:
                 flush=self._flush,
                 send=self._print,
                 ask_for_file=self._ask_for_file,
+                companion=self._companion,
                 silence=lambda now: now - self._heard_at,
             )
             ended = await verb.run(asked)

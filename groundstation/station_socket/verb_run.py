@@ -12,7 +12,7 @@ import msgspec
 
 from groundstation.station_socket.hello import StationFailed
 
-VERSION = 6
+VERSION = 7
 """Of the packets of verbs: those below, and those of relay.py."""
 
 MAX_PRINTED = 1 << 18
@@ -84,6 +84,10 @@ class RunVerb(msgspec.Struct, frozen=True, tag=True):
 
     words: tuple[str, ...]
     group: AskedGroup | None = None
+    given: Any = None
+    """What the verb's `prepare` returned."""
+    dialect: str = ""
+    """Fingerprint of the file of --dialect, which the station must have, too; "": none."""
 
 
 class StillHere(msgspec.Struct, frozen=True, tag=True):
@@ -122,8 +126,28 @@ class FileAnswered(msgspec.Struct, frozen=True, tag=True):
     """One line for the user: why it was not done."""
 
 
-ToShell = VerbReady | VerbOutput | VerbEnded | Alive | StationFailed | FileAsked
-FromShell = RunVerb | StillHere | CancelVerb | FileAnswered
+class ToCompanion(msgspec.Struct, frozen=True, tag=True):
+    """From the station: a value of the verb for its companion (verbs/common/channel.py)."""
+
+    value: Any
+
+
+class FromCompanion(msgspec.Struct, frozen=True, tag=True):
+    """From the shell: a value of the companion for its verb."""
+
+    value: Any
+
+
+class CompanionEnded(msgspec.Struct, frozen=True, tag=True):
+    """From the shell: the companion has ended before its verb."""
+
+    code: int = 0
+    line: str = ""
+    """How it has failed; "": in order."""
+
+
+ToShell = VerbReady | VerbOutput | VerbEnded | Alive | StationFailed | FileAsked | ToCompanion
+FromShell = RunVerb | StillHere | CancelVerb | FileAnswered | FromCompanion | CompanionEnded
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(ToShell).decode

@@ -10,6 +10,7 @@ import msgspec
 
 if TYPE_CHECKING:
     from groundstation.verbs.common.arguments import Argument
+    from groundstation.verbs.common.channel import Channel
     from groundstation.verbs.common.output import Output
     from link.protocol.log_tap import LogTap
 
@@ -31,7 +32,15 @@ class VerbAction(msgspec.Struct, frozen=True):
     examines: bool = False
     """`run` gets a DoctorSession: an OperatorCore with the doctor. It finds its vehicle itself."""
     own_process: bool = False
-    """Runs in its own process also where a station runs: it drives, or has files or programs of this machine."""
+    """Runs in its own process also where a station runs: it has files or programs of this machine."""
+    prepare: Callable[[argparse.Namespace], Any] | None = None
+    """Returns `options.given`: what the files and the configuration of the user say, in plain values.
+
+    It runs in the process of the user before any link is opened, also for a verb that a station runs. Raises VerbError.
+    """
+    companion: Callable[[argparse.Namespace, Output, Channel], Awaitable[None]] | None = None
+    """Runs beside `run` in the process of the user, which may be another one: files that are written as data arrive,
+    programs and libraries of others. `session.companion` is the other end of its channel."""
     finds: bool = True
     """Waits for the vehicle before it runs."""
     many: bool = False

@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from dialects.extra.errors import DialectError
-from dialects.extra.option import use_dialect
+from dialects.extra.option import use_dialect, used_dialect
 from groundstation.config.defaults import DEFAULT_ENDPOINT, ENDPOINT_VARIABLE
 from groundstation.formats.errors import FileFormatError
 from groundstation.station_socket.about import explain_taken
 from groundstation.station_socket.hello import HELLO_WITHIN, VERB, Hello
-from groundstation.station_socket.verb_run import VERSION
+from groundstation.station_socket.verb_run import VERSION, AskedGroup, RunVerb
 from groundstation.verbs.action import ONLY, VerbAction
+from groundstation.verbs.client.companion import RunCompanion, local_companion
 from groundstation.verbs.client.station_choice import AUTO, StationLink, find_station, station_choice
 from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
@@ -80,6 +81,7 @@ def run(arguments: Sequence[str]) -> int:
         action = choose_action(arguments[0], options)
         options.words = tuple(arguments)
         group = choose_group(output.verb, action, options)
+        options.given = None if action.prepare is None else action.prepare(options)
         code = run_loop(
             _run_offline(action, options, output, caught)
             if action.offline
@@ -156,8 +158,9 @@ async def _run_once(
 ) -> int:
     """Do so once, in a station, or in this process. A station may be silent for `patience` s."""
     station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))
-    if station is not None and _runs_in_station(action, options):
-        ended = await VerbClient(station, output, patience).run(options.words, group)
+    if station is not None and not action.own_process:
+        client = VerbClient(station, output, patience)
+        ended = await client.run(ask_for_verb(options, group), _companion_of(action, options, output))
         if options.endpoints and ended.vehicle:
             remember(endpoints, ended.vehicle)
         return ended.code
@@ -190,7 +193,8 @@ async def _run_here(
 
     async def script(session: VerbSession) -> int:
         session.where = " ".join(endpoints)
-        return await perform(session, action, options, output, group, kept, found)
+        async with local_companion(_companion_of(action, options, output)) as session.companion:
+            return await perform(session, action, options, output, group, kept, found)
 
     async def examine(session: DoctorSession) -> int:
         return await action.run(session, options, output)
@@ -210,9 +214,15 @@ async def _run_here(
             guard.close()
 
 
-def _runs_in_station(action: VerbAction, options: argparse.Namespace) -> bool:
-    """Return whether a station that is there runs the verb; it has a dialect of its own."""
-    return not action.own_process and options.dialect is None
+def _companion_of(action: VerbAction, options: argparse.Namespace, output: Output) -> RunCompanion | None:
+    companion = action.companion
+    return None if companion is None else lambda channel: companion(options, output, channel)
+
+
+def ask_for_verb(options: argparse.Namespace, group: VehicleGroup | None) -> RunVerb:
+    """Return what asks a station to run the verb."""
+    vehicles = None if group is None else AskedGroup(group.listed, group.others, group.patterns)
+    return RunVerb(options.words, vehicles, options.given, used_dialect())
 
 
 def _find_way(
@@ -223,8 +233,7 @@ def _find_way(
     def choose() -> list[str]:
         return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note, reserved=VERBS)
 
-    own_process = not _runs_in_station(action, options)
-    if own_process:
+    if action.own_process:
         check_options(action, options)
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
     hello = Hello(
@@ -233,12 +242,12 @@ def _find_way(
         f"groundstation {output.verb}",
         takes_part=not action.watches,
         follows=action.follows,
-        runs_here=not own_process,
+        runs_here=not action.own_process,
     )
     station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
         return station, station.ready.endpoints
-    if not own_process:
+    if not action.own_process:
         check_options(action, options)
     return None, endpoints or choose()
 

@@ -170,7 +170,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
          ("--speed", {"type": drive.limit, "metavar": "LIMIT", "help": "of the keys, 0.1 to 1, as for the screen"}),
          ("--arm", {"action": "store_true", "help": "arm first, and disarm at the end"}),
          ("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what --arm has armed"})),
-        takes_part=True, check=drive.check, guarded=lambda _: True, own_process=True)},
+        takes_part=True, prepare=drive.prepare, guarded=lambda _: True)},
     "messages": {ONLY: VerbAction(
         "print which messages arrive, and their rates", messages.messages,
         (("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"}),
@@ -191,7 +191,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "record": {ONLY: VerbAction(
         "record all that is heard into a telemetry log, until Ctrl-C", record.record,
         (_FILE, ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end after this time"}), _YES),
-        finds=False, watches=True, tap=record.open_recording, own_process=True)},
+        finds=False, watches=True, prepare=record.prepare, tap=record.collect, companion=record.write)},
     "command": {ONLY: VerbAction(
         "send a MAV_CMD; done when the vehicle has accepted", command.command,
         (("name", {"metavar": "MAV_CMD_X", "help": "its name, with or without MAV_CMD_, or its number"}),

@@ -37,3 +37,25 @@ class StallMonitor:
             return None
         stalled_for, self._reported_at = now - self._reported_at, now
         return stalled_for
+
+
+class Standstill:
+    """Remembers that the process stood still, so that what a verb demanded before has ended, until `forget`."""
+
+    def __init__(self) -> None:
+        self._monitor = StallMonitor()
+        self._stall: float | None = None
+
+    def record_report(self, now: float) -> None:
+        """Record that the process runs."""
+        self.last(now)
+        self._monitor.record_report(now)
+
+    def last(self, now: float) -> float | None:
+        """Return for how many s the process stood still; None: it did not, or nothing is reported."""
+        self._stall = self._stall or self._monitor.pop_stall(now)
+        return self._stall
+
+    def forget(self) -> None:
+        """Allow demands again: what was demanded before is withdrawn."""
+        self._stall = None

@@ -7,29 +7,29 @@ import contextlib
 import math
 import time
 from collections import deque
-from collections.abc import Sequence
 
-from groundstation.config.groups import VehicleGroup
 from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.verb_run import (
     ALIVE_PERIOD,
     MAX_PRINTED,
-    Alive,
-    AskedGroup,
     CancelVerb,
+    CompanionEnded,
     FileAsked,
+    FromCompanion,
     FromShell,
     Printed,
     RunVerb,
     StillHere,
+    ToCompanion,
     VerbEnded,
     VerbOutput,
     decode_from_station,
     encode,
 )
+from groundstation.verbs.client.companion import RunCompanion, RunningCompanion
 from groundstation.verbs.client.file_worker import FileWorker
 from groundstation.verbs.client.station_choice import StationLink, StationLostError
-from groundstation.verbs.common.exit_codes import ExitCode
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from link.transport.receive_buffer import ReceiveBuffer
 
@@ -50,14 +50,29 @@ class VerbClient:
         self._files = FileWorker(self._send)
         self._unsent: deque[bytes] = deque()
         """Packets for which the socket had no room."""
+        self._companion: RunningCompanion | None = None
         self.ended: VerbEnded | None = None
 
-    async def run(self, words: Sequence[str], group: VehicleGroup | None) -> VerbEnded:
-        """Run the verb to its end. Raises StationLostError, and OSError of the output."""
+    async def run(self, asked: RunVerb, companion: RunCompanion | None = None) -> VerbEnded:
+        """Run the verb to its end, and its companion beside it.
+
+        Raises StationLostError, VerbError of the companion, and OSError of the output.
+        """
+        if companion is None:
+            return await self._run(asked)
+        self._companion = RunningCompanion(companion, lambda value: self._send(FromCompanion(value)), self._end_early)
+        try:
+            return await self._run(asked)
+        finally:
+            await self._companion.finish()
+
+    def _end_early(self, failure: VerbError | None) -> None:
+        self._send(CompanionEnded(failure.code, str(failure)) if failure else CompanionEnded())
+
+    async def _run(self, asked: RunVerb) -> VerbEnded:
         loop, readable = asyncio.get_running_loop(), asyncio.Event()
         loop.add_reader(self._socket, readable.set)
-        asked = None if group is None else AskedGroup(group.listed, group.others, group.patterns)
-        self._send(RunVerb(tuple(words), asked))
+        self._send(asked)
         try:
             return await self._read_to_the_end(readable)
         except asyncio.CancelledError:
@@ -122,10 +137,12 @@ class VerbClient:
                         self._print(each)
                 case VerbEnded() as ended_so:
                     self.ended = ended_so
+                case ToCompanion(value) if self._companion is not None:
+                    self._companion.channel.push(value)
                 case FileAsked() as asked:
                     self._files.work(asked)
-                case Alive():
-                    pass
+                case _:
+                    pass  # Alive
 
     def _print(self, printed: Printed) -> None:
         if printed.method in PRINTS:

@@ -11,8 +11,11 @@ import argparse
 import asyncio
 import os
 
+import msgspec
+
 from dialects.axes import NEUTRAL, Axes
 from groundstation.config.effective import build_keymap, load_config, merge
+from groundstation.input.keymap import Keymap
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
 from groundstation.intents.base import Intent
@@ -27,15 +30,14 @@ from groundstation.verbs.common.output import Output
 from groundstation.verbs.control.arm import arm
 from groundstation.verbs.control.driving import (
     DISARM_WITHIN,
+    begin_driving,
     disarm_vehicle,
     drive_fault,
     leave,
     need_accepted,
     need_control,
-    prepare,
-    stood_still,
 )
-from groundstation.verbs.control.key_script import KeyScript, SteadyDemand, parse_script
+from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, parse_script
 from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.kinds import need_driven
@@ -62,27 +64,46 @@ def limit(text: str) -> float:
     return value
 
 
-def check(options: argparse.Namespace) -> None:
-    """Read the script, or what to demand and how long. Raises VerbError, FileFormatError, ConfigError."""
+class GivenCourse(msgspec.Struct, frozen=True):
+    """What to demand, for how long, or the script of keys and the key map of the user."""
+
+    axes: Axes = NEUTRAL
+    seconds: float = 0.0
+    lines: tuple[KeyLine, ...] = ()
+    keymap: Keymap = Keymap("none")
+    speed: float = 0.0
+
+    def build(self) -> KeyScript | SteadyDemand:
+        """Return what plays it."""
+        if not self.lines:
+            return SteadyDemand(self.axes, self.seconds)
+        return KeyScript(self.lines, self.keymap, Sticks(Style.HOLD, self.speed))
+
+
+def prepare(options: argparse.Namespace) -> object:
+    """Return a GivenCourse in plain values. Raises VerbError, FileFormatError, ConfigError."""
+    return msgspec.to_builtins(_read_course(options))
+
+
+def _read_course(options: argparse.Namespace) -> GivenCourse:
     steady = [options.throttle, options.steering, options.seconds]
     if options.script is not None:
         if any(each is not None for each in steady):
             raise VerbError(ExitCode.USAGE, "--script cannot be combined with --throttle, --steering or --for")
-        options.course = _load(options)
-        return
+        return _read_script(options)
     if options.seconds is None or not (options.throttle or options.steering):
         raise VerbError(ExitCode.USAGE, "write --throttle or --steering PERCENT with --for S, or --script FILE")
     if options.seconds > LONGEST_HOLD:
         raise VerbError(ExitCode.USAGE, f"--for: {LONGEST_HOLD:g} s at most; --script drives longer")
     axes = Axes((options.throttle or 0.0) / 100, (options.steering or 0.0) / 100)
-    options.course = SteadyDemand(axes, options.seconds)
+    return GivenCourse(axes, options.seconds)
 
 
-def _load(options: argparse.Namespace) -> KeyScript:
+def _read_script(options: argparse.Namespace) -> GivenCourse:
     settings = merge(load_config(options.config, os.environ), os.environ, {}).settings
     keymap = build_keymap(settings)
     lines = parse_script(read_text(options.script), options.script, keymap)
-    return KeyScript(lines, keymap, Sticks(Style.HOLD, options.speed or settings.speed))
+    return GivenCourse(lines=lines, keymap=keymap, speed=options.speed or settings.speed)
 
 
 async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -99,7 +120,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
             return finish(session, armed, output)
         armed_here = not options.stay_armed
     try:
-        driven = await _drive(session, options.course)
+        driven = await _drive(session, msgspec.convert(options.given, GivenCourse).build())
     finally:
         report = await leave(session, disarm=armed_here)
     if report is not None and report.state is not RequestState.ACCEPTED:
@@ -111,11 +132,11 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
 
 async def _drive(session: VerbSession, course: KeyScript | SteadyDemand) -> float:
     """Drive, and return for how many s. Raises VerbError when the vehicle takes no demands any more."""
-    await prepare(session)
+    await begin_driving(session)
     operator = session.contact.operator
 
     def demand(now: float) -> Axes:
-        return NEUTRAL if stood_still(session, now) is not None else course.axes(now)
+        return NEUTRAL if session.core.standstill.last(now) is not None else course.axes(now)
 
     operator.record_input(session.now)
     course.begin(began := session.now)
@@ -133,7 +154,7 @@ async def _drive(session: VerbSession, course: KeyScript | SteadyDemand) -> floa
 def _check(session: VerbSession, axes: Axes, began: float) -> None:
     """Raise VerbError if this program stood still, or if a demand is not neutral and the vehicle does not take it."""
     state, now = session.vehicle, session.now
-    stood = stood_still(session, now)
+    stood = session.core.standstill.last(now)
     if stood is not None:
         raise VerbError(ExitCode.BROKEN, f"this program stood still for {stood:.1f} s: the demand has ended")
     if axes.neutral:

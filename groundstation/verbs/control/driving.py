@@ -24,7 +24,7 @@ FRAME_PARAMETER = "CA_AIRFRAME"
 """What decides on the axes of PX4."""
 
 
-async def prepare(session: VerbSession, *, leave_hold: bool = True) -> None:
+async def begin_driving(session: VerbSession, *, leave_hold: bool = True) -> None:
     """Take control, change HOLD to MANUAL unless told not to, and show neutral. Raises VerbError."""
     contact, state = session.contact, session.vehicle
     need_driven(session.vehicle)
@@ -52,11 +52,6 @@ async def learn_frame(session: VerbSession) -> None:
         await session.request(lambda number, now: params.read(number, FRAME_PARAMETER, now))
         known = params.client.params.get(FRAME_PARAMETER)
         session.contact.operator.frame = None if known is None else int(known.value)
-
-
-def stood_still(session: VerbSession, now: float) -> float | None:
-    """Return for how many s this program stood still, so that its demand has ended, or None."""
-    return session.core.guard.stood_still(now) if session.core.guard else None
 
 
 def need_control(session: VerbSession) -> None:

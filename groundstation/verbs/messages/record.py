@@ -1,4 +1,7 @@
-"""`groundstation record`: writes what is heard on the links into a telemetry log."""
+"""`groundstation record`: writes what is heard on the links into a telemetry log.
+
+The verb collects frames, and its companion in the process of the user writes them, so that a slow disk delays no link.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,11 @@ import argparse
 import asyncio
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
+from groundstation.verbs.common.channel import Channel, ChannelEndedError
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.local_file import check_new_file
 from groundstation.verbs.common.output import Output
@@ -22,6 +27,8 @@ from link.tlog.tlog import read_log
 
 PERIOD = 0.1
 """s between two looks at the disk and the clock; what has come is written each time."""
+LARGEST = 1 << 16
+"""Bytes of frames after which they are handed over at once: a packet to a shell has room for four times as many."""
 
 
 class FileRecording:
@@ -32,7 +39,6 @@ class FileRecording:
         self.heard: Counter[tuple[int, int]] = Counter()
         """Frames of each system and component: those that came, in the end those that are in the file."""
         self.recorder = Recorder(period=PERIOD / 2)
-        self.log_tap = LogTap(self._add, system=ids[0], component=ids[1], unsent=False)
         self._ids = ids
 
     def open(self) -> None:
@@ -61,7 +67,8 @@ class FileRecording:
             self.heard.update((each.system, each.component) for each in frames)
             self.heard.pop(self._ids, None)
 
-    def _add(self, now: float, frames: Sequence[bytes]) -> None:
+    def add(self, now: float, frames: Sequence[bytes]) -> None:
+        """Record frames of a moment; costs no more than a list."""
         for raw in frames:
             header = read_header(raw, 0)
             if header is not None and (header.system, header.component) != self._ids:
@@ -69,31 +76,93 @@ class FileRecording:
         self.recorder.add(now, frames)
 
 
-def open_recording(options: argparse.Namespace, ids: tuple[int, int]) -> LogTap:
-    """Return what takes the frames. Raises VerbError if the file cannot be made."""
+class FrameCollector:
+    """Collects the frames of the links for the companion. `ids` are ours, whose frames do not count as heard."""
+
+    def __init__(self, ids: tuple[int, int]) -> None:
+        self.ids = ids
+        self.hand_over: Callable[[], None] = lambda: None
+        """Called when there is enough for a packet."""
+        self.log_tap = LogTap(self._add, system=ids[0], component=ids[1], unsent=False)
+        self._frames: list[tuple[float, Sequence[bytes]]] = []
+        self._size = 0
+
+    def pop(self) -> list[tuple[float, Sequence[bytes]]]:
+        """Return times and frames since the last call."""
+        frames, self._frames, self._size = self._frames, [], 0
+        return frames
+
+    def _add(self, now: float, frames: Sequence[bytes]) -> None:
+        self._frames.append((now, frames))
+        self._size += sum(map(len, frames))
+        if self._size >= LARGEST:
+            self.hand_over()
+
+
+def prepare(options: argparse.Namespace) -> None:
+    """Check that the file can be made. Raises VerbError."""
     check_new_file(options.file, overwrite=options.yes)
-    options.recording = FileRecording(options.file, ids)
-    tap: LogTap = options.recording.log_tap
+
+
+def collect(options: argparse.Namespace, ids: tuple[int, int]) -> LogTap:
+    """Return what takes the frames."""
+    options.frames = FrameCollector(ids)
+    tap: LogTap = options.frames.log_tap
     return tap
 
 
 async def record(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-    """Record until the time is over or a signal comes; then print what is in the file."""
-    recording: FileRecording = options.recording
-    recording.open()
-    output.note(f"recording to {recording.path}{'' if options.seconds else ' until Ctrl-C'}")
+    """Record until the time is over or a signal comes; the companion says what is in the file."""
+    frames: FrameCollector = options.frames
+
+    def hand_over() -> None:
+        if batch := frames.pop():
+            session.companion.send(batch)
+
+    session.companion.send(frames.ids)
+    frames.hand_over = hand_over
+    output.note(f"recording to {options.file}{'' if options.seconds else ' until Ctrl-C'}")
     try:
-        while recording.recorder.failure is None and not _is_over(session, options.seconds):
-            await asyncio.sleep(PERIOD)
-            recording.recorder.tick(session.now)
+        while options.seconds is None or session.now - session.began < options.seconds:
+            await _receive_soon(session.companion)  # only its end comes
+            hand_over()
+    finally:
+        hand_over()
+    session.companion.send(session.describe_links())
+    return ExitCode.DONE
+
+
+async def _receive_soon(channel: Channel) -> Any:
+    """Return what comes within PERIOD, or None. Raises VerbError and ChannelEndedError, as the channel does."""
+    try:
+        async with asyncio.timeout(PERIOD):
+            return await channel.receive()
+    except TimeoutError:
+        return None
+
+
+async def write(options: argparse.Namespace, output: Output, verb: Channel) -> None:
+    """Write what the verb collects, as its companion, and print what is in the file. Raises VerbError."""
+    system, component = await verb.receive()
+    recording, now = FileRecording(options.file, (system, component)), asyncio.get_running_loop().time
+    recording.open()
+    began, silence = now(), None
+    try:
+        while recording.recorder.failure is None:
+            batch = await _receive_soon(verb)
+            if isinstance(batch, str):
+                silence = batch
+            else:
+                for at, frames in batch or ():
+                    recording.add(at, frames)
+            recording.recorder.tick(now())
+    except ChannelEndedError:
+        pass
     finally:
         recording.close()
-        _report(recording, session.now - session.began, output)
-    return _end(recording, session)
-
-
-def _is_over(session: VerbSession, seconds: float | None) -> bool:
-    return seconds is not None and session.now - session.began >= seconds
+        _report(recording, now() - began, output)
+    if silence is not None or recording.recorder.failure is not None:  # else its user has interrupted it
+        _check(recording, silence or "")
 
 
 def _report(recording: FileRecording, seconds: float, output: Output) -> None:
@@ -104,8 +173,8 @@ def _report(recording: FileRecording, seconds: float, output: Output) -> None:
     output.record(file=recording.path, messages=count, sources=sources, seconds=round(seconds, 3))
 
 
-def _end(recording: FileRecording, session: VerbSession) -> int:
-    """Return the exit code. Raises VerbError if not all is in the file."""
+def _check(recording: FileRecording, silence: str) -> None:
+    """Raise VerbError if not all is in the file. `silence`: why nothing was heard, behind ": "; "" if not known."""
     failure, lost = recording.recorder.failure, recording.recorder.lost
     if failure is not None:
         what = "the file ends there" if recording.heard else "nothing was recorded"
@@ -113,5 +182,4 @@ def _end(recording: FileRecording, session: VerbSession) -> int:
     if lost:
         raise VerbError(ExitCode.PARTLY, f"{recording.path}: {SLOW}: {lost}")
     if not recording.heard:
-        raise VerbError(ExitCode.NO_VEHICLE, f"no file, because nothing was heard{session.describe_links()}")
-    return ExitCode.DONE
+        raise VerbError(ExitCode.NO_VEHICLE, f"no file, because nothing was heard{silence}")

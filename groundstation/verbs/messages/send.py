@@ -110,7 +110,7 @@ def _until_standstill(session: VerbSession, send: Callable[[float], None]) -> Ca
     """
 
     def send_checked(now: float) -> None:
-        stood = session.core.guard.stood_still(now) if session.core.guard else None
+        stood = session.core.standstill.last(now)
         if stood is not None:
             raise VerbError(ExitCode.BROKEN, f"this program stood still for {stood:.1f} s: the demand has ended")
         send(now)

@@ -10,11 +10,13 @@ from collections.abc import Awaitable, Callable
 from msgspec.structs import astuple, replace
 
 from dialects.extra.errors import DialectError
+from dialects.extra.option import used_dialect
 from groundstation.config.groups import VehicleGroup
 from groundstation.formats.errors import FileFormatError
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station_socket.verb_run import FileAnswered, FileAsked, Printed, RunVerb, VerbEnded
 from groundstation.verbs.action import VerbAction
+from groundstation.verbs.common.channel import Channel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyAttribute, LazyCall
 from groundstation.verbs.line.parser import LineParser
@@ -34,7 +36,7 @@ class ShellVerb:
     """One verb of a shell. `name` is what others call it, `follows`: it may prove the session of the verb before.
 
     `flush` sends what the station has queued, `send` what the verb prints, `ask_for_file` what is done with a file of
-    the user; `silence`: s without a word of the shell.
+    the user; `companion` leads to the verb's companion. `silence`: s without a word of the shell.
     """
 
     def __init__(
@@ -46,18 +48,19 @@ class ShellVerb:
         flush: Callable[[], None],
         send: Callable[[Printed], None],
         ask_for_file: Callable[[FileAsked], Awaitable[FileAnswered]],
+        companion: Channel,
         silence: Callable[[float], float],
     ) -> None:
         self._station, self._name, self._follows = station, name, follows
         self._flush, self._send, self._silence = flush, send, silence
-        self._files = ShellFiles(ask_for_file)
+        self._files, self._companion = ShellFiles(ask_for_file), companion
         self._vehicle = ""
 
     async def run(self, asked: RunVerb) -> VerbEnded:
         """Run it to its end. A mistake in the verb is logged, and ends the verb alone."""
         output = SentOutput(asked.words[0], as_json=False, send=self._send)
         try:
-            action, options = await asyncio.to_thread(_parse, asked.words)  # it imports the modules of the verb
+            action, options = await asyncio.to_thread(_parse, asked)  # it imports the modules of the verb
             verb = f"{asked.words[0]} {options.action}".strip()
             output = SentOutput(verb, as_json=options.json, send=self._send)
             group = None if asked.group is None else VehicleGroup(*astuple(asked.group))
@@ -95,8 +98,11 @@ class ShellVerb:
         options.system = core.ids[0]
         kept = KeptSession(self._station.operator.session, follows=self._follows)
         session = VerbSession(core, core.flush, output.progress)
-        session.files = self._files
+        session.files, session.companion = self._files, self._companion
         session.where = " ".join(self._station.station_info.endpoints)
+        tap = action.tap(options, core.ids)
+        if tap is not None:
+            core.record(tap)
         core.join()
         verb = asyncio.ensure_future(perform(session, action, options, output, group, kept, self._note_vehicle))
         try:
@@ -115,9 +121,14 @@ class ShellVerb:
         self._vehicle = name
 
 
-def _parse(words: tuple[str, ...]) -> tuple[VerbAction, argparse.Namespace]:
+def _parse(asked: RunVerb) -> tuple[VerbAction, argparse.Namespace]:
     """Parse a command line that the shell has parsed before, and load the verb. Raises VerbError."""
+    words = asked.words
     options = build_parser(words[0], LineParser).parse_args(words[1:])
+    if asked.dialect not in ("", used_dialect()):
+        hint = "start the station with the same --dialect, or take --station never"
+        raise VerbError(ExitCode.USAGE, f"{options.dialect}: the station does not know this dialect: {hint}")
+    options.given = asked.given
     action = choose_action(words[0], options)
     check_options(action, options)
     if isinstance(action.run, LazyAttribute | LazyCall):

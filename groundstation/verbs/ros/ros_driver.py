@@ -18,7 +18,7 @@ from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.control.arm import arm
-from groundstation.verbs.control.driving import disarm_vehicle, drive_fault, leave, need_control, prepare, stood_still
+from groundstation.verbs.control.driving import begin_driving, disarm_vehicle, drive_fault, leave, need_control
 from groundstation.verbs.session.session import VerbSession
 
 LOOK_PERIOD = 0.02
@@ -100,10 +100,10 @@ class RosDriver:
 
     async def _look(self) -> None:
         session, now = self._session, self._session.now
-        stood = stood_still(session, now)
-        if stood is not None and session.core.guard is not None:
+        stood = session.core.standstill.last(now)
+        if stood is not None:
             self._stop(f"this program stood still for {stood:.1f} s: neutral")
-            session.core.guard.go_on()
+            session.core.standstill.forget()
         if self._arming.locked() or self.sources.axes(now).neutral:
             return
         fault = self._fault()
@@ -117,7 +117,7 @@ class RosDriver:
         """Begin to send demands; return why not."""
         try:
             need_control(self._session)
-            await prepare(self._session, leave_hold=leave_hold)
+            await begin_driving(self._session, leave_hold=leave_hold)
         except VerbError as error:
             self._stop(str(error))
             return str(error)
@@ -128,7 +128,7 @@ class RosDriver:
         return None
 
     def _demand(self, now: float) -> Axes:
-        return NEUTRAL if stood_still(self._session, now) is not None else self.sources.axes(now)
+        return NEUTRAL if self._session.core.standstill.last(now) is not None else self.sources.axes(now)
 
     def _fault(self) -> str | None:
         """Return why a demand does not move the vehicle now, or None."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 from dialects import messages as m
 from dialects.kinds import AUTOPILOT_COMPONENT
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import WatchdogTarget
+from groundstation.station.driving.stall import Standstill
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.station.operator_core import TICK_PERIOD, OperatorCore
 from groundstation.vehicles.demand.drive_gate import drive_refusal
@@ -17,9 +17,6 @@ from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.session.contact import VehicleContact
 from link.core import LinkReport, Outgoing, Received
-
-if TYPE_CHECKING:
-    from groundstation.verbs.session.demand_guard import DemandGuard
 
 WATCHER = 25
 """MAV_COMP_ID_USER1: of verbs that only look. With the ids of a silent driver, as of the verb before, any command would
@@ -77,8 +74,8 @@ class VerbCore:
         """Called with each message that arrives."""
         self.has_heard_all = False
         """The links were heard for longer than this verb runs, by the station that it goes through."""
-        self.guard: DemandGuard | None = None
-        """The watchdog of a verb that sends demands."""
+        self.standstill = Standstill()
+        """Of this process, while a watchdog stands by."""
         self.outbox: list[m.Message] = []
         """Messages of a verb, to all or to their target."""
         self.ids = station.parts.ids

@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable, Sequence
 
 from dialects.messages import Message
 from groundstation.station.driving.driven import WatchdogTarget
-from groundstation.station.driving.stall import StallMonitor
+from groundstation.station.driving.stall import Standstill
 from groundstation.watchdog.feed import WatchdogFeed
 from link.signing.signing import Signing
 from link.transport.transport import Link
@@ -25,32 +25,19 @@ class DemandGuard:
         self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._feed = WatchdogFeed.start(theirs, None, ids, signing)
         theirs.close()
-        self._monitor = StallMonitor()
-        self._stall: float | None = None
+        self.standstill = Standstill()
+        """After one the watchdog may have sent neutral, and no demand may follow."""
 
     def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
         """Record a frame that was sent."""
         self._feed.record_sent(link, address, message, sequence, now)
-
-    def stood_still(self, now: float) -> float | None:
-        """Return for how many s this process stood still, so that the watchdog may have sent neutral; None: not yet.
-
-        After that no demand may follow, so it is not forgotten.
-        """
-        self._stall = self._stall or self._monitor.pop_stall(now)
-        return self._stall
-
-    def go_on(self) -> None:
-        """Forget it: what was demanded before is withdrawn, and a new demand may follow."""
-        self._stall = None
 
     async def run(self, driven: Callable[[], Sequence[WatchdogTarget]]) -> None:
         """Report what is driven until cancelled."""
         loop = asyncio.get_running_loop()
         while True:
             now = loop.time()
-            self.stood_still(now)
-            self._monitor.record_report(now)
+            self.standstill.record_report(now)
             self._feed.report(driven(), now)
             await asyncio.sleep(REPORT_PERIOD)
 

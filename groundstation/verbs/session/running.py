@@ -67,7 +67,9 @@ async def run_session(
 ) -> int:
     """Run the script for the vehicle `wanted`, and return its exit code. Raises EndpointError, LinkError, VerbError."""
     core = OwnCore(links.ids, wanted, links.session, links.endpoints, asyncio.get_running_loop().time())
-    core.guard, core.has_heard_all = links.guard, links.station is not None
+    core.has_heard_all = links.station is not None
+    if links.guard is not None:
+        core.standstill = links.guard.standstill
     runner = links.open(core)
     session = VerbSession(core, runner.flush, progress)
     session.observe = runner.observe

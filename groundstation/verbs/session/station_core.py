@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 
+from dialects import codec
 from dialects import messages as m
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station.relay.verb_relay import Verb
@@ -12,6 +13,7 @@ from groundstation.station_socket.verb_run import STILL_WITHIN
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.core import VerbCore
 from link.core import LinkReport, Received
+from link.protocol.log_tap import LogTap
 
 
 class StationCore(VerbCore):
@@ -63,6 +65,16 @@ class StationCore(VerbCore):
         self._pass_on(self._now)
         self._flush()
 
+    def record(self, log_tap: LogTap) -> None:
+        """Have all that the station hears recorded, as frames without signatures. To be called before `join`."""
+
+        def take(received: Received, now: float) -> None:
+            number, place = type(received.message).id, (received.system, received.component)
+            raw = codec.frame(number, codec.encode_payload(received.message), received.sequence, *place)
+            log_tap.record_received([(number, *place, received.sequence, raw)], received.peer.link, now)
+
+        self.taps.append(take)
+
     @property
     def _now(self) -> float:
         return asyncio.get_running_loop().time()
@@ -79,6 +91,7 @@ class StationCore(VerbCore):
 
     def _run_tick(self, now: float) -> None:
         """Tick, unless the shell stands still."""
+        self.standstill.record_report(now)
         if self._silence(now) > STILL_WITHIN:
             return
         self.station.relay.hear(self._verb, now - self._silence(now))

@@ -18,7 +18,7 @@ from dialects.enum_names import enum_names, flag_names
 from dialects.enums import Severity
 from dialects.extra.errors import DialectError
 from dialects.extra.notes import Note
-from dialects.extra.option import use_dialect
+from dialects.extra.option import use_dialect, used_dialect
 from tests.dialects.extra.xml_texts import GRIPPER, TABLES, mutated, scope, with_message
 
 DEBUG_VECT = 250
@@ -40,6 +40,17 @@ def decoded(number: int, payload: bytes) -> dict[str, Any]:
     message = codec.decode(number, payload)
     assert isinstance(message, m.ExtraMessage)
     return message.values
+
+
+def test_a_fingerprint_is_that_of_the_definitions(tmp_path: Path) -> None:
+    assert used_dialect() == ""
+    use(tmp_path, GRIPPER)
+    first = used_dialect()
+    (elsewhere := tmp_path / "elsewhere").mkdir()
+    use(elsewhere, GRIPPER)
+    assert used_dialect() == first != ""
+    use(elsewhere, with_message(FIELD))
+    assert used_dialect() != first
 
 
 def test_messages_are_added_with_their_fields(tmp_path: Path) -> None:

@@ -9,10 +9,11 @@ from typing import Any
 from hypothesis import strategies as st
 
 from dialects import codec, enum_names, messages, targets
+from dialects.extra import option
 
 TABLES: tuple[dict[Any, Any], ...] = (
     messages.MESSAGES, codec.CRC_EXTRA, codec.BASE_SIZE, codec._CHECKED, codec._DECODERS, codec._ENCODERS,
-    targets.TARGETS, enum_names._added,
+    targets.TARGETS, enum_names._added, option.USED,
 )  # fmt: skip
 """Those that a dialect changes."""
 

@@ -24,12 +24,13 @@ from groundstation.station_socket.verb_run import (
 )
 
 
-def test_packets_of_version_6() -> None:
+def test_packets_of_version_7() -> None:
     """A shell and a station of two releases tell each other apart by the number: who changes a packet raises it."""
     group = AskedGroup(frozenset({2}), frozenset(), ("rover*",))
-    assert VERSION == 6
+    assert VERSION == 7
     assert encode(RunVerb(("arm", "--all"), group)).hex() == (
-        "83a474797065a752756e56657262a5776f72647392a361726da52d2d616c6ca567726f75709391029091a6726f7665722a"
+        "85a474797065a752756e56657262a5776f72647392a361726da52d2d616c6ca567726f75709391029091a6726f7665722a"
+        "a5676976656ec0a76469616c656374a0"
     )
     assert encode(VerbOutput((Printed("line", ("armed",), {"a": 1}),))).hex() == (
         "82a474797065aa566572624f7574707574a77072696e7465649193a46c696e6591a561726d656481a16101"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.station_socket.verb_run import PIECE
+from groundstation.station_socket.verb_run import PIECE, RunVerb
 from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
@@ -52,7 +52,7 @@ def test_files_of_several_pieces_go_both_ways(vehicle: ForeignVehicle, here: Pat
 def test_an_interrupted_download_is_kept_and_resumed(vehicle: ForeignVehicle, here: Path) -> None:
     async def use(shells: Shells) -> None:
         client = VerbClient(shells.connect(), Output("ftp get", as_json=False, quiet=True))
-        verb = asyncio.ensure_future(client.run(("ftp", "get", "/logs/1.bin"), None))
+        verb = asyncio.ensure_future(client.run(RunVerb(("ftp", "get", "/logs/1.bin"))))
         await shells.see(lambda: len(vehicle.of("FILE_TRANSFER_PROTOCOL")) > 4)
         verb.cancel()
         await asyncio.wait({verb})
@@ -73,7 +73,7 @@ def test_a_killed_shell_leaves_no_verb_that_waits_for_it(
         os.mkfifo(here / "pipe")
         before = asyncio.all_tasks()
         link = shells.connect()
-        verb = asyncio.ensure_future(VerbClient(link, Output(words[0], as_json=False, quiet=True)).run(words, None))
+        verb = asyncio.ensure_future(VerbClient(link, Output(words[0], as_json=False, quiet=True)).run(RunVerb(words)))
         if words[0] == "ftp":
             await shells.see(lambda: len(vehicle.of("FILE_TRANSFER_PROTOCOL")) > 4)
         else:

@@ -14,7 +14,14 @@ from groundstation.host.run_port import RunPort
 from groundstation.intents.session import RenewLease
 from groundstation.station.component import COMPONENT
 from groundstation.station.station import Station
-from groundstation.station_socket.verb_run import ALIVE_WITHIN, STILL_WITHIN, VerbEnded, VerbReady, decode_from_station
+from groundstation.station_socket.verb_run import (
+    ALIVE_WITHIN,
+    STILL_WITHIN,
+    RunVerb,
+    VerbEnded,
+    VerbReady,
+    decode_from_station,
+)
 from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -50,11 +57,11 @@ class Shells:
         assert isinstance(ready, VerbReady)
         return StationLink(ours, ready)
 
-    async def run(self, *words: str) -> VerbEnded:
+    async def run(self, *words: str, given: object = None, dialect: str = "") -> VerbEnded:
         """Run a verb to its end; it prints to stdout and stderr."""
         as_json = "--json" in words
         client = VerbClient(self.connect(), Output(words[0], as_json=as_json, quiet=False))
-        return await client.run(words, None)
+        return await client.run(RunVerb(words, None, given, dialect))
 
     async def see(self, condition: Callable[[], bool]) -> None:
         """Wait until it holds."""
@@ -108,7 +115,7 @@ def test_an_interrupted_or_killed_shell_ends_its_verb_in_order(killed: bool) -> 
     async def use(shells: Shells) -> None:
         link = shells.connect()
         client = VerbClient(link, Output("calibrate", as_json=False, quiet=True))
-        verb = asyncio.ensure_future(client.run(("calibrate", "compass"), None))
+        verb = asyncio.ensure_future(client.run(RunVerb(("calibrate", "compass"))))
         await shells.see(lambda: commanded(vehicle, MAG_CAL_START))
         if killed:
             link.sock.shutdown(socket.SHUT_RDWR)
@@ -186,6 +193,33 @@ def test_the_demand_of_a_shell_that_stands_still_ends() -> None:
     axes = axis_map(ARDUPILOT)
     ahead, neutral = (build_manual_control(Axes(throttle, 0.0), 1, axes) for throttle in (0.4, 0.0))
     assert (ahead.z, neutral.z) == (400, 0)
+    with foreign_vehicle() as vehicle:
+        with_station(vehicle, use)
+
+
+def test_a_course_of_the_shell_drives_and_ends_neutral(capsys: pytest.CaptureFixture[str]) -> None:
+    async def use(shells: Shells) -> None:
+        course = {"axes": {"throttle": 0.4, "steering": 0.0}, "seconds": 0.5}
+        words = ("drive", "--throttle", "40", "--for", "0.5", "--arm")
+        ended = await shells.run(*words, given=course)
+        assert (ended.code, vehicle.armed) == (ExitCode.DONE, False), capsys.readouterr().err
+        assert "was driven for 0.5 s, then neutral, and is disarmed" in capsys.readouterr().err
+        sent = [each.z for each in vehicle.of("MANUAL_CONTROL")]
+        assert (sent[0], set(sent), sent[-5:]) == (0, {0, 400}, [0] * 5)
+
+    with foreign_vehicle() as vehicle:
+        with_station(vehicle, use)
+
+
+def test_a_dialect_that_the_station_lacks_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    async def use(shells: Shells) -> None:
+        ended = await shells.run("modes", "--dialect", "my.xml", dialect="of another file")
+        assert ended.code == ExitCode.USAGE
+        assert capsys.readouterr().err == (
+            "groundstation: my.xml: the station does not know this dialect: "
+            "start the station with the same --dialect, or take --station never\n"
+        )
+
     with foreign_vehicle() as vehicle:
         with_station(vehicle, use)
 

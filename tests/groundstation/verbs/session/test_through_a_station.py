@@ -111,6 +111,21 @@ def test_files_are_those_of_the_shell_and_not_of_the_station(
     assert [each.name for each in tmp_path.iterdir()] == ["all.param"]
 
 
+def test_a_script_of_keys_is_played_with_the_shells_key_map(
+    verb: Run, vehicle: Vehicle, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # the station was started elsewhere
+    (tmp_path / "my.toml").write_text('[keys]\n"drive.forward" = "e"\n')
+    (tmp_path / "run.keys").write_text("0.2 press e\n1.2 release e\n1.4 press e\n1.6 release e\n")
+    words = ("drive", "--script", "run.keys", "--config", "my.toml", "--arm", "--wait", "20", "--station", "only")
+    began = time.monotonic()
+    while "stood still" in (driven := verb(*words)).err:  # again on a late machine, which has ended the demand
+        pass
+    assert driven.code == 0, driven.err
+    assert vehicle.moved_since(began), driven.err
+    assert verb("status", "--json").records[0]["armed"] is False
+
+
 def test_the_vehicle_refuses(verb: Run) -> None:
     assert verb("param", "set", "MAN_TIMEOUT", "77").code == ExitCode.REFUSED
 
