@@ -10,8 +10,8 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Awaitable, Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
@@ -42,8 +42,9 @@ from link.runtime.event_loop import run_loop
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
     from groundstation.verbs.session.demand_guard import DemandGuard
-    from groundstation.verbs.session.doctor_session import DoctorSession
-    from groundstation.verbs.session.session import VerbSession
+    from groundstation.verbs.session.kept_session import KeptSession
+    from groundstation.verbs.session.running import VerbLinks
+    from link.core import Core
     from link.link_signing import LinkSigning
 
 SYSTEM = 254
@@ -178,7 +179,7 @@ async def _run_here(
 ) -> int:
     """Run the action in this process, with links of its own, or with those of a station."""
     from groundstation.verbs.session.identity import choose_identity  # a verb that a station runs does without
-    from groundstation.verbs.session.running import VerbLinks, run_session
+    from groundstation.verbs.session.running import VerbLinks, run_over
 
     ids, kept = choose_identity(action, options, station)
     tap = action.tap(options, ids)
@@ -187,31 +188,55 @@ async def _run_here(
     guard = _start_guard(ids, signing) if guarded else None  # before the links are open
     links = VerbLinks(endpoints, ids, kept.number, station, patience, signing, tap, guard)
 
-    def found(name: str) -> None:
-        if options.endpoints:
-            remember(endpoints, name)
-
-    async def script(session: VerbSession) -> int:
-        session.where = " ".join(endpoints)
-        async with local_companion(_companion_of(action, options, output)) as session.companion:
-            return await perform(session, action, options, output, group, kept, found)
-
-    async def examine(session: DoctorSession) -> int:
-        return await action.run(session, options, output)
-
+    core, script = _prepare_own(action, options, output, group, links, kept)
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
-            if action.examines:
-                from groundstation.verbs.session.doctor_session import run_doctor
-
-                return await run_doctor(links, getattr(options, "driver", 0), examine)
-            return await run_session(links, options.vehicle, script, output.progress)
+            return await run_over(links, core, script)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
     finally:
         kept.end(time.monotonic())
         if guard is not None:
             guard.close()
+
+
+def _prepare_own(
+    action: VerbAction,
+    options: argparse.Namespace,
+    output: Output,
+    group: VehicleGroup | None,
+    links: VerbLinks,
+    kept: KeptSession,
+) -> tuple[Core, Callable[[Any], Awaitable[int]]]:
+    """Return the core of a verb, and what runs the verb with it; takes the runner of the links."""
+    if action.examines:
+        from groundstation.verbs.session.doctor_session import DoctorSession
+
+        doctor = DoctorSession(links.ids, kept.number, links.endpoints, options)
+
+        async def examine(runner: Any) -> int:
+            doctor.flush, doctor.observe = runner.flush, runner.observe
+            return await action.run(doctor, options, output)
+
+        return doctor.core, examine
+    from groundstation.verbs.session.core import OwnCore
+    from groundstation.verbs.session.session import VerbSession
+
+    now = asyncio.get_running_loop().time()
+    core = OwnCore(links.ids, options.vehicle, kept.number, links.endpoints, now)
+    core.has_heard_all = links.station is not None
+
+    def found(name: str) -> None:
+        if options.endpoints:
+            remember(links.endpoints, name)
+
+    async def script(runner: Any) -> int:
+        session = VerbSession(core, runner.flush, output.progress)
+        session.observe, session.where = runner.observe, " ".join(links.endpoints)
+        async with local_companion(_companion_of(action, options, output)) as session.companion:
+            return await perform(session, action, options, output, group, kept, found)
+
+    return core, script
 
 
 def _companion_of(action: VerbAction, options: argparse.Namespace, output: Output) -> RunCompanion | None:

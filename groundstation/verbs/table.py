@@ -247,14 +247,14 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         (("--report", {"metavar": "FILE", "help": "write a report for a bug, without keys and public addresses"}),
          _YES, ("--driver", {"type": int, "default": 255, "metavar": "ID",
                              "help": "system id of the ground station that will drive (default: 255)"})),
-        examines=True, watches=True, own_process=True)},
+        examines=True, watches=True)},
     "motor": {ONLY: VerbAction(
         "turn one motor of a disarmed vehicle, wheels off the ground", motor.run,
         (("number", {"type": int, "metavar": "N", "help": "its number, as on the Setup screen"}),
          ("throttle", {"type": motor.percent, "metavar": "PERCENT", "help": "up to 30, negative for backward"}),
          ("--for", {"dest": "seconds", "type": motor.duration, "default": 1.0, "metavar": "S",
                     "help": "how long, up to 2 s (default: 1)"})),
-        examines=True, own_process=True)},
+        examines=True)},
     "calibrate": {ONLY: VerbAction(
         "calibrate gyros, level or pressure at rest, compass or RC sticks by hand", calibrate.run,
         (("kind", {"choices": calibrate.CHOICES, "metavar": "KIND", "help": "gyro, level, pressure, compass, sticks"}),

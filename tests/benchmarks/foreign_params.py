@@ -7,7 +7,8 @@ import time
 from statistics import median
 
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
-from groundstation.verbs.session.running import VerbLinks, run_session
+from groundstation.verbs.session.core import OwnCore
+from groundstation.verbs.session.running import VerbLinks, run_over
 from groundstation.verbs.session.session import VerbSession
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Table, brief
 from tests.fakes.params import many_params
@@ -44,6 +45,11 @@ def _fetch(*, files: bool) -> float:
     with foreign_vehicle(ftp=files) as vehicle:
         vehicle.params.replace(dict(many_params(COUNT)))
 
+        async def fetch() -> int:
+            core = OwnCore((254, 190), 1, 1, now=asyncio.get_running_loop().time())
+            links = VerbLinks([vehicle.endpoint], (254, 190), 1)
+            return await run_over(links, core, lambda runner: script(VerbSession(core, runner.flush, _ignore)))
+
         async def script(session: VerbSession) -> int:
             await session.find_vehicle(20.0, 1, vehicle.endpoint)
             await session.request(session.services.modes.list_modes)
@@ -55,7 +61,7 @@ def _fetch(*, files: bool) -> float:
             return 0
 
         taken: list[float] = []
-        asyncio.run(run_session(VerbLinks([vehicle.endpoint], (254, 190), 1), 1, script, _ignore))
+        asyncio.run(fetch())
     return taken[0]
 
 

@@ -99,7 +99,7 @@ class LineCommands:
 
     async def _perform(self, intent: RunLine, parsed: ParsedLine, contact: Contact) -> None:
         session, output = LineSession(self._station, contact, self._flush), LineOutput()
-        session.core.join()
+        session.seat.join()
         run: Any = parsed.rule.own or parsed.action.run
         try:
             async with asyncio.timeout(parsed.options.timeout):
@@ -111,7 +111,7 @@ class LineCommands:
             code = error.code
             output.error(str(error))
         finally:
-            session.core.leave()
+            session.seat.leave()
         state = DONE if code == ExitCode.DONE else FAILED
         note = " · ".join(output.notes) or _summary(parsed.name, output, session.told)
         self._end(intent, state, output.lines, note, logged=note in (*session.told, *output.lines))

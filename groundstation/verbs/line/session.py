@@ -11,17 +11,16 @@ from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.session import Interrupted, RequestStart, VerbSession
-from groundstation.verbs.session.station_core import StationCore
+from groundstation.verbs.session.station_core import StationCore, StationSeat
 
 
 class LineSession(VerbSession):
     """For the vehicle that the operator has chosen. The station proves its session, and goes on behind the verb."""
 
-    core: StationCore
-
     def __init__(self, station: OperatorCore, contact: Contact, flush: Callable[[], None]) -> None:
-        core = StationCore(station, contact.state.system, "a line", flush)
-        super().__init__(core, core.flush, lambda report: None, VehicleContact(station, contact, 0.0))
+        core = StationCore(station, contact.state.system)
+        self.seat = StationSeat(station, core, "a line", flush)
+        super().__init__(core, self.seat.flush, lambda report: None, VehicleContact(station, contact, 0.0))
         self.selects = contact
         self.told: list[str] = []
         """How its requests have ended; the log has these lines already."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Coroutine
 
 from msgspec.structs import astuple, replace
 
@@ -24,10 +24,12 @@ from groundstation.verbs.main import build_parser, check_options, choose_action
 from groundstation.verbs.performing import perform
 from groundstation.verbs.remote.sent_output import SentOutput
 from groundstation.verbs.remote.shell_files import ShellFiles
+from groundstation.verbs.session.doctor_session import DoctorSession
 from groundstation.verbs.session.kept_session import KeptSession
 from groundstation.verbs.session.running import END_WITHIN
 from groundstation.verbs.session.session import VerbSession
-from groundstation.verbs.session.station_core import StationCore
+from groundstation.verbs.session.station_core import StationCore, StationSeat
+from link.core import Core
 
 log = logging.getLogger(__name__)
 
@@ -86,36 +88,58 @@ class ShellVerb:
     async def _run(
         self, group: VehicleGroup | None, action: VerbAction, options: argparse.Namespace, output: SentOutput
     ) -> int:
-        core = StationCore(
+        core, script = self._prepare(group, action, options, output)
+        seat = StationSeat(
             self._station,
-            options.vehicle,
+            core,
             self._name,
             self._flush,
             takes_part=not action.watches,
             follows=self._follows,
             silence=self._silence,
         )
-        options.system = core.ids[0]
-        kept = KeptSession(self._station.operator.session, follows=self._follows)
-        session = VerbSession(core, core.flush, output.progress)
-        session.files, session.companion = self._files, self._companion
-        session.where = " ".join(self._station.station_info.endpoints)
-        tap = action.tap(options, core.ids)
-        if tap is not None:
-            core.record(tap)
-        core.join()
-        verb = asyncio.ensure_future(perform(session, action, options, output, group, kept, self._note_vehicle))
+        seat.join()
+        verb = asyncio.ensure_future(script(seat.flush))
         try:
-            await asyncio.wait((verb, core.broken), return_when=asyncio.FIRST_COMPLETED)
-            if core.broken.done():
-                core.broken.result()
+            await asyncio.wait((verb, seat.broken), return_when=asyncio.FIRST_COMPLETED)
+            if seat.broken.done():
+                seat.broken.result()
             return await verb
         finally:
             if verb.cancel():
                 await asyncio.wait({verb}, timeout=END_WITHIN)
                 if verb.done() and not verb.cancelled() and (error := verb.exception()):
                     log.info("%s: %s", self._name, error)  # as of a file that cannot be kept: its shell has ended
-            core.leave()
+            seat.leave()
+
+    def _prepare(
+        self, group: VehicleGroup | None, action: VerbAction, options: argparse.Namespace, output: SentOutput
+    ) -> tuple[Core, Callable[[Callable[[], None]], Coroutine[None, None, int]]]:
+        """Return the core of a verb, and what runs the verb with it; takes what sends the messages of the core."""
+        station, number = self._station, self._station.operator.session
+        endpoints, options.system = station.station_info.endpoints, station.parts.ids[0]
+        if action.examines:
+            doctor = DoctorSession(station.parts.ids, number, endpoints, options)
+            doctor.files = self._files
+
+            async def examine(flush: Callable[[], None]) -> int:
+                doctor.flush = flush
+                return await action.run(doctor, options, output)
+
+            return doctor.core, examine
+        core = StationCore(station, options.vehicle)
+        tap = action.tap(options, core.ids)
+        if tap is not None:
+            core.record(tap)
+        kept = KeptSession(number, follows=self._follows)
+
+        async def script(flush: Callable[[], None]) -> int:
+            session = VerbSession(core, flush, output.progress)
+            session.files, session.companion = self._files, self._companion
+            session.where = " ".join(endpoints)
+            return await perform(session, action, options, output, group, kept, self._note_vehicle)
+
+        return core, script
 
     def _note_vehicle(self, name: str) -> None:
         self._vehicle = name

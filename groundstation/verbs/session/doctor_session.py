@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable, Sequence
 
 from groundstation.intents.base import Intent
 from groundstation.intents.session import RenewLease
@@ -14,12 +15,9 @@ from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.operator_core import OperatorCore
 from groundstation.verbs.common.arguments import is_chosen
-from groundstation.verbs.session.core import Waiters
+from groundstation.verbs.common.files import Files
 from groundstation.verbs.session.link_reasons import describe_silence
-from groundstation.verbs.session.running import VerbLinks, run_beside
-from groundstation.verbs.session.station_link import StationRunner
 from groundstation.views.doctor import DoctorRequest, DoctorView
-from link.runner import Runner
 
 LEASE_PERIOD = 0.1
 """s between renewals of the lease, as of the screen; each also looks whether something has changed."""
@@ -29,11 +27,22 @@ class DoctorSession:
     """What a verb does with its core. The key gate stays closed: no demand but neutral is ever sent."""
 
     def __init__(
-        self, core: OperatorCore, feed: DoctorFeed, request: DoctorRequest, runner: Runner | StationRunner
+        self, ids: tuple[int, int], number: int, endpoints: Sequence[str], options: argparse.Namespace
     ) -> None:
-        self._core, self._feed, self._request, self._runner = core, feed, request, runner
+        """`ids` are our system and component id, `number` is that of our session; for the vehicle of `options`."""
+        parts = CoreParts(endpoints, system=ids[0], component=ids[1], session=number, now=self._now)
+        self._feed = DoctorFeed(parts)
+        self.core = OperatorCore(parts, self._feed)
+        """For links, or for a seat in a station."""
+        self.core.intents.add(self._feed.handlers)
+        self.files = Files()
+        """The files of whoever typed the verb."""
+        self.observe: Callable[[], None] = lambda: None
+        """Gets the newest reports of links of its own; those of a station come by themselves."""
+        self._request = DoctorRequest(station=getattr(options, "driver", 0))
+        self.flush: Callable[[], None] = lambda: None
+        """Sends the messages of the core."""
         self._numbers = 0
-        self._waiters = Waiters()
 
     def take_number(self) -> int:
         """Return the number of the next request."""
@@ -43,8 +52,8 @@ class DoctorSession:
     def do(self, *intents: Intent) -> None:
         """Carry out intents now."""
         for intent in intents:
-            self._core.handle_intent(intent, self._now)
-        self._runner.flush()
+            self.core.handle_intent(intent, self._now)
+        self.flush()
 
     @property
     def snapshot(self) -> Snapshot:
@@ -57,19 +66,13 @@ class DoctorSession:
         return self._feed.doctor.build(self._request, self._now, time.time())
 
     async def until(self, condition: Callable[[], bool], within: float) -> bool:
-        """Wait until a condition holds, `within` s at most; return whether it does."""
-        found = self._waiters.add(condition)
-        self.look()
-        try:
-            async with asyncio.timeout(within):
-                await found
-        except TimeoutError:
-            return False
-        return True
-
-    def look(self) -> None:
-        """Check what the verb waits for."""
-        self._waiters.check()
+        """Wait until a condition holds, `within` s at most, and renew the lease meanwhile; return whether it does."""
+        end = self._now + within
+        while True:
+            self.do(RenewLease())
+            if condition() or self._now >= end:
+                return condition()
+            await asyncio.sleep(LEASE_PERIOD)
 
     async def find_vehicle(self, wait: float, wanted: int | str | None) -> bool:
         """Wait for a vehicle and select it; return whether it is there."""
@@ -81,36 +84,13 @@ class DoctorSession:
 
     def describe_links(self) -> str:
         """Return why no vehicle is heard, behind ": "; "" if nothing is known."""
-        self._runner.observe()
+        self.observe()
         return describe_silence(self.snapshot.links)
 
     def _find(self, wanted: int | str | None) -> int | None:
-        states = (contact.state for contact in self._core.fleet)
+        states = (contact.state for contact in self.core.fleet)
         return next((each.system for each in states if is_chosen(wanted, each.system, each.fleet_name)), None)
 
     @property
     def _now(self) -> float:
         return asyncio.get_running_loop().time()
-
-
-async def run_doctor(links: VerbLinks, driver: int, script: Callable[[DoctorSession], Awaitable[int]]) -> int:
-    """Run the script, and return its exit code. `driver` is the system id of the ground station that will drive.
-
-    0 is this one. Raises EndpointError, LinkError, VerbError.
-    """
-    system, component = links.ids
-    now = asyncio.get_running_loop().time()
-    parts = CoreParts(links.endpoints, system=system, component=component, session=links.session, now=now)
-    feed = DoctorFeed(parts)
-    core = OperatorCore(parts, feed)
-    core.intents.add(feed.handlers)
-    runner = links.open(core)
-    session = DoctorSession(core, feed, DoctorRequest(station=driver), runner)
-    return await run_beside(runner, lambda: script(session), _renew(core, session))
-
-
-async def _renew(core: OperatorCore, session: DoctorSession) -> None:
-    while True:
-        core.handle_intent(RenewLease(), asyncio.get_running_loop().time())
-        session.look()
-        await asyncio.sleep(LEASE_PERIOD)

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.vehicles.state.places import PLACES
 from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.session.core import OwnCore
-from groundstation.verbs.session.session import VerbSession
 from groundstation.verbs.session.station_link import StationRunner
 from link.core import Core
 from link.protocol.log_tap import LogTap
@@ -59,22 +57,14 @@ class VerbLinks(msgspec.Struct, frozen=True):
         return Runner(core, opened, period=PERIOD, route=False, log_tap=self.log_tap, sent=sent, signing=self.signing)
 
 
-async def run_session(
-    links: VerbLinks,
-    wanted: int | str | None,
-    script: Callable[[VerbSession], Awaitable[int]],
-    progress: Callable[[RequestReport], None],
-) -> int:
-    """Run the script for the vehicle `wanted`, and return its exit code. Raises EndpointError, LinkError, VerbError."""
-    core = OwnCore(links.ids, wanted, links.session, links.endpoints, asyncio.get_running_loop().time())
-    core.has_heard_all = links.station is not None
-    if links.guard is not None:
-        core.standstill = links.guard.standstill
+async def run_over(links: VerbLinks, core: Core, script: Callable[[Runner | StationRunner], Awaitable[int]]) -> int:
+    """Run the script with a core, and return its exit code. Raises EndpointError, LinkError, VerbError."""
     runner = links.open(core)
-    session = VerbSession(core, runner.flush, progress)
-    session.observe = runner.observe
-    reporting = [links.guard.run(core.driven)] if links.guard else []
-    return await run_beside(runner, lambda: script(session), *reporting)
+    reporting = []
+    if links.guard is not None and isinstance(core, OwnCore):
+        core.standstill = links.guard.standstill
+        reporting.append(links.guard.run(core.driven))
+    return await run_beside(runner, lambda: script(runner), *reporting)
 
 
 async def run_beside(

@@ -1,4 +1,4 @@
-"""The core and the session of a verb that runs in the process of a station, over the vehicles of its OperatorCore."""
+"""The core of a verb that runs in the process of a station, and the seat there of such a core."""
 
 from __future__ import annotations
 
@@ -12,12 +12,46 @@ from groundstation.station.relay.verb_relay import Verb
 from groundstation.station_socket.verb_run import STILL_WITHIN
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.core import VerbCore
-from link.core import LinkReport, Received
+from link.core import Core, LinkReport, Received, RefusalListener
 from link.protocol.log_tap import LogTap
 
 
 class StationCore(VerbCore):
-    """The core of a verb in a station, which has heard all vehicles and owns the links. `wanted` as for VerbCore.
+    """The core of a verb over the vehicles of a station, which has heard them. `wanted` as for VerbCore."""
+
+    def __init__(self, station: OperatorCore, wanted: int | str | None) -> None:
+        super().__init__(station, wanted)
+        self.has_heard_all = True
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle one message, which the station has handled."""
+        self.station.services.collect(now)  # what this message has ended
+        self.hear(received, now)
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Take the vehicles that the station knows, and the reports of its links."""
+        self.add_vehicles(now)
+        super().observe(reports, now)
+
+    def tick(self, now: float) -> None:
+        """Send heartbeats, repeat what is overdue."""
+        self.standstill.record_report(now)
+        self.add_vehicles(now)
+        super().tick(now)
+
+    def record(self, log_tap: LogTap) -> None:
+        """Have all that the station hears recorded, as frames without signatures. To be called before it joins."""
+
+        def take(received: Received, now: float) -> None:
+            number, place = type(received.message).id, (received.system, received.component)
+            raw = codec.frame(number, codec.encode_payload(received.message), received.sequence, *place)
+            log_tap.record_received([(number, *place, received.sequence, raw)], received.peer.link, now)
+
+        self.taps.append(take)
+
+
+class StationSeat:
+    """Joins the core of a verb to a station, in the place of links.
 
     A mistake of the verb must not end the station: it ends the verb (`broken`).
     """
@@ -25,7 +59,7 @@ class StationCore(VerbCore):
     def __init__(
         self,
         station: OperatorCore,
-        wanted: int | str | None,
+        core: Core,
         name: str,
         flush: Callable[[], None],
         *,
@@ -34,10 +68,9 @@ class StationCore(VerbCore):
         silence: Callable[[float], float] = lambda now: 0.0,
     ) -> None:
         """`flush` sends what the station has queued; `silence`: for how many s the shell of the verb was silent."""
-        super().__init__(station, wanted)
-        self.has_heard_all = True
         self.broken: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         """Has what ends the verb: a mistake in it, or a demand that is refused."""
+        self._relay, self._core = station.relay, core
         self._flush, self._silence = flush, silence
         self._verb = Verb(
             name, takes_part, self._deliver, self._report, self._refuse_demand, follows=follows, runs_here=True,
@@ -46,16 +79,14 @@ class StationCore(VerbCore):
 
     def join(self) -> None:
         """Begin: take what the station knows."""
-        now = self._now
-        self.add_vehicles(now)
-        self.station.relay.join(self._verb, now)
-        self._run_tick(now)
+        self._relay.join(self._verb, self._now)
+        self._run_tick(self._now)
         self._flush()
 
     def leave(self) -> None:
         """End: send what is left."""
         self.flush()
-        self.station.relay.leave(self._verb, self._now)
+        self._relay.leave(self._verb, self._now)
         self._flush()
         if self.broken.done():
             self.broken.exception()  # a verb that ends by itself has not read it
@@ -65,45 +96,35 @@ class StationCore(VerbCore):
         self._pass_on(self._now)
         self._flush()
 
-    def record(self, log_tap: LogTap) -> None:
-        """Have all that the station hears recorded, as frames without signatures. To be called before `join`."""
-
-        def take(received: Received, now: float) -> None:
-            number, place = type(received.message).id, (received.system, received.component)
-            raw = codec.frame(number, codec.encode_payload(received.message), received.sequence, *place)
-            log_tap.record_received([(number, *place, received.sequence, raw)], received.peer.link, now)
-
-        self.taps.append(take)
-
     @property
     def _now(self) -> float:
         return asyncio.get_running_loop().time()
 
     def _deliver(self, batch: Sequence[Received]) -> None:
         now = self._now
-        self._guard(lambda: self._receive_all(batch, now))
-        self._pass_on(now)
 
-    def _receive_all(self, batch: Sequence[Received], now: float) -> None:
-        self.station.services.collect(now)  # what this message has ended
-        for received in batch:
-            self.hear(received, now)
+        def receive_all() -> None:
+            for received in batch:
+                self._core.receive(received, now)
+
+        self._guard(receive_all)
+        self._pass_on(now)
 
     def _run_tick(self, now: float) -> None:
         """Tick, unless the shell stands still."""
-        self.standstill.record_report(now)
         if self._silence(now) > STILL_WITHIN:
             return
-        self.station.relay.hear(self._verb, now - self._silence(now))
-        self._guard(lambda: self.add_vehicles(now))
-        self._guard(lambda: self.tick(now))
+        self._relay.hear(self._verb, now - self._silence(now))
+        self._guard(lambda: self._core.tick(now))
         self._pass_on(now)
 
     def _report(self, reports: Sequence[LinkReport]) -> None:
-        self.observe(reports, self._now)
+        self._guard(lambda: self._core.observe(reports, self._now))
 
     def _take_refusal(self, message: m.Message, why: str) -> None:
-        self._guard(lambda: self.handle_refused(message, why, self._now))
+        if isinstance(self._core, RefusalListener):
+            core = self._core
+            self._guard(lambda: core.handle_refused(message, why, self._now))
 
     def _refuse_demand(self, line: str) -> None:
         """End the verb: its demand is not sent any more."""
@@ -113,8 +134,8 @@ class StationCore(VerbCore):
         """Give the messages of the verb to the station, which sends them; later if the shell stands still."""
         if self._silence(now) > STILL_WITHIN:
             return
-        for outgoing in self.messages_to_send():
-            self.station.relay.handle(self._verb, outgoing.message, now)
+        for outgoing in self._core.messages_to_send():
+            self._relay.handle(self._verb, outgoing.message, now)
 
     def _guard(self, step: Callable[[], object]) -> None:
         try:

@@ -7,7 +7,6 @@ import argparse
 from groundstation.doctor.report import format_chain, format_report
 from groundstation.intents.setup import RunChecks
 from groundstation.verbs.common.exit_codes import ExitCode
-from groundstation.verbs.common.local_file import check_new_file, write_text
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.doctor_session import DoctorSession
 from groundstation.views.doctor import DoctorView
@@ -22,7 +21,7 @@ AWAITED = ("link", "pre_arm", "stop_bound", "gcs_failsafe")
 async def run(session: DoctorSession, options: argparse.Namespace, output: Output) -> int:
     """Print the chain; done when nothing stops the operator."""
     if options.report:
-        check_new_file(options.report, overwrite=options.yes)
+        await session.files.check_new(options.report, overwrite=options.yes)
     found = await session.find_vehicle(options.wait, options.vehicle)
     if found:
         await _ask(session)
@@ -33,7 +32,7 @@ async def run(session: DoctorSession, options: argparse.Namespace, output: Outpu
         output.line(line)
     if options.report:
         log = (f"{line.label}: {line.text}" for line in session.snapshot.texts)
-        write_text(options.report, format_report(view, log=log))
+        await session.files.write_text(options.report, format_report(view, log=log))
         output.note(f"report saved to {options.report}")
     return _finish(view, output, None if found else session.describe_links())
 

@@ -26,7 +26,7 @@ from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.session.station_core import StationCore
+from groundstation.verbs.session.station_core import StationCore, StationSeat
 from link.core import Received
 from link.links import open_links
 from link.runner import Runner
@@ -137,13 +137,14 @@ def test_a_verb_gets_no_signing_key_that_is_heard() -> None:
             heard.append(received.message)
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1, "a shell", shells.flush)
+        core = StationCore(shells.station, 1)
+        seat = StationSeat(shells.station, core, "a shell", shells.flush)
         core.taps.append(tap)
-        core.join()
+        seat.join()
         vehicle.send(m.SetupSigning(255, 190, [7] * 32, 1))
         await shells.see(lambda: bool(heard))
         assert not any(heard[0].secret_key)
-        core.leave()
+        seat.leave()
 
     with foreign_vehicle() as vehicle:
         with_station(vehicle, use)
@@ -153,18 +154,20 @@ def test_the_verb_of_a_shell_that_stands_still_sends_nothing() -> None:
     silence = [0.0]
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1, "a shell", shells.flush, takes_part=True, silence=lambda now: silence[0])
-        core.join()
+        core = StationCore(shells.station, 1)
+        station, flush = shells.station, shells.flush
+        seat = StationSeat(station, core, "a shell", flush, takes_part=True, silence=lambda now: silence[0])
+        seat.join()
         await shells.see(lambda: core.chosen is not None)
         silence[0] = STILL_WITHIN + 0.01
         core.outbox.append(ping)
-        core.flush()
+        seat.flush()
         until = core.contacts[1].state.heartbeat_at + 2.5
         await shells.see(lambda: core.contacts[1].state.heartbeat_at > until)
         assert vehicle.of("PING") == []
         silence[0] = 0.0
         await shells.see(lambda: bool(vehicle.of("PING")))
-        core.leave()
+        seat.leave()
 
     ping = m.Ping(1, 2, 0, 0)
     with foreign_vehicle() as vehicle:
@@ -175,19 +178,21 @@ def test_the_demand_of_a_shell_that_stands_still_ends() -> None:
     silence = [0.0]
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1, "a shell", shells.flush, takes_part=True, silence=lambda now: silence[0])
-        core.join()
+        core = StationCore(shells.station, 1)
+        station, flush = shells.station, shells.flush
+        seat = StationSeat(station, core, "a shell", flush, takes_part=True, silence=lambda now: silence[0])
+        seat.join()
         await shells.see(lambda: core.chosen is not None)
         core.outbox.append(ahead)
-        core.flush()
+        seat.flush()
         await shells.see(lambda: [each.z for each in vehicle.of("MANUAL_CONTROL")][-1:] == [ahead.z])
         silence[0] = ALIVE_WITHIN + 0.05
         await shells.see(lambda: vehicle.of("MANUAL_CONTROL")[-1].z == neutral.z)
         core.outbox.append(ahead)
-        core.flush()
+        seat.flush()
         with pytest.raises(VerbError, match=r"a shell stood still for .* s: its demand has ended"):
-            await core.broken
-        core.leave()
+            await seat.broken
+        seat.leave()
         assert vehicle.of("MANUAL_CONTROL")[-1].z == neutral.z
 
     axes = axis_map(ARDUPILOT)
@@ -229,12 +234,13 @@ def test_a_mistake_in_a_verb_ends_that_verb_alone() -> None:
         raise RuntimeError("a mistake")
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1, "a shell", shells.flush)
-        core.join()
+        core = StationCore(shells.station, 1)
+        seat = StationSeat(shells.station, core, "a shell", shells.flush)
+        seat.join()
         core.taps.append(fail)
         with pytest.raises(RuntimeError, match="a mistake"):
-            await core.broken
-        core.leave()
+            await seat.broken
+        seat.leave()
         assert (await shells.run("mode", "HOLD")).code == ExitCode.DONE
 
     with foreign_vehicle() as vehicle:
