@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 mutate release
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -54,6 +54,9 @@ vm:  ## Test pins, I2C, the service and a serial line against Debian's kernel in
 
 aarch64:  ## Test the core on an emulated aarch64, with Debian's Python for it; needs qemu-user-static.
 	.venv/bin/python -m tests.aarch64 $(ARGS)
+
+oldest:  ## Run tests with the oldest allowed versions of all packages; needs a network.
+	.venv/bin/python -m tests.oldest $(ARGS)
 
 mutate:  ## Change the safety code line by line and report what no test notices.
 	.venv/bin/python -m tests.mutation $(ARGS)

@@ -61,7 +61,8 @@ def generate(target: Path = MODULE) -> Path:
     """Write the message module to `target` and its byte code beside it; return the byte code's path.
 
     The byte code is validated by the source's hash and not its time, so that it stays valid inside a wheel. Without
-    it a read-only installation would compile 2 MB of Python at each start (0.5 s and 70 MB more).
+    it a read-only installation would compile 2 MB of Python at each start (0.5 s and 70 MB more). It names the module
+    without its folder, so that two builds are the same: Python writes the real path into what it has read.
     """
     with tempfile.TemporaryDirectory() as scratch, _quiet():
         module = generate_plain(Path(scratch))
@@ -72,7 +73,7 @@ def generate(target: Path = MODULE) -> Path:
     whole.write_text(code, "utf-8")
     whole.replace(target)  # a program that starts meanwhile reads the old module or the new one, never a part
     checked = py_compile.PycInvalidationMode.CHECKED_HASH
-    return Path(str(py_compile.compile(str(target), doraise=True, invalidation_mode=checked)))
+    return Path(str(py_compile.compile(str(target), dfile=target.name, doraise=True, invalidation_mode=checked)))
 
 
 def generate_plain(folder: Path) -> Path:

@@ -28,14 +28,38 @@ def constraints() -> dict[str, str]:
     return dict(line.split("==") for line in lines if line and not line.startswith("#"))
 
 
+MADE_OF_OTHERS = {"all", "desk"}
+"""Extras without a package of their own."""
+
+
+def parts(extra: str) -> set[str]:
+    """Return the extras that one is made of."""
+    [line] = PROJECT["project"]["optional-dependencies"][extra]
+    return set(re.findall(r"^mavhelm\[(.*)\]$", line)[0].split(","))
+
+
 def test_a_release_lists_the_packages_of_every_extra() -> None:
-    """`all` is made of others; a new extra is either of developers, or a scanner must know its packages."""
-    assert listed_extras() == PROJECT["project"]["optional-dependencies"].keys() - OF_DEVELOPERS - {"all"}
+    """A new extra is either of developers, or made of others, or a scanner must know its packages."""
+    extras = PROJECT["project"]["optional-dependencies"].keys()
+    assert listed_extras() == extras - OF_DEVELOPERS - MADE_OF_OTHERS
 
 
 def test_the_extra_all_has_all_but_the_header_of_a_raspberry_pi() -> None:
-    [everything] = PROJECT["project"]["optional-dependencies"]["all"]
-    assert set(re.findall(r"\[(.*)\]", everything)[0].split(",")) == listed_extras() - {"pi"}
+    assert (parts("all") - {"desk"}) | parts("desk") == listed_extras() - {"pi"}
+
+
+def test_the_extra_desk_needs_no_other_network_of_programs() -> None:
+    """It is for a person at a screen; ROS and a router on the internet are for fleets."""
+    assert parts("desk") == {"bags", "discovery", "gamepad", "keys", "web"}
+
+
+def test_every_python_of_the_classifiers_may_install_it() -> None:
+    classifiers = PROJECT["project"]["classifiers"]
+    pythons = [
+        each.rpartition(" ")[2] for each in classifiers if each.startswith("Programming Language :: Python :: 3.")
+    ]
+    assert pythons == ["3.11", "3.12", "3.13", "3.14"]
+    assert PROJECT["project"]["requires-python"] == f">={pythons[0]}"
 
 
 def test_the_build_backend_has_the_version_of_the_constraints() -> None:
@@ -44,6 +68,11 @@ def test_the_build_backend_has_the_version_of_the_constraints() -> None:
     assert pinned == {name: constraints()[name] for name in pinned}
     assert {"packaging", "pathspec", "pluggy", "trove-classifiers"} <= constraints().keys(), "what hatchling needs"
     assert 'PIP_CONSTRAINT="$PWD/constraints.txt"' in (CI / "release").read_text()
+
+
+def test_a_release_has_the_time_of_its_commit() -> None:
+    """Without it the files in an archive have another time in each build (tests/dialects/test_build.py)."""
+    assert 'export SOURCE_DATE_EPOCH="$(git log -1 --format=%ct)"' in (CI / "release").read_text()
 
 
 def test_the_tools_of_a_release_have_hashes() -> None:

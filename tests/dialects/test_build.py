@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 from xml.etree import ElementTree
@@ -38,6 +43,24 @@ def test_a_wheel_has_the_dialect_with_its_byte_code(tmp_path: Path) -> None:
         assert data in names
     assert {f"{package}/py.typed" for package in ("dialects", "link", "vehicle", "groundstation")} <= set(names)
     assert not any(name.startswith("tests/") for name in names)
+
+
+def build_copy(folder: Path) -> str:
+    """Build the wheel from a copy of the sources in `folder`; return its SHA-256."""
+    copied = shutil.copytree(
+        ROOT, folder, ignore=lambda here, names: {each for each in names if each.startswith((".", "tests", "docs"))}
+    )
+    shutil.copy(ROOT / ".gitignore", copied)
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", "dist"]
+    environment = {**os.environ, "SOURCE_DATE_EPOCH": "1767225600"}
+    subprocess.run(command, cwd=copied, env=environment, check=True, capture_output=True)
+    [wheel] = (copied / "dist").iterdir()
+    return hashlib.sha256(wheel.read_bytes()).hexdigest()
+
+
+def test_two_builds_in_different_folders_are_the_same_file(tmp_path: Path) -> None:
+    """The second one has newer files, in a folder with a longer name."""
+    assert build_copy(tmp_path / "a") == build_copy(tmp_path / "another folder")
 
 
 DEFINITIONS = """<mavlink><messages>
