@@ -100,7 +100,8 @@ def _read(file: Path, parse: Callable[[str], Any]) -> dict[str, Any]:
         contents: dict[str, Any] = parse(file.read_text("utf-8"))
     except (OSError, ValueError):
         return {}
-    return contents.get("tool", contents)
+    table: dict[str, Any] = contents.get("tool", contents)
+    return table
 
 
 _KINDS: tuple[tuple[Callable[[Path], bool], Callable[[Path, str], str]], ...] = (
