@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterable, Mapping
 from groundstation.host.listener import Caller, ProgramListener
 from groundstation.host.run_port import RunPort
 from groundstation.host.screens import ScreenSet
-from groundstation.host.verb_port import VerbPort
 from groundstation.ipc import protocol_version
 from groundstation.station.station import Station
 from groundstation.station_socket import about, names, verb_run
@@ -61,44 +60,39 @@ def answer_about(sock: socket.socket, station: Station, screens: ScreenSet) -> N
 
 
 class VerbSet:
-    """Verbs that go through a station. `ids` are those of the station; `flush` sends what verbs have queued."""
+    """Verbs of shells, which run in a station. `flush` sends what verbs have queued."""
 
-    def __init__(self, station: Station, ids: tuple[int, int], flush: Callable[[], None]) -> None:
+    def __init__(self, station: Station, flush: Callable[[], None]) -> None:
         self._station = station
-        self._ids = ids
         self._flush = flush
-        self._ports: set[VerbPort | RunPort] = set()
+        self._ports: set[RunPort] = set()
 
     def add(self, sock: socket.socket, name: str, hello: Hello) -> None:
         """Start a verb; the loop runs."""
         station = self._station
         follows = hello.follows and station.relay.may_follow(asyncio.get_running_loop().time())
-        port: VerbPort | RunPort
-        if hello.runs_here:
-            port = RunPort(sock, station, name, self._flush, self._remove, follows=follows)
-        else:
-            port = VerbPort(sock, station.relay, (name, hello.takes_part, follows), self._flush, self._remove)
+        port = RunPort(sock, station, name, self._flush, self._remove, follows=follows)
         self._ports.add(port)
-        port.start(VerbReady(*self._ids, station.operator.session, station.station_info.endpoints, follows))
+        port.start(VerbReady(station.station_info.endpoints))
 
     def close(self) -> None:
         """End all connections."""
         for port in list(self._ports):
             self._remove(port)
 
-    def _remove(self, port: VerbPort | RunPort) -> None:
+    def _remove(self, port: RunPort) -> None:
         self._ports.discard(port)
         port.close()
         self._flush()
 
 
 class ProgramSet:
-    """All programs of one station. `ids` and `flush` as those of VerbSet."""
+    """All programs of one station. `flush` as that of VerbSet."""
 
-    def __init__(self, station: Station, screens: ScreenSet, ids: tuple[int, int], flush: Callable[[], None]) -> None:
+    def __init__(self, station: Station, screens: ScreenSet, flush: Callable[[], None]) -> None:
         self._station = station
         self._screens = screens
-        self._verbs = VerbSet(station, ids, flush)
+        self._verbs = VerbSet(station, flush)
         self._listener = ProgramListener(self._take)
         self._screen_version = protocol_version()  # of the code that runs, not of what is installed meanwhile
         self._ending = False

@@ -32,6 +32,7 @@ from groundstation.station_socket.verb_run import (
     VerbReady,
     decode_from_shell,
     encode,
+    split,
 )
 from groundstation.verbs.common.channel import Channel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -79,7 +80,7 @@ class RunPort:
         self._task: asyncio.Task[None] | None = None
         self._answers: dict[int, asyncio.Future[FileAnswered]] = {}
         """Number of a file of the user -> the answer that its verb waits for."""
-        self._companion = Channel(lambda value: self._send(encode(ToCompanion(value))))
+        self._companion = Channel(self._send_value)
         self._open = True
 
     def start(self, ready: VerbReady) -> None:
@@ -113,7 +114,7 @@ class RunPort:
                 return
             try:
                 self._handle(decode_from_shell(packet))
-            except msgspec.DecodeError:
+            except (msgspec.DecodeError, ValueError):  # no packet, or no exit code
                 log.exception("invalid packet from a shell")
 
     def _handle(self, packet: FromShell) -> None:
@@ -124,7 +125,7 @@ class RunPort:
         elif isinstance(packet, StillHere):
             self._send(encode(Alive()))
         elif isinstance(packet, FromCompanion):
-            self._companion.push(packet.value)
+            self._companion.push_piece(packet.data, whole=packet.whole)
         elif isinstance(packet, CompanionEnded):
             self._companion.end(VerbError(ExitCode(packet.code), packet.line) if packet.line else None)
         elif isinstance(packet, FileAnswered):
@@ -178,6 +179,10 @@ class RunPort:
         self._printed.clear()
         if batch:
             self._send(encode(VerbOutput(tuple(batch))))  # type: ignore[arg-type]
+
+    def _send_value(self, value: object) -> None:
+        for piece in split(value):
+            self._send(encode(ToCompanion(*piece)))
 
     def _send(self, packet: bytes) -> None:
         if self._open:

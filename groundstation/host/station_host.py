@@ -77,7 +77,7 @@ class StationHost:
             sent=watchdog.record_sent,
             signing=signing.link_signing if signing else None,
         )
-        self._programs = ProgramSet(station, self.screens, ids, self._runner.flush)
+        self._programs = ProgramSet(station, self.screens, self._runner.flush)
         self._disk = FileJobs(station, self._runner.flush)
         self.connect = LinkManager(self._runner, station, ids, sent, simulators)
         self._slots = SlotTimer(self._keep_up, self._snapshots.call_period)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from groundstation.ros.vehicle import Values
 from link.services.param.client import Param
@@ -62,13 +61,15 @@ def matching(names: Iterable[str], prefixes: Iterable[str]) -> list[str]:
     )
 
 
-def wanted_value(value: Any, name: str, params: Mapping[str, Param]) -> float | str:
+def wanted_value(value: Values, name: str, params: Mapping[str, Param]) -> float | str:
     """Return the number that a ParameterValue sets a parameter to, or in one line why it cannot."""
     param = params.get(name)
     if param is None:
         return f"{name!r}: the vehicle has no such parameter"
-    numbers = {BOOL: float(value.bool_value), INTEGER: float(value.integer_value), DOUBLE: value.double_value}
-    number = numbers.get(value.type)
+    numbers = {
+        BOOL: float(value["bool_value"]), INTEGER: float(value["integer_value"]), DOUBLE: value["double_value"],
+    }  # fmt: skip
+    number = numbers.get(value["type"])
     if number is None or not math.isfinite(number):
         return f"{name}: a parameter of a vehicle is one finite number"
     if type_of(param) == INTEGER and number != int(number):

@@ -7,6 +7,7 @@ hash of a service is that of a type with three members, REP 2016.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,7 @@ class RosTypes:
         return self._hashes[kind]
 
     def encode(self, kind: str, values: Mapping[str, Any]) -> bytes:
-        """Return values as CDR, little endian. `header` is a tuple of a Unix time in us and a frame."""
+        """Return values as CDR, little endian. A header is a pair of a Unix time in us and a frame."""
         return bytes(self.store.serialize_cdr(self.build(kind, values), kind))
 
     def decode(self, kind: str, data: bytes) -> Any:
@@ -77,14 +78,14 @@ class RosTypes:
 
     def build(self, kind: str, values: Mapping[str, Any]) -> Any:
         """Return the message of a type, and of the types in it."""
-        fields = self.store.get_msgdef(kind).fields
-        return self.store.types[kind](**{name: self._field(name, of, values[name]) for name, of in fields})
+        named = self.store.get_msgdef(kind).fields
+        return self.store.types[kind](**{name: self._field(of, values[name]) for name, of in named})
 
-    def _field(self, name: str, of: Any, value: Any) -> Any:
-        if isinstance(value, tuple):
-            return self._header(*value) if name == "header" else self._time(*value)
+    def _field(self, of: Any, value: Any) -> Any:
         if isinstance(value, dict):
             return self.build(of[1], value)
+        if of[0] == Nodetype.NAME:
+            return self._header(*value) if of[1] == "std_msgs/msg/Header" else self._time(*value)
         if not isinstance(value, list):
             return value
         inner = of[1][0]
@@ -98,6 +99,15 @@ class RosTypes:
     def _time(self, microseconds: int) -> Any:
         seconds, rest = divmod(microseconds, 1_000_000)
         return self.store.types["builtin_interfaces/msg/Time"](sec=min(seconds, SECONDS_MAX), nanosec=rest * 1000)
+
+
+def to_plain(value: Any) -> Any:
+    """Return a message, or a value in one, as dictionaries and lists."""
+    if is_dataclass(value):
+        return {field.name: to_plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [to_plain(each) for each in value] if isinstance(value, list) else value
 
 
 _DTYPES = {"byte": "uint8", "char": "uint8"}

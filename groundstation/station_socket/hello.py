@@ -24,12 +24,8 @@ class Hello(msgspec.Struct, frozen=True):
     """What the other programs call it, e.g. "screen on pts/4"."""
     watches: bool = False
     """Of a screen: it does not drive unless its operator asks to, also where no other screen does."""
-    takes_part: bool = False
-    """Of a verb: it commands the vehicle, and does not only look."""
     follows: bool = False
     """Of a verb that looks: it keeps the session going that a verb has used just before."""
-    runs_here: bool = False
-    """Of a verb: the station runs it (verb_run.py), and its program only prints."""
 
 
 class StationFailed(msgspec.Struct, frozen=True, tag=True):

@@ -6,14 +6,15 @@ the command line, prints, reads and writes the files of the user, and says ten t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import msgspec
 
 from groundstation.station_socket.hello import StationFailed
 
-VERSION = 7
-"""Of the packets of verbs: those below, and those of relay.py."""
+VERSION = 8
+"""Of the packets below."""
 
 MAX_PRINTED = 1 << 18
 """Bytes of the largest packet, each way."""
@@ -27,6 +28,10 @@ ALIVE_PERIOD = 0.1
 ALIVE_WITHIN = 0.3
 """s without a packet after which a verb that demands motion counts as dead."""
 
+KEEP = 30.0
+"""s after the end of a verb for which the next one has its session: our vehicle disarms when nobody has driven it for
+that time (FS_DISARM_T)."""
+
 STILL_WITHIN = 1.0
 """s without a packet after which a shell counts as standing still, as after Ctrl-Z. Its verb
 stands still, too, so that the vehicle misses its ground station as if the verb ran in the shell."""
@@ -35,13 +40,7 @@ stands still, too, so that the vehicle misses its ground station as if the verb 
 class VerbReady(msgspec.Struct, frozen=True, tag=True):
     """From the station, first."""
 
-    system: int
-    component: int
-    """The ids of the station, which are those of the verb from now on."""
-    session: int
     endpoints: tuple[str, ...]
-    follows: bool = False
-    """The verb may prove the session, which a verb has used just before."""
 
 
 class Alive(msgspec.Struct, frozen=True, tag=True):
@@ -127,15 +126,19 @@ class FileAnswered(msgspec.Struct, frozen=True, tag=True):
 
 
 class ToCompanion(msgspec.Struct, frozen=True, tag=True):
-    """From the station: a value of the verb for its companion (verbs/common/channel.py)."""
+    """From the station: a value of the verb for its companion (verbs/common/channel.py), or a piece of it."""
 
-    value: Any
+    data: bytes
+    """msgpack."""
+    whole: bool = True
+    """No piece of it follows."""
 
 
 class FromCompanion(msgspec.Struct, frozen=True, tag=True):
-    """From the shell: a value of the companion for its verb."""
+    """From the shell: a value of the companion for its verb, likewise."""
 
-    value: Any
+    data: bytes
+    whole: bool = True
 
 
 class CompanionEnded(msgspec.Struct, frozen=True, tag=True):
@@ -152,3 +155,10 @@ FromShell = RunVerb | StillHere | CancelVerb | FileAnswered | FromCompanion | Co
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(ToShell).decode
 decode_from_shell = msgspec.msgpack.Decoder(FromShell).decode
+
+
+def split(value: Any) -> Iterator[tuple[bytes, bool]]:
+    """Yield a value as the pieces of packets, and whether each is the last one."""
+    data = encode(value)
+    for at in range(0, len(data), PIECE):
+        yield data[at : at + PIECE], at + PIECE >= len(data)

@@ -31,8 +31,6 @@ class VerbAction(msgspec.Struct, frozen=True):
     """Needs neither vehicle nor link: `run` gets None. It has its own arguments, --dialect, --json and --quiet."""
     examines: bool = False
     """`run` gets a DoctorSession: an OperatorCore with the doctor. It finds its vehicle itself."""
-    own_process: bool = False
-    """Runs in its own process also where a station runs: it has files or programs of this machine."""
     prepare: Callable[[argparse.Namespace], Any] | None = None
     """Returns `options.given`: what the files and the configuration of the user say, in plain values.
 

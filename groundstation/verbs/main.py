@@ -159,13 +159,13 @@ async def _run_once(
 ) -> int:
     """Do so once, in a station, or in this process. A station may be silent for `patience` s."""
     station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))
-    if station is not None and not action.own_process:
-        client = VerbClient(station, output, patience)
-        ended = await client.run(ask_for_verb(options, group), _companion_of(action, options, output))
-        if options.endpoints and ended.vehicle:
-            remember(endpoints, ended.vehicle)
-        return ended.code
-    return await _run_here(action, options, output, group, station, endpoints, patience)
+    if station is None:
+        return await _run_here(action, options, output, group, endpoints)
+    client = VerbClient(station, output, patience)
+    ended = await client.run(ask_for_verb(options, group), _companion_of(action, options, output))
+    if options.endpoints and ended.vehicle:
+        remember(endpoints, ended.vehicle)
+    return ended.code
 
 
 async def _run_here(
@@ -173,22 +173,19 @@ async def _run_here(
     options: argparse.Namespace,
     output: Output,
     group: VehicleGroup | None,
-    station: StationLink | None,
     endpoints: Sequence[str],
-    patience: float,
 ) -> int:
-    """Run the action in this process, with links of its own, or with those of a station."""
+    """Run the action in this process, with links of its own."""
     from groundstation.verbs.session.identity import choose_identity  # a verb that a station runs does without
     from groundstation.verbs.session.running import VerbLinks, run_over
 
-    ids, kept = choose_identity(action, options, station)
+    ids, kept = choose_identity(action, options)
     tap = action.tap(options, ids)
-    signing = _open_signing() if station is None and not getattr(options, "unsigned", False) else None
-    guarded = station is None and action.guarded(options)
-    guard = _start_guard(ids, signing) if guarded else None  # before the links are open
-    links = VerbLinks(endpoints, ids, kept.number, station, patience, signing, tap, guard)
-
+    signing = None if getattr(options, "unsigned", False) else _open_signing()
+    guard = _start_guard(ids, signing) if action.guarded(options) else None  # before the links are open
+    links = VerbLinks(endpoints, ids, kept.number, signing, tap, guard)
     core, script = _prepare_own(action, options, output, group, links, kept)
+
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
             return await run_over(links, core, script)
@@ -224,7 +221,6 @@ def _prepare_own(
 
     now = asyncio.get_running_loop().time()
     core = OwnCore(links.ids, options.vehicle, kept.number, links.endpoints, now)
-    core.has_heard_all = links.station is not None
 
     def found(name: str) -> None:
         if options.endpoints:
@@ -258,22 +254,12 @@ def _find_way(
     def choose() -> list[str]:
         return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note, reserved=VERBS)
 
-    if action.own_process:
-        check_options(action, options)
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
-    hello = Hello(
-        VERB,
-        VERSION,
-        f"groundstation {output.verb}",
-        takes_part=not action.watches,
-        follows=action.follows,
-        runs_here=not action.own_process,
-    )
+    hello = Hello(VERB, VERSION, f"groundstation {output.verb}", follows=action.follows)
     station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
         return station, station.ready.endpoints
-    if not action.own_process:
-        check_options(action, options)
+    check_options(action, options)
     return None, endpoints or choose()
 
 

@@ -293,7 +293,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
             (("name", {"nargs": "?", "metavar": "NAME", "help": "name of the key (default: the one that signs)"}),
              ("--unsigned", {"action": "store_true",
                              "help": "neither sign nor verify: for an autopilot that signs with a key that is lost"})),
-            check=sign_setup.check, tap=sign_setup.watch_signatures, watches=True, own_process=True),
+            prepare=sign_setup.prepare, tap=sign_setup.watch_signatures, watches=True),
         "list": VerbAction("print the keys without their secrets; > marks the one that signs", sign.list_keys,
                            offline=True),
         "use": VerbAction("sign with this key from now on", sign.use, (_WHICH_KEY,), offline=True),
@@ -301,10 +301,11 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     },
     "ros1": {ONLY: VerbAction(
         "be a node of ROS 1: /command and /cmd_vel drive, telemetry is published; until Ctrl-C", ros1.run,
-        ros1.ARGUMENTS, takes_part=True, guarded=lambda _: True, own_process=True)},
+        ros1.ARGUMENTS, takes_part=True, guarded=lambda _: True, companion=ros1.serve)},
     "ros2": {ONLY: VerbAction(
         "be a node of ROS 2 over rmw_zenoh: /cmd_vel and /command drive, telemetry is published; until Ctrl-C",
-        ros2.run, ros2.ARGUMENTS, takes_part=True, check=ros2.check, guarded=lambda _: True, own_process=True)},
+        ros2.run, ros2.ARGUMENTS, takes_part=True, prepare=ros2.prepare, guarded=lambda _: True,
+        companion=ros2.serve)},
     "export": {ONLY: VerbAction(
         "write a telemetry log, or a part of it, for other programs; several outputs at once", export.run,
         export.ARGUMENTS, offline=True, check=export.check)},

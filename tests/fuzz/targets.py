@@ -20,7 +20,7 @@ from groundstation.input.keymap_file import load_keymap
 from groundstation.ipc import decode_from_screen, decode_from_station
 from groundstation.station.station import Station
 from groundstation.station_socket.hello import decode_hello
-from groundstation.station_socket.relay import decode_from_verb
+from groundstation.station_socket.verb_run import decode_from_shell
 from link.core import Core, Outgoing
 from link.protocol.channel import Channel
 from link.protocol.framer import Framer
@@ -134,7 +134,7 @@ def tlog(data: bytes) -> None:
 
 
 def runtime_socket(data: bytes) -> None:
-    for decode in (decode_from_screen, decode_from_station, decode_hello, decode_from_verb):
+    for decode in (decode_from_screen, decode_from_station, decode_hello, decode_from_shell):
         with contextlib.suppress(msgspec.MsgspecError):
             decode(data)
 

@@ -23,8 +23,7 @@ from dialects.messages import INVALID_AXIS
 from dialects.traits import ACKED
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
-from groundstation.station_socket.relay import KEEP
-from groundstation.station_socket.verb_run import ALIVE_WITHIN
+from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.vehicles.demand.demand_neutrals import DEMANDS
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -62,10 +61,8 @@ class Verb(msgspec.Struct, eq=False):
     """Why no more demands are taken."""
     tell_refusal: Callable[[m.Message, str], None] = lambda message, why: None
     """Takes a message of the verb that our role does not allow, and why."""
-    runs_here: bool = False
-    """It runs in this process, and uses the services of the station."""
     tick: Callable[[float], None] = lambda now: None
-    """Of a verb that runs here."""
+    """Called with each tick of the station."""
 
 
 class _Ending(msgspec.Struct):
@@ -217,8 +214,8 @@ class VerbRelay:
 
     @property
     def uses_services(self) -> bool:
-        """Whether a verb runs here, so that the services of vehicles are used although no screen is there."""
-        return any(verb.runs_here for verb in self._verbs)
+        """Whether a verb runs, so that the services of vehicles are used although no screen is there."""
+        return bool(self._verbs)
 
     @property
     def finished(self) -> bool:

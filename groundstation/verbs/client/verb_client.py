@@ -25,6 +25,7 @@ from groundstation.station_socket.verb_run import (
     VerbOutput,
     decode_from_station,
     encode,
+    split,
 )
 from groundstation.verbs.client.companion import RunCompanion, RunningCompanion
 from groundstation.verbs.client.file_worker import FileWorker
@@ -60,11 +61,15 @@ class VerbClient:
         """
         if companion is None:
             return await self._run(asked)
-        self._companion = RunningCompanion(companion, lambda value: self._send(FromCompanion(value)), self._end_early)
+        self._companion = RunningCompanion(companion, self._send_value, self._end_early)
         try:
             return await self._run(asked)
         finally:
             await self._companion.finish()
+
+    def _send_value(self, value: object) -> None:
+        for piece in split(value):
+            self._send(FromCompanion(*piece))
 
     def _end_early(self, failure: VerbError | None) -> None:
         self._send(CompanionEnded(failure.code, str(failure)) if failure else CompanionEnded())
@@ -137,8 +142,8 @@ class VerbClient:
                         self._print(each)
                 case VerbEnded() as ended_so:
                     self.ended = ended_so
-                case ToCompanion(value) if self._companion is not None:
-                    self._companion.channel.push(value)
+                case ToCompanion(data, whole) if self._companion is not None:
+                    self._companion.channel.push_piece(data, whole=whole)
                 case FileAsked() as asked:
                     self._files.work(asked)
                 case _:

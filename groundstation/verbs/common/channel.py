@@ -10,7 +10,11 @@ import asyncio
 from collections.abc import Callable
 from typing import Any
 
+import msgspec
+
 from groundstation.verbs.common.exit_codes import VerbError
+
+decode = msgspec.msgpack.Decoder().decode
 
 
 class ChannelEndedError(Exception):
@@ -23,11 +27,19 @@ class Channel:
     def __init__(self, send: Callable[[Any], None] = lambda value: None) -> None:
         self.send = send
         self._arrived: asyncio.Queue[Any] = asyncio.Queue()
+        self._pieces = bytearray()
         self._failure: VerbError | ChannelEndedError | None = None
 
     def push(self, value: Any) -> None:
         """Handle a value of the other end."""
         self._arrived.put_nowait(value)
+
+    def push_piece(self, data: bytes, *, whole: bool) -> None:
+        """Handle a value, or a piece of one, as packets have it. Raises DecodeError."""
+        self._pieces += data
+        if whole:
+            joined, self._pieces = self._pieces, bytearray()
+            self.push(decode(joined))
 
     def end(self, failure: VerbError | None = None) -> None:
         """Handle the end of the other one."""

@@ -1,7 +1,8 @@
 """`groundstation ros1`: a vehicle as a node of ROS 1, which /command and /cmd_vel drive, and which publishes telemetry.
 
-The node is a process of the system's Python (groundstation/ros1/). Whatever ends - a publisher, the node, the master,
-this program - leaves the vehicle neutral: RosDriver has the rules.
+The node is a process of the system's Python (groundstation/ros1/), which the companion of the verb starts in the
+environment of the user. Whatever ends - a publisher, the node, the master, this program - leaves the vehicle neutral:
+RosDriver has the rules.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 from groundstation.ros.vehicle import RosVehicle
 from groundstation.ros1.process import NodeEndedError, NodeProcess, running_node
 from groundstation.verbs.common.arguments import Argument, seconds
+from groundstation.verbs.common.channel import Channel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.ros.ros_driver import RosDriver
@@ -68,19 +70,26 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
 
 
 class Ros1:
-    """One node after another: a node ends when its master does."""
+    """What the nodes of the companion say and publish."""
 
     def __init__(self, session: VerbSession, driver: RosDriver, options: argparse.Namespace, output: Output) -> None:
         self._session, self._driver, self._output = session, driver, output
         self._options = options
+        self._telemetry = Ros1Telemetry(session)
         self._senders: set[tuple[str, str]] = set()
         self._ready = asyncio.Event()
 
     async def run(self) -> None:
-        """Run nodes until cancelled. Raises VerbError."""
-        while True:
-            await self._run_node()
-            await asyncio.sleep(REJOIN_AFTER)
+        """Handle what the nodes say, until cancelled. Raises VerbError."""
+        companion = self._session.companion
+        companion.send(f"mavhelm_{self._session.vehicle.system}")
+        self._session.core.taps.append(self._telemetry.take)
+        try:
+            while True:
+                self._handle(await companion.receive())
+        finally:
+            self._session.core.taps.remove(self._telemetry.take)
+            self._forget()
 
     async def arm(self) -> None:
         """With --arm, arm once the node is ready. Raises VerbError: nothing arms later, at a time that surprises."""
@@ -95,27 +104,8 @@ class Ros1:
         if not armed:
             raise VerbError(ExitCode.REFUSED, text)
 
-    async def _run_node(self) -> None:
-        """Run a node; return when its master has ended. Raises VerbError."""
-        python, name = self._options.python, f"mavhelm_{self._session.vehicle.system}"
-        try:
-            async with running_node(python, name, TOPICS) as node:
-                telemetry = Ros1Telemetry(self._session, node)
-                self._session.core.taps.append(telemetry.take)
-                try:
-                    while await self._handle(await node.read(), telemetry):
-                        pass
-                finally:
-                    self._session.core.taps.remove(telemetry.take)
-        except OSError as error:
-            raise VerbError(ExitCode.USAGE, f"--python {python}: {error.strerror}") from None
-        except NodeEndedError as error:
-            raise VerbError(ExitCode.BROKEN, f"{error}; neutral") from None
-        finally:
-            self._forget()
-
-    async def _handle(self, line: dict[str, Any], telemetry: Ros1Telemetry) -> bool:
-        """Handle a line of the node; return whether it goes on. Raises VerbError."""
+    def _handle(self, line: dict[str, Any]) -> None:
+        """Handle a line of the node. Raises VerbError."""
         note = self._output.note
         match line:
             case {"topic": str(topic), "from": str(sender), "at": float(at), "values": dict(values)}:
@@ -127,15 +117,15 @@ class Ros1:
             case {"waiting": str(uri)}:
                 note(f"no ROS master at {uri}: start `roscore`, or set ROS_MASTER_URI")
             case {"ready": str(name), "master": str(uri)}:
-                telemetry.ready = True
+                self._telemetry.ready = True
                 self._ready.set()
                 note(f"{self._session.vehicle.name} is {name} at {uri}: publish to command or cmd_vel")
             case {"silent": bool(silent), "master": str(uri)}:
                 note(f"the ROS master at {uri} {SILENT if silent else 'answers again'}")
             case {"lost": str(text)}:
+                self._telemetry.ready = False
+                self._forget()
                 note(f"the node has left ROS: {text}; neutral")
-                return False
-        return True
 
     def _take(self, topic: str, sender: str, at: float, values: dict[str, Any]) -> None:
         if self._session.now - at > LATE:
@@ -155,12 +145,11 @@ class Ros1:
 
 
 class Ros1Telemetry:
-    """Telemetry of the vehicle, published by a node once it is ready."""
+    """Telemetry of the vehicle, published by the node of the companion once it is ready."""
 
-    def __init__(self, session: VerbSession, node: NodeProcess) -> None:
-        self._system = session.vehicle.system
+    def __init__(self, session: VerbSession) -> None:
+        self._system, self._companion = session.vehicle.system, session.companion
         self._vehicle = RosVehicle(session.vehicle.component)
-        self._node = node
         self.ready = False
 
     def take(self, received: Received, now: float) -> None:
@@ -170,4 +159,39 @@ class Ros1Telemetry:
         made = self._vehicle.take(received.message, time.time_ns() // 1000)
         if made is not None and self.ready and made[0] in NODE_TOPICS:
             topic, kind, values = made
-            self._node.publish(topic, kind.replace("/msg/", "/"), values)
+            self._companion.send((topic, kind.replace("/msg/", "/"), values))
+
+
+async def serve(options: argparse.Namespace, output: Output, verb: Channel) -> None:
+    """Run one node after another, as the companion: a node ends when its master does. Raises VerbError."""
+    name = await verb.receive()
+    try:
+        while True:
+            async with running_node(options.python, name, TOPICS) as node:
+                tasks = asyncio.ensure_future(_read(node, verb)), asyncio.ensure_future(_publish(node, verb))
+                try:
+                    ended, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+                    for each in ended:
+                        each.result()
+                finally:
+                    for task in tasks:
+                        task.cancel()
+            await asyncio.sleep(REJOIN_AFTER)
+    except OSError as error:
+        raise VerbError(ExitCode.USAGE, f"--python {options.python}: {error.strerror}") from None
+    except NodeEndedError as error:
+        raise VerbError(ExitCode.BROKEN, f"{error}; neutral") from None
+
+
+async def _read(node: NodeProcess, verb: Channel) -> None:
+    """Pass on what the node says, until it has left its master."""
+    line: dict[str, Any] = {}
+    while "lost" not in line:
+        line = await node.read()
+        verb.send(line)
+
+
+async def _publish(node: NodeProcess, verb: Channel) -> None:
+    """Publish what the verb sends, until it ends."""
+    while True:
+        node.publish(*await verb.receive())

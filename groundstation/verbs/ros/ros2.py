@@ -2,6 +2,8 @@
 
 Messages of /cmd_vel and /command drive by the rules of every driver (ros_driver.py), telemetry is published as standard
 messages, and parameters are those of the vehicle. A service that arms is there on request only. It runs until Ctrl-C.
+
+The node, with the Zenoh library and its threads, is the companion of the verb, so that it is never in a station.
 """
 
 from __future__ import annotations
@@ -10,15 +12,21 @@ import argparse
 import asyncio
 import os
 import time
+from collections.abc import Callable
+from functools import partial
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from dialects import messages as m
 from groundstation.ros.diagnostics import diagnostics, log_line
+from groundstation.ros.freshness import MAX_LATENESS
 from groundstation.ros.rmw.names import name_fault, namespace_fault
-from groundstation.ros.vehicle import ODOMETRY, RosVehicle, transforms
+from groundstation.ros.vehicle import ODOMETRY, RosVehicle, Values, transforms
 from groundstation.verbs.common.arguments import Argument
+from groundstation.verbs.common.channel import Channel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
+from groundstation.verbs.ros.ros2_params import PARAMETER_SERVICES, parameter_services
 from groundstation.verbs.ros.ros_driver import RosDriver
 from groundstation.verbs.ros.ros_rates import RATE, request_rates
 from groundstation.verbs.ros.ros_scale import ARGUMENTS as SCALE_ARGUMENTS
@@ -29,7 +37,6 @@ from link.runtime.install_hint import install_command
 
 if TYPE_CHECKING:
     from groundstation.ros.types import RosTypes
-    from groundstation.ros2.node import Ros2Node
 
 DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 LAST_DOMAIN = 232
@@ -48,8 +55,17 @@ PUBLISHED = {
 }
 """Topic -> its type. One without a slash is in the namespace of the node."""
 TRANSFORMS, TRANSFORM_TYPE = "/tf", "tf2_msgs/msg/TFMessage"
+ARM = "~/arm"
+SERVED = {ARM: "std_srvs/srv/SetBool", **PARAMETER_SERVICES}
+"""Service -> its type."""
 DIAGNOSTICS_PERIOD = 1.0
 """s"""
+
+NOTE, LEFT, TWIST, WORD, CALL = "note", "left", "twist", "word", "call"
+"""What the companion sends: each with the time, and a text; a topic and a publisher; these and the demand; or number,
+name and request of a call of a service."""
+PUBLISH, REPLY = "publish", "reply"
+"""What the verb sends: topic and values, or the number of a call and its response."""
 
 
 def domain(text: str) -> int:
@@ -59,7 +75,7 @@ def domain(text: str) -> int:
     return int(text)
 
 
-def check(options: argparse.Namespace) -> None:
+def prepare(options: argparse.Namespace) -> None:
     """Check what is installed, and the names. Raises VerbError."""
     try:
         from groundstation.ros2.node import Ros2Node  # noqa: F401
@@ -110,90 +126,153 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     """Be the node until the program is interrupted."""
     await session.need_only_vehicle(options.vehicle)
     driver = RosDriver(session, await learn_scale(session, options), output)
-    node = _build(session, driver, options)
+    node = _NodeUser(session, driver, options)
     if options.arm:
         armed, text = await driver.set_armed(True, options.wait)
         if not armed:
             raise VerbError(ExitCode.REFUSED, f"{session.vehicle.name}: {text}")
-    publishing = asyncio.ensure_future(_publish(session, driver, node, options))
+    tasks = [asyncio.ensure_future(each) for each in (driver.run(), node.listen(), node.publish())]
     try:
-        node.start()
-        await driver.run()
+        await asyncio.gather(*tasks)  # the first error ends it
     finally:
-        publishing.cancel()
-        try:
-            await driver.leave()
-        finally:
-            node.close()
+        for task in tasks:
+            task.cancel()
+        await asyncio.wait(tasks)
+        await driver.leave()
     return ExitCode.DONE
 
 
-def _build(session: VerbSession, driver: RosDriver, options: argparse.Namespace) -> Ros2Node:
-    """Return the node with its topics and services."""
-    from groundstation.ros2.node import NodeNames, Ros2Node
-    from groundstation.verbs.ros.ros2_params import add_parameter_services
+class _NodeUser:
+    """The verb's half: what the node of the companion has received, and is to publish."""
 
-    name = options.node or f"mavhelm_{session.vehicle.system}"
-    names = NodeNames(options.router, options.domain, options.namespace, name)
-    node = Ros2Node(
-        names, driver.note, lambda topic, gid: driver.remove((topic.rpartition("/")[2], gid)), options.types
-    )
-    for topic, kind in PUBLISHED.items():
-        node.add_publisher(topic, kind)
-    if options.tf:
-        node.add_publisher(TRANSFORMS, TRANSFORM_TYPE)
+    def __init__(self, session: VerbSession, driver: RosDriver, options: argparse.Namespace) -> None:
+        self._session, self._driver, self._options = session, driver, options
+        self._name = options.node or f"mavhelm_{session.vehicle.system}"
+        self._services = {ARM: self._arm, **parameter_services(session)}
+        self._calls: set[asyncio.Task[None]] = set()
 
-    def take_twist(gid: bytes, message: Any) -> None:
-        driver.push_twist((CMD_VEL, gid), message.linear.x, message.angular.z)
+    async def listen(self) -> None:
+        """Begin the node, and handle what it receives, until cancelled. Raises VerbError."""
+        companion = self._session.companion
+        companion.send(self._name)
+        while True:
+            self._handle(*await companion.receive())
 
-    def take_stamped(gid: bytes, message: Any) -> None:
-        take_twist(gid, message.twist)
+    def _handle(self, what: str, at: float, *values: Any) -> None:
+        if what == NOTE:
+            self._driver.note(*values)
+        elif what == LEFT:
+            self._driver.remove(values)
+        elif what == CALL:
+            task = asyncio.ensure_future(self._serve(*values))
+            self._calls.add(task)
+            task.add_done_callback(self._calls.discard)
+        elif self._session.now - at <= MAX_LATENESS:
+            topic, publisher, *demand = values
+            push = self._driver.push_word if what == WORD else self._driver.push_twist
+            push((topic, publisher), *demand)
 
-    def take_word(gid: bytes, message: Any) -> None:
-        driver.push_word((COMMAND, gid), message.data)
+    async def _serve(self, number: int, service: str, request: Values) -> None:
+        self._session.companion.send((REPLY, number, await self._services[service](request)))
 
-    async def arm(request: Any) -> dict[str, Any]:
-        done, text = await driver.set_armed(bool(request.data), options.wait)
+    async def _arm(self, request: Values) -> Values:
+        done, text = await self._driver.set_armed(bool(request["data"]), self._options.wait)
         return {"success": done, "message": text}
 
-    node.add_subscription(CMD_VEL, TWIST_TYPE, take_twist)
-    node.add_subscription(CMD_VEL, STAMPED_TYPE, take_stamped)
-    node.add_subscription(COMMAND, WORD_TYPE, take_word)
-    if options.arm_service:
-        node.add_service("~/arm", "std_srvs/srv/SetBool", arm)
-    add_parameter_services(node, session)
-    return node
+    async def publish(self) -> None:
+        """Publish what the vehicle reports, and its diagnostics, until cancelled."""
+        self._session.core.taps.append(self._tap())
+        await request_rates(self._session, self._options.rate)
+        while True:
+            view = self._session.vehicle.build_view(self._session.now)
+            self._send("/diagnostics", diagnostics(view, self._driver.engaged, _unix_time()))
+            await asyncio.sleep(DIAGNOSTICS_PERIOD)
+
+    def _tap(self) -> Callable[[Received, float], None]:
+        """Return what takes each message that arrives, and publishes what it makes."""
+        state = self._session.vehicle
+        vehicle = RosVehicle(state.component)
+
+        def take(received: Received, now: float) -> None:
+            if (received.system, received.component) != (state.system, state.component):
+                return
+            if isinstance(received.message, m.StatusText):
+                line = log_line(received.message.text, received.message.severity, self._name, _unix_time())
+                self._send("/rosout", line)
+            made = vehicle.take(received.message, _unix_time())
+            if made is not None:
+                topic, kind, values = made
+                self._send(topic, values)
+                if self._options.tf and kind == ODOMETRY:
+                    self._send(TRANSFORMS, transforms(values))
+
+        return take
+
+    def _send(self, topic: str, values: Values) -> None:
+        self._session.companion.send((PUBLISH, topic, values))
 
 
-async def _publish(session: VerbSession, driver: RosDriver, node: Ros2Node, options: argparse.Namespace) -> None:
-    """Publish what the vehicle reports, and its diagnostics."""
-    session.core.taps.append(_tap(session, node, tf=options.tf))
-    await request_rates(session, options.rate)
-    while True:
-        view = session.vehicle.build_view(session.now)
-        node.publish("/diagnostics", diagnostics(view, driver.engaged, _unix_time()))
-        await asyncio.sleep(DIAGNOSTICS_PERIOD)
+async def serve(options: argparse.Namespace, output: Output, verb: Channel) -> None:
+    """Be the node, as the companion of the verb: in the environment of the user, with the libraries of ROS."""
+    node = _Node(options, await verb.receive(), verb)
+    node.start()
+    try:
+        while True:
+            node.handle(*await verb.receive())
+    finally:
+        node.close()
 
 
-def _tap(session: VerbSession, node: Ros2Node, *, tf: bool) -> Any:
-    """Return what takes each message that arrives, and publishes what it makes."""
-    state = session.vehicle
-    vehicle = RosVehicle(state.component)
+class _Node:
+    """The companion's half: the node with its topics and services."""
 
-    def take(received: Received, now: float) -> None:
-        if (received.system, received.component) != (state.system, state.component):
-            return
-        if isinstance(received.message, m.StatusText):
-            line = log_line(received.message.text, received.message.severity, node.names.name, _unix_time())
-            node.publish("/rosout", line)
-        made = vehicle.take(received.message, _unix_time())
-        if made is not None:
-            topic, kind, values = made
-            node.publish(topic, values)
-            if tf and kind == ODOMETRY:
-                node.publish(TRANSFORMS, transforms(values))
+    def __init__(self, options: argparse.Namespace, name: str, verb: Channel) -> None:
+        from groundstation.ros2.node import NodeNames, Ros2Node
 
-    return take
+        self._verb = verb
+        self._numbers = count(1)
+        self._calls: dict[int, asyncio.Future[Values]] = {}
+        names = NodeNames(options.router, options.domain, options.namespace, name)
+        self._node = Ros2Node(
+            names,
+            lambda text: self._tell(NOTE, text),
+            lambda topic, gid: self._tell(LEFT, topic.rpartition("/")[2], gid),
+            options.types,
+        )
+        for topic, kind in PUBLISHED.items():
+            self._node.add_publisher(topic, kind)
+        if options.tf:
+            self._node.add_publisher(TRANSFORMS, TRANSFORM_TYPE)
+        self._node.add_subscription(CMD_VEL, TWIST_TYPE, self._take_twist)
+        self._node.add_subscription(CMD_VEL, STAMPED_TYPE, lambda gid, stamped: self._take_twist(gid, stamped.twist))
+        self._node.add_subscription(COMMAND, WORD_TYPE, lambda gid, word: self._tell(WORD, COMMAND, gid, word.data))
+        for service, kind in SERVED.items():
+            if service != ARM or options.arm_service:
+                self._node.add_service(service, kind, partial(self._call, service))
+        self.start, self.close = self._node.start, self._node.close
+
+    def handle(self, what: str, *values: Any) -> None:
+        """Handle what the verb sends."""
+        if what == PUBLISH:
+            self._node.publish(*values)
+        elif what == REPLY:
+            number, reply = values
+            self._calls.pop(number).set_result(reply)
+
+    def _take_twist(self, gid: bytes, twist: Any) -> None:
+        self._tell(TWIST, CMD_VEL, gid, twist.linear.x, twist.angular.z)
+
+    async def _call(self, service: str, request: Any) -> Values:
+        from groundstation.ros.types import to_plain
+
+        number, reply = next(self._numbers), asyncio.get_running_loop().create_future()
+        self._calls[number] = reply
+        self._tell(CALL, number, service, to_plain(request))
+        values: Values = await reply
+        return values
+
+    def _tell(self, what: str, *values: Any) -> None:
+        self._verb.send((what, asyncio.get_running_loop().time(), *values))
 
 
 def _unix_time() -> int:

@@ -15,7 +15,7 @@ import fcntl
 import os
 from pathlib import Path
 
-from groundstation.station_socket.relay import KEEP
+from groundstation.station_socket.verb_run import KEEP
 
 MAX_SIZE = 64
 

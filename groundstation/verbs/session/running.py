@@ -1,25 +1,24 @@
-"""Runs a verb in its own process: over links that it opens, or through a station, and ends it in order."""
+"""Runs a verb in its own process, over links that it opens, and ends it in order."""
 
 from __future__ import annotations
 
 import asyncio
-import math
-from collections.abc import Awaitable, Callable, Coroutine, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from typing import TYPE_CHECKING
 
 import msgspec
 
 from groundstation.vehicles.state.places import PLACES
-from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.session.core import OwnCore
-from groundstation.verbs.session.station_link import StationRunner
 from link.core import Core
+from link.endpoint import Side
+from link.links import open_links
 from link.protocol.log_tap import LogTap
+from link.runner import Runner
 
 if TYPE_CHECKING:
     from groundstation.verbs.session.demand_guard import DemandGuard
     from link.link_signing import LinkSigning
-    from link.runner import Runner
 
 PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
@@ -35,49 +34,30 @@ class VerbLinks(msgspec.Struct, frozen=True):
     """Our system and component id."""
     session: int
     """Number of our session."""
-    station: StationLink | None = None
-    """Then there are no links: the verb goes through it."""
-    patience: float = math.inf
-    """s without an answer after which the station is lost."""
     signing: LinkSigning | None = None
     log_tap: LogTap | None = None
     guard: DemandGuard | None = None
 
-    def open(self, core: Core) -> Runner | StationRunner:
-        """Open the links, or take the station. Raises EndpointError, LinkError."""
-        if self.station is not None:
-            return StationRunner(core, self.station, PERIOD, self.log_tap, self.patience)
-        from link.endpoint import Side
-        from link.links import open_links
-        from link.runner import Runner  # a verb through a station does without
-
+    def open(self, core: Core) -> Runner:
+        """Open the links. Raises EndpointError, LinkError."""
         system, component = self.ids
         opened = open_links(self.endpoints, system=system, component=component, side=Side.GROUND_STATION, places=PLACES)
         sent = self.guard.record_sent if self.guard else None
         return Runner(core, opened, period=PERIOD, route=False, log_tap=self.log_tap, sent=sent, signing=self.signing)
 
 
-async def run_over(links: VerbLinks, core: Core, script: Callable[[Runner | StationRunner], Awaitable[int]]) -> int:
-    """Run the script with a core, and return its exit code. Raises EndpointError, LinkError, VerbError."""
-    runner = links.open(core)
-    reporting = []
-    if links.guard is not None and isinstance(core, OwnCore):
-        core.standstill = links.guard.standstill
-        reporting.append(links.guard.run(core.driven))
-    return await run_beside(runner, lambda: script(runner), *reporting)
-
-
-async def run_beside(
-    runner: Runner | StationRunner, script: Callable[[], Awaitable[int]], *beside: Coroutine[None, None, None]
-) -> int:
-    """Run the script while the runner and the others run; return its exit code. Raises what any of them raises.
+async def run_over(links: VerbLinks, core: Core, script: Callable[[Runner], Awaitable[int]]) -> int:
+    """Run the script with a core, and return its exit code. Raises EndpointError, LinkError, VerbError.
 
     A script that is interrupted gets END_WITHIN to end in order, over links that still work.
     """
+    runner, guard = links.open(core), links.guard
     running = [asyncio.ensure_future(runner.run())]
     await asyncio.sleep(0)  # run() begins
-    running += [asyncio.ensure_future(each) for each in beside]
-    verb = asyncio.ensure_future(script())
+    if guard is not None and isinstance(core, OwnCore):
+        core.standstill = guard.standstill
+        running.append(asyncio.ensure_future(guard.run(core.driven)))
+    verb = asyncio.ensure_future(script(runner))
     try:
         await asyncio.wait({*running, verb}, return_when=asyncio.FIRST_COMPLETED)
         for each in running:

@@ -73,7 +73,7 @@ class StationSeat:
         self._relay, self._core = station.relay, core
         self._flush, self._silence = flush, silence
         self._verb = Verb(
-            name, takes_part, self._deliver, self._report, self._refuse_demand, follows=follows, runs_here=True,
+            name, takes_part, self._deliver, self._report, self._refuse_demand, follows=follows,
             tell_refusal=self._take_refusal, tick=self._run_tick,
         )  # fmt: skip
 

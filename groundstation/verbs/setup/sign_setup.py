@@ -35,7 +35,7 @@ SIGNING_EPOCH = 1_420_070_400
 UNITS = 100_000
 
 
-def check(options: argparse.Namespace) -> None:
+def prepare(options: argparse.Namespace) -> None:
     """Find the key, and refuse every way that others could listen on. Raises VerbError, EndpointError."""
     if options.through not in (AUTO, NEVER):
         raise VerbError(ExitCode.USAGE, "a key does not go through a station: leave --station out")

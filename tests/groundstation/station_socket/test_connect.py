@@ -26,8 +26,7 @@ from groundstation.station_socket.folder import (
 from groundstation.station_socket.hello import NAMES, SCREEN, VERB, Hello, StationFailed, decode_hello
 from groundstation.station_socket.names import MODES, PARAMS, Names, encode_names, find_names, plain_names
 from groundstation.station_socket.packets import read_packet
-from groundstation.station_socket.relay import HeardMessage, ToSend
-from groundstation.station_socket.verb_run import VerbReady
+from groundstation.station_socket.verb_run import CompanionEnded, RunVerb, ToCompanion
 from link.transport.receive_buffer import ReceiveBuffer
 
 HELLO = Hello(SCREEN, 3, "screen on pts/4", watches=True)
@@ -264,11 +263,9 @@ def test_plain_names_keep_their_order() -> None:
 
 
 def test_what_a_packet_does_not_say_is_nothing() -> None:
-    assert decode_hello(encode_names(Hello(VERB, 1))) == Hello(
-        VERB, 1, "", watches=False, takes_part=False, follows=False
-    )
-    assert VerbReady(255, 190, 7, ()) == VerbReady(255, 190, 7, (), follows=False)
-    assert HeardMessage(0, 1, 1, 0, 0, b"") == HeardMessage(0, 1, 1, 0, 0, b"", "", "", 0, clash=False)
-    assert ToSend() == ToSend(())
+    assert decode_hello(encode_names(Hello(VERB, 1))) == Hello(VERB, 1, "", watches=False, follows=False)
+    assert RunVerb(("arm",)) == RunVerb(("arm",), None, None, "")
+    assert ToCompanion(b"") == ToCompanion(b"", whole=True)
+    assert CompanionEnded() == CompanionEnded(0, "")
     assert StationFailed("why").line == "why"
     assert msgspec.msgpack.decode(encode_names(Names(("A",)))) == {"type": "Names", "names": ["A"]}

@@ -10,8 +10,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, OperatorFlag, SystemState, VehicleType
 from dialects.messages import INVALID_AXIS, UINT16_MAX
 from groundstation.station.relay.verb_relay import Verb, VerbRelay
-from groundstation.station_socket.relay import KEEP
-from groundstation.station_socket.verb_run import ALIVE_WITHIN
+from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from link.core import Received
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle

@@ -52,7 +52,7 @@ class Shells:
         for each in (ours, theirs):
             each.setblocking(False)
         port = RunPort(theirs, self.station, "a shell", self.flush, RunPort.close, follows=False)
-        port.start(VerbReady(*IDS, self.station.operator.session, ("here",)))
+        port.start(VerbReady(("here",)))
         ready = decode_from_station(ours.recv(1 << 16))
         assert isinstance(ready, VerbReady)
         return StationLink(ours, ready)

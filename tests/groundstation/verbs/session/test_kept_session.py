@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from groundstation.station_socket.relay import KEEP
+from groundstation.station_socket.verb_run import KEEP
 from groundstation.verbs.session.kept_session import KeptSession
 
 OURS, OTHER = 254, 100

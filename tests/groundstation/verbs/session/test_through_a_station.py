@@ -17,6 +17,7 @@ from groundstation.station_socket.connect import running_stations
 from groundstation.verbs.common.exit_codes import ExitCode
 from link.tlog.tlog import read_records
 from tests.e2e.programs import Vehicle
+from tests.groundstation.ros1.stand_in import StandIn
 from tests.groundstation.screen import Screen
 from tests.groundstation.verbs.shell import complete
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, start_demanding
@@ -98,6 +99,36 @@ def test_what_the_station_hears_can_be_recorded(verb: Run, tmp_path: Path) -> No
     heard = list(read_records(out.read_bytes()))
     assert {(each.raw[5], each.raw[6]) for each in heard} == {(1, 1)}
     assert len(heard) == record["messages"] > 10
+
+
+def test_a_full_disk_of_the_shell_ends_a_recording(verb: Run) -> None:
+    ended = verb("record", "/dev/full", "--yes", "--station", "only")
+    assert ended.code == ExitCode.PARTLY
+    assert ended.err.splitlines()[1:] == ["groundstation: /dev/full: No space left on device; nothing was recorded"]
+
+
+def test_a_node_of_ros_drives_until_its_shell_is_killed(verb: Run, vehicle: Vehicle, tmp_path: Path) -> None:
+    node = StandIn(tmp_path)
+    words = ("ros1", "--python", str(node.python), "--arm", "--max-speed", "1", "--max-turn", "1", "--wait", "30")
+    command = [sys.executable, "-m", "groundstation", *words, "--station", "only"]
+    shell = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        node.ready()
+        wait_until(lambda: verb("status", "--json").records[0]["armed"] is True, "it does not arm")
+
+        def drives() -> bool:
+            node.word("stop")
+            node.word("forward")
+            return vehicle.turning()
+
+        wait_until(drives, "the wheels do not turn")
+        wait_until(lambda: bool(node.told()), "no telemetry reaches the node")
+        shell.kill()
+        wait_until(vehicle.stands, "the wheels turn on")
+    finally:
+        shell.kill()
+        shell.wait(PATIENCE)
+        node.close()
 
 
 def test_files_are_those_of_the_shell_and_not_of_the_station(
