@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -11,14 +10,15 @@ import pytest
 from groundstation.ros.parameters import BOOL, DOUBLE, INTEGER, NOT_SET, describe, matching, value_of, wanted_value
 from groundstation.ros.services import SERVICES
 from groundstation.ros.types import RosTypes
+from groundstation.ros.vehicle import Values
 from link.services.param.client import Param
 
 REAL, INT32 = 9, 6
 PARAMS = {"A": Param("A", 0.5, REAL, 0, default=0.25), "N": Param("N", 3.0, INT32, 1)}
 
 
-def value(kind: int, *, flag: bool = False, whole: int = 0, real: float = 0.0) -> Any:
-    return SimpleNamespace(type=kind, bool_value=flag, integer_value=whole, double_value=real)
+def value(kind: int, *, flag: bool = False, whole: int = 0, real: float = 0.0) -> Values:
+    return {"type": kind, "bool_value": flag, "integer_value": whole, "double_value": real}
 
 
 def test_integers_are_integers_and_the_others_doubles() -> None:
