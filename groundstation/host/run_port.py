@@ -6,14 +6,13 @@ import asyncio
 import contextlib
 import logging
 import socket
-from collections import deque
 from collections.abc import Callable
 from importlib import import_module
 
 import msgspec
 
 from groundstation.station.station import Station
-from groundstation.station_socket.packets import read_packet
+from groundstation.station_socket.packets import UnsentPackets, read_packet
 from groundstation.station_socket.verb_run import (
     MAX_PRINTED,
     Alive,
@@ -75,11 +74,12 @@ class RunPort:
         self._heard_at = 0.0
         self._printed: list[bytes] = []
         """What is printed and in no packet yet."""
-        self._unread: deque[bytes] = deque()
-        """Packets for which the socket had no room."""
+        self._unread = UnsentPackets(sock)
         self._task: asyncio.Task[None] | None = None
-        self._answers: dict[int, asyncio.Future[FileAnswered]] = {}
-        """Number of a file of the user -> the answer that its verb waits for."""
+        self._asked = 0
+        """Number of the file on which the shell works; an answer about another one is that of an interrupted verb."""
+        self._answer: asyncio.Future[FileAnswered] | None = None
+        """What its verb waits for while the shell works on a file; on one at a time (remote/shell_files.py)."""
         self._companion = Channel(self._send_value)
         self._open = True
 
@@ -99,9 +99,7 @@ class RunPort:
         loop.remove_reader(self._socket)
         loop.remove_writer(self._socket)
         self._socket.close()
-        for number, answer in self._answers.items():
-            if not answer.done():
-                answer.set_result(FileAnswered(number, error=GONE))
+        self._end_work(FileAnswered(0, error=GONE))
         if self._task is not None:
             self._task.cancel()
 
@@ -128,19 +126,20 @@ class RunPort:
             self._companion.push_piece(packet.data, whole=packet.whole)
         elif isinstance(packet, CompanionEnded):
             self._companion.end(VerbError(ExitCode(packet.code), packet.line) if packet.line else None)
-        elif isinstance(packet, FileAnswered):
-            answer = self._answers.pop(packet.number, None)
-            if answer is not None and not answer.done():
-                answer.set_result(packet)
+        elif isinstance(packet, FileAnswered) and packet.number == self._asked:
+            self._end_work(packet)
 
     async def _ask_for_file(self, asked: FileAsked) -> FileAnswered:
         """Have the shell work on a file; return its answer."""
         if not self._open:
             return FileAnswered(asked.number, error=GONE)
-        answer: asyncio.Future[FileAnswered] = asyncio.get_running_loop().create_future()
-        self._answers[asked.number] = answer
+        self._asked, self._answer = asked.number, asyncio.get_running_loop().create_future()
         self._send(encode(asked))
-        return await answer
+        return await self._answer
+
+    def _end_work(self, answer: FileAnswered) -> None:
+        if self._answer is not None and not self._answer.done():
+            self._answer.set_result(answer)
 
     async def _run(self, asked: RunVerb) -> None:
         ended = VerbEnded(0)
@@ -186,26 +185,24 @@ class RunPort:
 
     def _send(self, packet: bytes) -> None:
         if self._open:
-            self._unread.append(packet)
+            self._unread.add(packet)
             self._write()
 
     def _write(self) -> None:
         loop = asyncio.get_running_loop()
-        while self._unread:
-            try:
-                self._socket.send(self._unread[0])
-            except BlockingIOError:
-                loop.add_writer(self._socket, self._write)
-                if sum(map(len, self._unread)) > MAX_UNREAD:
-                    log.warning("%s does not read what it prints: ended", self._name)
-                    self._end()
-                return
-            except OSError:
-                self._end()
-                return
-            self._unread.popleft()
-        with contextlib.suppress(ValueError):
-            loop.remove_writer(self._socket)
+        try:
+            done = self._unread.write()
+        except OSError:
+            self._end()
+            return
+        if done:
+            with contextlib.suppress(ValueError):
+                loop.remove_writer(self._socket)
+            return
+        loop.add_writer(self._socket, self._write)
+        if self._unread.size > MAX_UNREAD:
+            log.warning("%s does not read what it prints: ended", self._name)
+            self._end()
 
     def _end(self) -> None:
         self._ended(self)

@@ -7,7 +7,6 @@ hash of a service is that of a type with three members, REP 2016.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -76,6 +75,16 @@ class RosTypes:
         except Exception as error:  # rosbags raises what its generated code happens to: struct.error, IndexError, ...
             raise BadMessageError(f"{len(data)} bytes are not a {kind}: {type(error).__name__}") from None
 
+    def to_plain(self, value: Any) -> Any:
+        """Return a message, or a value in one, as dictionaries and lists."""
+        kind = getattr(value, "__msgtype__", None)
+        if kind is not None:
+            named = self.store.get_msgdef(kind).fields
+            return {name: self.to_plain(getattr(value, name)) for name, _ in named}
+        if isinstance(value, np.ndarray):
+            return value.tolist()
+        return [self.to_plain(each) for each in value] if isinstance(value, list) else value
+
     def build(self, kind: str, values: Mapping[str, Any]) -> Any:
         """Return the message of a type, and of the types in it."""
         named = self.store.get_msgdef(kind).fields
@@ -99,15 +108,6 @@ class RosTypes:
     def _time(self, microseconds: int) -> Any:
         seconds, rest = divmod(microseconds, 1_000_000)
         return self.store.types["builtin_interfaces/msg/Time"](sec=min(seconds, SECONDS_MAX), nanosec=rest * 1000)
-
-
-def to_plain(value: Any) -> Any:
-    """Return a message, or a value in one, as dictionaries and lists."""
-    if is_dataclass(value):
-        return {field.name: to_plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [to_plain(each) for each in value] if isinstance(value, list) else value
 
 
 _DTYPES = {"byte": "uint8", "char": "uint8"}

@@ -10,8 +10,8 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Awaitable, Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
@@ -29,7 +29,6 @@ from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.performing import perform
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
@@ -41,11 +40,11 @@ from link.runtime.event_loop import run_loop
 
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
+    from groundstation.verbs.session.core import OwnCore
     from groundstation.verbs.session.demand_guard import DemandGuard
-    from groundstation.verbs.session.kept_session import KeptSession
     from groundstation.verbs.session.running import VerbLinks
-    from link.core import Core
     from link.link_signing import LinkSigning
+    from link.runner import Runner
 
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
@@ -176,7 +175,8 @@ async def _run_here(
     endpoints: Sequence[str],
 ) -> int:
     """Run the action in this process, with links of its own."""
-    from groundstation.verbs.session.identity import choose_identity  # a verb that a station runs does without
+    from groundstation.verbs.performing import build_session, perform  # a verb that a station runs does without
+    from groundstation.verbs.session.identity import choose_identity
     from groundstation.verbs.session.running import VerbLinks, run_over
 
     ids, kept = choose_identity(action, options)
@@ -184,11 +184,24 @@ async def _run_here(
     signing = None if getattr(options, "unsigned", False) else _open_signing()
     guard = _start_guard(ids, signing) if action.guarded(options) else None  # before the links are open
     links = VerbLinks(endpoints, ids, kept.number, signing, tap, guard)
-    core, script = _prepare_own(action, options, output, group, links, kept)
+    session = build_session(
+        action, options, output, endpoints, lambda: _own_core(links, options.vehicle), (ids, kept.number)
+    )
+
+    def found(name: str) -> None:
+        if options.endpoints:
+            remember(endpoints, name)
+
+    async def script(runner: Runner) -> int:
+        session.flush, session.observe = runner.flush, runner.observe
+        async with local_companion(_companion_of(action, options, output)) as session.companion:
+            return await perform(
+                session, action, options, output, group, kept.may_prove if kept.follows else None, found
+            )
 
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
-            return await run_over(links, core, script)
+            return await run_over(links, session.core, script)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
     finally:
@@ -197,42 +210,10 @@ async def _run_here(
             guard.close()
 
 
-def _prepare_own(
-    action: VerbAction,
-    options: argparse.Namespace,
-    output: Output,
-    group: VehicleGroup | None,
-    links: VerbLinks,
-    kept: KeptSession,
-) -> tuple[Core, Callable[[Any], Awaitable[int]]]:
-    """Return the core of a verb, and what runs the verb with it; takes the runner of the links."""
-    if action.examines:
-        from groundstation.verbs.session.doctor_session import DoctorSession
-
-        doctor = DoctorSession(links.ids, kept.number, links.endpoints, options)
-
-        async def examine(runner: Any) -> int:
-            doctor.flush, doctor.observe = runner.flush, runner.observe
-            return await action.run(doctor, options, output)
-
-        return doctor.core, examine
+def _own_core(links: VerbLinks, wanted: int | str | None) -> OwnCore:
     from groundstation.verbs.session.core import OwnCore
-    from groundstation.verbs.session.session import VerbSession
 
-    now = asyncio.get_running_loop().time()
-    core = OwnCore(links.ids, options.vehicle, kept.number, links.endpoints, now)
-
-    def found(name: str) -> None:
-        if options.endpoints:
-            remember(links.endpoints, name)
-
-    async def script(runner: Any) -> int:
-        session = VerbSession(core, runner.flush, output.progress)
-        session.observe, session.where = runner.observe, " ".join(links.endpoints)
-        async with local_companion(_companion_of(action, options, output)) as session.companion:
-            return await perform(session, action, options, output, group, kept, found)
-
-    return core, script
+    return OwnCore(links.ids, wanted, links.session, links.endpoints, asyncio.get_running_loop().time())
 
 
 def _companion_of(action: VerbAction, options: argparse.Namespace, output: Output) -> RunCompanion | None:

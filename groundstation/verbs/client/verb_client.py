@@ -6,9 +6,8 @@ import asyncio
 import contextlib
 import math
 import time
-from collections import deque
 
-from groundstation.station_socket.packets import read_packet
+from groundstation.station_socket.packets import UnsentPackets, read_packet
 from groundstation.station_socket.verb_run import (
     ALIVE_PERIOD,
     MAX_PRINTED,
@@ -49,8 +48,7 @@ class VerbClient:
         self._asked_at = -math.inf
         self._unanswered_since = math.inf
         self._files = FileWorker(self._send)
-        self._unsent: deque[bytes] = deque()
-        """Packets for which the socket had no room."""
+        self._unsent = UnsentPackets(link.sock)
         self._companion: RunningCompanion | None = None
         self.ended: VerbEnded | None = None
 
@@ -115,20 +113,18 @@ class VerbClient:
             silence = f"the station has not answered for {now - self._unanswered_since:.1f} s"
             raise StationLostError(ExitCode.NO_ANSWER, silence, self._endpoints)
         self._unanswered_since = min(self._unanswered_since, now)
-        if self._unsent:  # it has not read the last one
+        if self._unsent.size:  # it has not read the last one
             self._write()
         else:
             self._send(StillHere())
 
     def _send(self, packet: FromShell) -> None:
-        self._unsent.append(encode(packet))
+        self._unsent.add(encode(packet))
         self._write()
 
     def _write(self) -> None:
-        with contextlib.suppress(OSError):  # a full queue: it hangs; a station that has ended: _read
-            while self._unsent:
-                self._socket.send(self._unsent[0])
-                self._unsent.popleft()
+        with contextlib.suppress(OSError):  # a station that has ended: _read
+            self._unsent.write()
 
     def _read(self) -> None:
         while self.ended is None and (packet := read_packet(self._socket, self._buffer)) is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Awaitable, Callable
 
 from msgspec.structs import astuple, replace
 
@@ -21,15 +21,13 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyAttribute, LazyCall
 from groundstation.verbs.line.parser import LineParser
 from groundstation.verbs.main import build_parser, check_options, choose_action
-from groundstation.verbs.performing import perform
+from groundstation.verbs.performing import build_session, perform
 from groundstation.verbs.remote.sent_output import SentOutput
 from groundstation.verbs.remote.shell_files import ShellFiles
 from groundstation.verbs.session.doctor_session import DoctorSession
-from groundstation.verbs.session.kept_session import KeptSession
 from groundstation.verbs.session.running import END_WITHIN
 from groundstation.verbs.session.session import VerbSession
 from groundstation.verbs.session.station_core import StationCore, StationSeat
-from link.core import Core
 
 log = logging.getLogger(__name__)
 
@@ -88,18 +86,20 @@ class ShellVerb:
     async def _run(
         self, group: VehicleGroup | None, action: VerbAction, options: argparse.Namespace, output: SentOutput
     ) -> int:
-        core, script = self._prepare(group, action, options, output)
+        session = self._build_session(action, options, output)
         seat = StationSeat(
             self._station,
-            core,
+            session.core,
             self._name,
             self._flush,
             takes_part=not action.watches,
             follows=self._follows,
             silence=self._silence,
         )
+        session.flush = seat.flush
+        may_prove = (lambda now: True) if self._follows else None  # the station sees to that no other one does
         seat.join()
-        verb = asyncio.ensure_future(script(seat.flush))
+        verb = asyncio.ensure_future(perform(session, action, options, output, group, may_prove, self._note_vehicle))
         try:
             await asyncio.wait((verb, seat.broken), return_when=asyncio.FIRST_COMPLETED)
             if seat.broken.done():
@@ -112,34 +112,23 @@ class ShellVerb:
                     log.info("%s: %s", self._name, error)  # as of a file that cannot be kept: its shell has ended
             seat.leave()
 
-    def _prepare(
-        self, group: VehicleGroup | None, action: VerbAction, options: argparse.Namespace, output: SentOutput
-    ) -> tuple[Core, Callable[[Callable[[], None]], Coroutine[None, None, int]]]:
-        """Return the core of a verb, and what runs the verb with it; takes what sends the messages of the core."""
-        station, number = self._station, self._station.operator.session
-        endpoints, options.system = station.station_info.endpoints, station.parts.ids[0]
-        if action.examines:
-            doctor = DoctorSession(station.parts.ids, number, endpoints, options)
-            doctor.files = self._files
+    def _build_session(
+        self, action: VerbAction, options: argparse.Namespace, output: SentOutput
+    ) -> VerbSession | DoctorSession:
+        station = self._station
+        ids, endpoints = station.parts.ids, station.station_info.endpoints
+        options.system = ids[0]
 
-            async def examine(flush: Callable[[], None]) -> int:
-                doctor.flush = flush
-                return await action.run(doctor, options, output)
+        def build_core() -> StationCore:
+            core = StationCore(station, options.vehicle)
+            tap = action.tap(options, ids)
+            if tap is not None:
+                core.record(tap)
+            return core
 
-            return doctor.core, examine
-        core = StationCore(station, options.vehicle)
-        tap = action.tap(options, core.ids)
-        if tap is not None:
-            core.record(tap)
-        kept = KeptSession(number, follows=self._follows)
-
-        async def script(flush: Callable[[], None]) -> int:
-            session = VerbSession(core, flush, output.progress)
-            session.files, session.companion = self._files, self._companion
-            session.where = " ".join(endpoints)
-            return await perform(session, action, options, output, group, kept, self._note_vehicle)
-
-        return core, script
+        session = build_session(action, options, output, endpoints, build_core, (ids, station.operator.session))
+        session.files, session.companion = self._files, self._companion
+        return session
 
     def _note_vehicle(self, name: str) -> None:
         self._vehicle = name

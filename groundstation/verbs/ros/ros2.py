@@ -263,11 +263,9 @@ class _Node:
         self._tell(TWIST, CMD_VEL, gid, twist.linear.x, twist.angular.z)
 
     async def _call(self, service: str, request: Any) -> Values:
-        from groundstation.ros.types import to_plain
-
         number, reply = next(self._numbers), asyncio.get_running_loop().create_future()
         self._calls[number] = reply
-        self._tell(CALL, number, service, to_plain(request))
+        self._tell(CALL, number, service, self._node.types.to_plain(request))
         values: Values = await reply
         return values
 

@@ -84,7 +84,7 @@ class VerbCore:
         self._heartbeat = HeartbeatSender(0.0)
         self._waiters = Waiters()
 
-    def hear(self, received: Received, now: float) -> None:
+    def receive(self, received: Received, now: float) -> None:
         """Handle one message, which the station has handled; the HEARTBEAT of a vehicle begins the conversation."""
         if type(received.message) is m.SetupSigning:
             received = received._replace(message=m.hide_key(received.message))
@@ -188,7 +188,7 @@ class OwnCore(VerbCore):
         """Handle one message."""
         self.station.receive(received, now)
         self.station.services.collect(now)
-        self.hear(received, now)
+        super().receive(received, now)
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Count a frame that has left on a link of this program."""

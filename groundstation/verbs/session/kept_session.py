@@ -33,7 +33,7 @@ class KeptSession:
     def __init__(self, number: int, file: int | None = None, *, follows: bool = False) -> None:
         self.number = number
         self._file = file
-        """Descriptor of the file; None: the session ends with this verb, or it is that of a station."""
+        """Descriptor of the file; None: the session ends with this verb."""
         self.follows = follows
         """The session is that of the verb before, which is only proven here."""
 
@@ -60,13 +60,8 @@ class KeptSession:
         return cls(number, file, follows=True)
 
     def may_prove(self, now: float) -> bool:
-        """Return whether a verb that follows may prove the session now: no verb has it or has made another one.
-
-        A station sees to that itself.
-        """
-        if self._file is None:
-            return self.follows
-        if not _lock(self._file):
+        """Return whether a verb that follows may prove the session now: no verb has it or has made another one."""
+        if self._file is None or not _lock(self._file):
             return False
         mine = _read(self._file, now) == self.number
         if mine:

@@ -26,7 +26,7 @@ class StationCore(VerbCore):
     def receive(self, received: Received, now: float) -> None:
         """Handle one message, which the station has handled."""
         self.station.services.collect(now)  # what this message has ended
-        self.hear(received, now)
+        super().receive(received, now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take the vehicles that the station knows, and the reports of its links."""

@@ -7,7 +7,7 @@ import struct
 import pytest
 
 from groundstation.ros.services import SERVICES
-from groundstation.ros.types import BadMessageError, RosTypes, to_plain
+from groundstation.ros.types import BadMessageError, RosTypes
 
 TWIST = "geometry_msgs/msg/Twist"
 PUBLISHED_HASHES = {
@@ -77,7 +77,7 @@ def test_a_battery_state_has_the_bytes_that_cyclonedds_makes(types: RosTypes) ->
     assert types.encode("sensor_msgs/msg/BatteryState", listed) == BATTERY_OF_CYCLONEDDS
     decoded = types.decode("sensor_msgs/msg/BatteryState", BATTERY_OF_CYCLONEDDS)
     stamp = {"sec": 1, "nanosec": 500_000_000}
-    assert to_plain(decoded) == values | {"header": {"stamp": stamp, "frame_id": "base_link"}}
+    assert types.to_plain(decoded) == values | {"header": {"stamp": stamp, "frame_id": "base_link"}}
 
 
 def test_a_string_in_both_byte_orders(types: RosTypes) -> None:
