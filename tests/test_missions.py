@@ -14,12 +14,12 @@ from groundstation.intents.driving import Stop
 from groundstation.intents.plan import ChooseMode, GoTo, JumpToItem, SetHome
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
-from groundstation.station.relay.verb_relay import Verb
 from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.map.plan.fields import change_command
 from groundstation.views.base import View
 from groundstation.views.plan import PlanKind, PlanSummary, PlanView
+from tests.fakes.verb_seat import verb_of
 from tests.test_stops import Drive
 
 
@@ -260,13 +260,13 @@ def test_verb_that_only_looks_does_not_end_auto_without_station() -> None:
     drive.run(drive.params["FS_GCS_TIMEOUT"] + 3.0)
     assert (drive.is_in(Mode.AUTO), drive.power > 0.2) == (True, True), "it goes on without a ground station"
 
-    relay, ended = drive.station.relay, drive.world.now + 4.0
-    verb = Verb("groundstation status", False, lambda _: None, lambda _: None, lambda _: None)
-    relay.join(verb, drive.world.now)
+    verbs, ended = drive.station.verbs, drive.world.now + 4.0
+    verb = verb_of("groundstation status")
+    verbs.join(verb, drive.world.now)
     while drive.world.now < ended:
         for kind in (m.SysStatus, m.VfrHud, m.AutopilotVersion, m.ControlStatus):
             for command in (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL):
                 params = (float(kind.id), 1e6) if command == Command.SET_MESSAGE_INTERVAL else (float(kind.id), 0.0)
-                relay.handle(verb, m.CommandLong(1, 1, command, 0, *params, 0, 0, 0, 0, 0), drive.world.now)
+                verbs.handle(verb, m.CommandLong(1, 1, command, 0, *params, 0, 0, 0, 0, 0), drive.world.now)
             drive.run(0.1)
     assert (drive.is_in(Mode.AUTO), drive.power > 0.2) == (True, True)

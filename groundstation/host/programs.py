@@ -70,7 +70,7 @@ class VerbSet:
     def add(self, sock: socket.socket, name: str, hello: Hello) -> None:
         """Start a verb; the loop runs."""
         station = self._station
-        follows = hello.follows and station.relay.may_follow(asyncio.get_running_loop().time())
+        follows = hello.follows and station.verbs.may_follow(asyncio.get_running_loop().time())
         port = RunPort(sock, station, name, self._flush, self._remove, follows=follows)
         self._ports.add(port)
         port.start(VerbReady(station.station_info.endpoints))

@@ -74,7 +74,7 @@ class ScreenSet:
     def __init__(self, station: Station, host: StationEnd, lifetime: Lifetime) -> None:
         self._station = station
         self.lease = ScreenLease(station.operator, station.driving, station.log)
-        station.relay.screen_that_drives = lambda: self.lease.holder.name if self.lease.holder else None
+        station.verbs.screen_that_drives = lambda: self.lease.holder.name if self.lease.holder else None
         self._host = host
         self._lifetime = lifetime
         self._attached: dict[ScreenPort, _Attached] = {}

@@ -14,10 +14,10 @@ from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.driving.shutdown import StationShutdown
 from groundstation.station.links.link_monitor import LinkMonitor
 from groundstation.station.notes.operator_log import OperatorLog
-from groundstation.station.relay.refusals import Refusals
-from groundstation.station.relay.verb_relay import VerbRelay
 from groundstation.station.services.service_requests import ServiceRequests, TransferPause
 from groundstation.station.services.vehicle_queries import VehicleQueries
+from groundstation.station.verbs.refusals import Refusals
+from groundstation.station.verbs.running_verbs import RunningVerbs
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import MessageLog
 
@@ -57,6 +57,6 @@ class CoreParts:
         self.handover = Handover(fleet, commander, self.driving, log, system)
         self.link_closing = LinkClosing(operator, fleet, stats)
         self.queries = VehicleQueries(fleet, commander, stats, log, self.services)
-        self.relay = VerbRelay(fleet, operator, commander, log)
-        self.refusals = Refusals(fleet, commander, self.relay, log)
+        self.verbs = RunningVerbs(fleet, operator, commander, log)
+        self.refusals = Refusals(fleet, commander, self.verbs, log)
         self.operator_log = OperatorLog(log)

@@ -49,7 +49,7 @@ class OperatorCore:
         self._serves = serves
         self.parts = parts
         self.log, self.operator, self.fleet = parts.log, parts.operator, parts.fleet
-        self.services, self.driving, self.relay = parts.services, parts.driving, parts.relay
+        self.services, self.driving, self.verbs = parts.services, parts.driving, parts.verbs
         self.shutdown, self.link_closing = parts.shutdown, parts.link_closing
         self.station_info, self.params = parts.links.station_info, parts.links.params
         self._listener = listener or CoreListener()
@@ -83,7 +83,7 @@ class OperatorCore:
         self._listener.hear(received, contact, now)
         if contact is not None:
             self._receive_known(contact, received, now, reading=reading)
-        self.relay.receive(received, now)  # last: a verb that runs here sees what the others have made of it
+        self.verbs.receive(received, now)  # last: a verb that runs here sees what the others have made of it
 
     def _receive_known(self, contact: Contact, received: Received, now: float, *, reading: bool) -> None:
         """Handle a message of a vehicle, or of another component of its system."""
@@ -128,7 +128,7 @@ class OperatorCore:
         self._commander.tick(now)
         self._listener.tick(now)
         self._handover.tick(now)
-        self.relay.tick(now)
+        self.verbs.tick(now)
         if self.operator.live:
             self._queries.tick(now)
         if self._uses_services:
@@ -151,7 +151,7 @@ class OperatorCore:
         A link of a fleet asks the others for less (link/fleet/brevity.py): a table of a hundred vehicles needs neither
         their attitude nor ten positions a second. None: all, while a verb is connected, which gets what all send.
         """
-        if self.relay.busy:
+        if self.verbs.busy:
             return None
         return self._listener.systems.union(each.state.system for each in self.fleet if self._is_needed(each))
 
@@ -176,7 +176,7 @@ class OperatorCore:
         return (
             self._commander.busy
             or self.services.busy
-            or self.relay.busy
+            or self.verbs.busy
             or self._handover.busy
             or self._listener.busy
             or self.driving.ending
@@ -219,7 +219,7 @@ class OperatorCore:
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
         self._listener.observe(reports, now)
-        self.relay.observe(reports)
+        self.verbs.observe(reports, now)
         reports = [*reports, *self.station_info.not_open]
         selected = self.fleet.selected
         self._links.stats.update(reports, selected.state.system if selected else None, now)
@@ -235,7 +235,7 @@ class OperatorCore:
         services = self.services.messages_to_send()  # repeated later if they are dropped here
         return (
             demands
-            + self.relay.messages_to_send()
+            + self.verbs.messages_to_send()
             + commands
             + self._listener.messages_to_send()
             + self._timesync.messages_to_send()
@@ -246,7 +246,7 @@ class OperatorCore:
     @property
     def _uses_services(self) -> bool:
         """Whether somebody is there for whom requests are repeated: a screen, or a verb that runs here."""
-        return self._serves or self.operator.live or self.relay.uses_services
+        return self._serves or self.operator.live or self.verbs.uses_services
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
@@ -317,7 +317,7 @@ class OperatorCore:
             and self.driving.finished
             and self.shutdown.finished
             and self._handover.finished
-            and self.relay.finished
+            and self.verbs.finished
         )
 
     def _expire_lease(self, now: float) -> None:

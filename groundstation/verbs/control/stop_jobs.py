@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import msgspec
 
@@ -37,6 +37,19 @@ class StopTimes(msgspec.Struct, frozen=True):
     until: float
 
 
+class StopEvidence:
+    """Whether a stop is done. What was so before it counts only with a sign that is newer than its beginning."""
+
+    def __init__(self, find_doubt: Callable[[float], str], began: float) -> None:
+        """`find_doubt` takes the time; returns which sender of its id does not report the effect, "" if each does."""
+        self.find_doubt = find_doubt
+        self._was_done = not find_doubt(began)
+
+    def is_done(self, now: float, *, newer: bool) -> bool:
+        """Return whether it is done. `newer`: there is such a sign, an answer or a HEARTBEAT."""
+        return (newer or not self._was_done) and not self.find_doubt(now)
+
+
 @dataclass(slots=True)
 class RepeatedCommand:
     """One command until its effect is seen. An answer alone is not an end, and neither is silence before `until`."""
@@ -45,21 +58,15 @@ class RepeatedCommand:
     command: Command
     send: Callable[[CommandClient, float, int], None]
     """Takes the client, the time, and the number of tries before."""
-    find_doubt: Callable[[float], str]
-    """Takes the time; returns which sender of its id does not report the effect, "" if the last report of each does."""
+    evidence: StopEvidence
     times: StopTimes
     _due: float = 0.0
     _tries: int = 0
     _accepted: bool = False
-    _was_done: bool = field(init=False)
-    """It was so before the first try: then it counts only with an answer."""
-
-    def __post_init__(self) -> None:
-        self._was_done = not self.find_doubt(self.times.began)
 
     def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
         """Repeat, until the vehicle reports the effect."""
-        if (self._accepted or not self._was_done) and now >= self.times.sure_at and not self.find_doubt(now):
+        if now >= self.times.sure_at and self.evidence.is_done(now, newer=self._accepted):
             client.cancel(self.command)
             book.accept(self.number)
         elif now >= self.times.until:
@@ -85,7 +92,7 @@ class RepeatedCommand:
     def _give_up(self, client: CommandClient, book: RequestBook, now: float) -> None:
         client.cancel(self.command)
         if self._accepted:
-            doubt = self.find_doubt(now) or TOO_SHORT
+            doubt = self.evidence.find_doubt(now) or TOO_SHORT
             book.refuse(self.number, f"accepted, but {doubt}", now, by_vehicle=False)
         else:
             book.fail(self.number, "after all tries")
@@ -97,7 +104,8 @@ def disarm_job(number: int, state: VehicleState, times: StopTimes) -> RepeatedCo
     def send(client: CommandClient, now: float, tries: int) -> None:
         send_stop(client, state, DISARM, now, attempt=tries)
 
-    return RepeatedCommand(number, DISARM.command, send, state.senders.find_doubt, times)
+    evidence = StopEvidence(state.senders.find_doubt, times.began)
+    return RepeatedCommand(number, DISARM.command, send, evidence, times)
 
 
 def hold_job(number: int, state: VehicleState, times: StopTimes) -> RepeatedCommand | RefusedJob:
@@ -109,10 +117,13 @@ def hold_job(number: int, state: VehicleState, times: StopTimes) -> RepeatedComm
     def send(client: CommandClient, now: float, tries: int) -> None:
         send_stop(client, state, hold, now, attempt=tries)
 
-    def find_doubt(now: float) -> str:
-        return state.senders.find_doubt(now, lambda sender: shows_hold(state, sender))
+    evidence = StopEvidence(lambda now: find_hold_doubt(state, now), times.began)
+    return RepeatedCommand(number, Command.DO_SET_MODE, send, evidence, times)
 
-    return RepeatedCommand(number, Command.DO_SET_MODE, send, find_doubt, times)
+
+def find_hold_doubt(state: VehicleState, now: float) -> str:
+    """Return which sender of its id does not report HOLD; "" if each does."""
+    return state.senders.find_doubt(now, lambda sender: shows_hold(state, sender))
 
 
 class RefusedJob(msgspec.Struct):

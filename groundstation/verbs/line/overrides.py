@@ -9,9 +9,10 @@ from dialects.mode_tables import HOLD
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.handover import ANSWER_WITHIN
-from groundstation.vehicles.demand.stop_commands import StopKind, shows_hold
+from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.control.stop_jobs import StopEvidence, find_hold_doubt
 from groundstation.verbs.line.session import LineOutput, LineSession
 
 STOPPED_WITHIN = 5.0
@@ -23,22 +24,20 @@ def _need_selected(session: LineSession) -> None:
         raise VerbError(ExitCode.USAGE, f"{session.vehicle.name} is not selected: n selects the next vehicle")
 
 
-async def _wait_stopped(session: LineSession, find_doubt: Callable[[], str]) -> tuple[bool, str]:
-    """Wait until the last report of each sender of its id shows the stop; return whether it does, and else who not.
-
-    What was so before counts with a HEARTBEAT that has come since: the vehicle may have been armed after the last one.
-    """
-    began, was_so = session.now, not find_doubt()
+async def _wait_stopped(session: LineSession, find_doubt: Callable[[float], str]) -> tuple[bool, str]:
+    """Wait until the last report of each sender of its id shows the stop; return whether it does, and else who not."""
+    began, state = session.now, session.vehicle
+    evidence = StopEvidence(find_doubt, began)
 
     def is_stopped() -> bool:
-        return not find_doubt() and (not was_so or session.vehicle.heartbeat_at > began)
+        return evidence.is_done(session.now, newer=state.heartbeat_at > began)
 
     done = await session.wait_for(is_stopped, STOPPED_WITHIN)
-    return done, "" if done else find_doubt() or "it is not heard"
+    return done, "" if done else find_doubt(session.now) or "it is not heard"
 
 
 async def _wait_disarmed(session: LineSession) -> tuple[bool, str]:
-    return await _wait_stopped(session, lambda: session.vehicle.senders.find_doubt(session.now))
+    return await _wait_stopped(session, session.vehicle.senders.find_doubt)
 
 
 async def disarm(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
@@ -53,11 +52,7 @@ async def stop(session: LineSession, options: argparse.Namespace, output: LineOu
     """Stop the sticks, and change to HOLD."""
     state = session.vehicle
     session.stop(StopKind.HOLD, Stop(), SetMode(mode=HOLD))
-
-    def find_doubt() -> str:
-        return state.senders.find_doubt(session.now, lambda sender: shows_hold(state, sender))
-
-    done, doubt = await _wait_stopped(session, find_doubt)
+    done, doubt = await _wait_stopped(session, lambda now: find_hold_doubt(state, now))
     output.note(f"{state.name} {'holds' if done else f'is not known to hold: {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 

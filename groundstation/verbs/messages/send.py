@@ -1,7 +1,7 @@
 """`groundstation send`: send any message, once or at a rate. A demand begins and ends with neutral.
 
 Neutral is also sent when the verb is interrupted by a signal. When the process is killed or stands still, its watchdog
-sends it (demand_guard.py), or the station in which the verb runs (station/relay/verb_relay.py).
+sends it (demand_guard.py), or the station in which the verb runs (station/verbs/running_verbs.py).
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dialects import codec
 from dialects import messages as m
 from groundstation.station.operator_core import OperatorCore
-from groundstation.station.relay.verb_relay import Verb
+from groundstation.station.verbs.running_verbs import Verb
 from groundstation.station_socket.verb_run import STILL_WITHIN
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.core import VerbCore
@@ -70,23 +70,20 @@ class StationSeat:
         """`flush` sends what the station has queued; `silence`: for how many s the shell of the verb was silent."""
         self.broken: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         """Has what ends the verb: a mistake in it, or a demand that is refused."""
-        self._relay, self._core = station.relay, core
+        self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
-        self._verb = Verb(
-            name, takes_part, self._deliver, self._report, self._refuse_demand, follows=follows,
-            tell_refusal=self._take_refusal, tick=self._run_tick,
-        )  # fmt: skip
+        self._verb = Verb(name, takes_part, self, follows=follows)
 
     def join(self) -> None:
         """Begin: take what the station knows."""
-        self._relay.join(self._verb, self._now)
-        self._run_tick(self._now)
+        self._verbs.join(self._verb, self._now)
+        self.tick(self._now)
         self._flush()
 
     def leave(self) -> None:
         """End: send what is left."""
         self.flush()
-        self._relay.leave(self._verb, self._now)
+        self._verbs.leave(self._verb, self._now)
         self._flush()
         if self.broken.done():
             self.broken.exception()  # a verb that ends by itself has not read it
@@ -100,42 +97,43 @@ class StationSeat:
     def _now(self) -> float:
         return asyncio.get_running_loop().time()
 
-    def _deliver(self, batch: Sequence[Received]) -> None:
-        now = self._now
+    # ---- VerbSeat (station/verbs/running_verbs.py) ----
 
-        def receive_all() -> None:
-            for received in batch:
-                self._core.receive(received, now)
-
-        self._guard(receive_all)
+    def deliver(self, received: Received, now: float) -> None:
+        """Handle a message that the station has handled."""
+        self._guard(lambda: self._core.receive(received, now))
         self._pass_on(now)
 
-    def _run_tick(self, now: float) -> None:
+    def tick(self, now: float) -> None:
         """Tick, unless the shell stands still."""
         if self._silence(now) > STILL_WITHIN:
             return
-        self._relay.hear(self._verb, now - self._silence(now))
+        self._verbs.hear(self._verb, now - self._silence(now))
         self._guard(lambda: self._core.tick(now))
         self._pass_on(now)
 
-    def _report(self, reports: Sequence[LinkReport]) -> None:
-        self._guard(lambda: self._core.observe(reports, self._now))
+    def report(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Handle the state of the links."""
+        self._guard(lambda: self._core.observe(reports, now))
 
-    def _take_refusal(self, message: m.Message, why: str) -> None:
+    def tell_refusal(self, message: m.Message, why: str, now: float) -> None:
+        """Note that a message is not sent, because the role of the station does not allow it."""
         if isinstance(self._core, RefusalListener):
             core = self._core
-            self._guard(lambda: core.handle_refused(message, why, self._now))
+            self._guard(lambda: core.handle_refused(message, why, now))
 
-    def _refuse_demand(self, line: str) -> None:
+    def refuse(self, line: str) -> None:
         """End the verb: its demand is not sent any more."""
         self._break(VerbError(ExitCode.NOT_IN_CONTROL, line))
+
+    # ---- own ----
 
     def _pass_on(self, now: float) -> None:
         """Give the messages of the verb to the station, which sends them; later if the shell stands still."""
         if self._silence(now) > STILL_WITHIN:
             return
         for outgoing in self._core.messages_to_send():
-            self._relay.handle(self._verb, outgoing.message, now)
+            self._verbs.handle(self._verb, outgoing.message, now)
 
     def _guard(self, step: Callable[[], object]) -> None:
         try:

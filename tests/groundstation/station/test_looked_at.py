@@ -5,9 +5,9 @@ from __future__ import annotations
 from groundstation.intents.services import FetchParams
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.intents.watch import Watch
-from groundstation.station.relay.verb_relay import Verb
 from groundstation.views.charts import FieldId, SeriesRequest
 from groundstation.views.messages import MessageRequest
+from tests.fakes.verb_seat import verb_of
 from tests.groundstation.flotilla import Flotilla
 
 
@@ -54,10 +54,10 @@ def test_what_a_screen_shows_or_draws_of_another_vehicle() -> None:
 def test_a_verb_gets_what_all_vehicles_send() -> None:
     flotilla = Flotilla(3)
     flotilla.run(3.0)
-    verb = Verb("groundstation watch", False, lambda _: None, lambda _: None, lambda _: None)
-    flotilla.station.relay.join(verb, flotilla.now)
+    verb = verb_of("groundstation watch")
+    flotilla.station.verbs.join(verb, flotilla.now)
     assert flotilla.near.core.interesting_systems is None  # type: ignore[attr-defined]
-    flotilla.station.relay.leave(verb, flotilla.now)
+    flotilla.station.verbs.leave(verb, flotilla.now)
     assert flotilla.near.core.interesting_systems == frozenset((1,))  # type: ignore[attr-defined]
     flotilla.near.core.activate(flotilla.now)  # type: ignore[attr-defined]
     assert flotilla.near.core.interesting_systems == frozenset()  # type: ignore[attr-defined]

@@ -77,11 +77,11 @@ def test_a_killed_shell_leaves_no_verb_that_waits_for_it(
         if words[0] == "ftp":
             await shells.see(lambda: len(vehicle.of("FILE_TRANSFER_PROTOCOL")) > 4)
         else:
-            await shells.see(lambda: shells.station.relay.busy)
+            await shells.see(lambda: shells.station.verbs.busy)
         link.sock.shutdown(socket.SHUT_RDWR)
         verb.cancel()
         await shells.see(lambda: asyncio.all_tasks() <= before)
-        assert not shells.station.relay.busy
+        assert not shells.station.verbs.busy
 
     with_station(vehicle, use)
 
@@ -104,16 +104,16 @@ def test_a_pipe_without_a_writer_delays_the_shell_alone(vehicle: ForeignVehicle,
     async def use(shells: Shells) -> None:
         os.mkfifo(here / "pipe")
         waiting = asyncio.ensure_future(shells.run("param", "load", "pipe"))
-        await shells.see(lambda: shells.station.relay.busy)
+        await shells.see(lambda: shells.station.verbs.busy)
         assert (await shells.run("mode", "HOLD")).code == ExitCode.DONE, "another shell"
         with open(here / "pipe", "w") as writer:  # noqa: ASYNC230 - the reader waits in its thread
             writer.write("FS_ACTION,3\n")
         assert (await waiting).code == ExitCode.DONE
         assert vehicle.params["FS_ACTION"].value == 3.0
         waiting = asyncio.ensure_future(shells.run("param", "load", "pipe"))
-        await shells.see(lambda: shells.station.relay.busy)
+        await shells.see(lambda: shells.station.verbs.busy)
         waiting.cancel()
         await asyncio.wait({waiting})
-        await shells.see(lambda: not shells.station.relay.busy)
+        await shells.see(lambda: not shells.station.verbs.busy)
 
     with_station(vehicle, use)

@@ -103,7 +103,7 @@ def test_it_prints_in_the_shell_and_has_its_code(capsys: pytest.CaptureFixture[s
         assert "no such mode" in capsys.readouterr().err
         assert (await shells.run("status", "-v", "9", "--wait", "0.1")).code == ExitCode.NO_VEHICLE
         assert (await shells.run("rate", "NOTHING", "5")).code == ExitCode.USAGE
-        assert not shells.station.relay.busy
+        assert not shells.station.verbs.busy
 
     with foreign_vehicle() as vehicle:
         vehicle.params["FS_ACTION"] = Param(2.0)
@@ -121,7 +121,7 @@ def test_an_interrupted_or_killed_shell_ends_its_verb_in_order(killed: bool) -> 
             link.sock.shutdown(socket.SHUT_RDWR)
         verb.cancel()
         await shells.see(lambda: commanded(vehicle, MAG_CAL_CANCEL))
-        await shells.see(lambda: not shells.station.relay.busy)
+        await shells.see(lambda: not shells.station.verbs.busy)
         await asyncio.wait({verb})
 
     with foreign_vehicle() as vehicle:

@@ -1,4 +1,4 @@
-"""VerbRelay: verbs that go through this station. Their messages leave as the station's own. Time is an argument.
+"""RunningVerbs: the verbs that run in this station. Their messages leave as the station's own. Time is an argument.
 
 Commands and stops always pass: they are the user's. A demand that moves passes only while no screen drives and no other
 verb does, and ends with neutral when the verb ends, is killed or stands still. The station proves its session to the
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 
@@ -44,14 +44,31 @@ ARMS_WITHIN = 5.0
 """s for a vehicle to answer the arming of a verb."""
 
 
+class VerbSeat(Protocol):
+    """What joins the core of a verb to the station."""
+
+    def deliver(self, received: Received, now: float) -> None:
+        """Handle a message that the station has received."""
+
+    def report(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Handle the state of the links."""
+
+    def refuse(self, line: str) -> None:
+        """End the verb: its demand is not sent, or not any more."""
+
+    def tell_refusal(self, message: m.Message, why: str, now: float) -> None:
+        """Note that a message of the verb is not sent, because our role does not allow it."""
+
+    def tick(self, now: float) -> None:
+        """Let the verb send what is due."""
+
+
 class Verb(msgspec.Struct, eq=False):
-    """One verb. `deliver` gets what the station receives, `report` its links, `refuse` why a demand is not sent."""
+    """One verb."""
 
     name: str
     takes_part: bool
-    deliver: Callable[[Sequence[Received]], None]
-    report: Callable[[Sequence[LinkReport]], None]
-    refuse: Callable[[str], None]
+    seat: VerbSeat
     follows: bool = False
     """It keeps the session going that a verb has used just before."""
     heard_at: float = 0.0
@@ -59,10 +76,6 @@ class Verb(msgspec.Struct, eq=False):
     """Kind and vehicle -> the newest demand that moves."""
     refused: str = ""
     """Why no more demands are taken."""
-    tell_refusal: Callable[[m.Message, str], None] = lambda message, why: None
-    """Takes a message of the verb that our role does not allow, and why."""
-    tick: Callable[[float], None] = lambda now: None
-    """Called with each tick of the station."""
 
 
 class _Ending(msgspec.Struct):
@@ -74,7 +87,7 @@ class _Ending(msgspec.Struct):
     due: float
 
 
-class VerbRelay:
+class RunningVerbs:
     """The verbs of one station."""
 
     def __init__(self, fleet: Fleet, operator: OperatorSession, commander: Commander, log: MessageLog) -> None:
@@ -108,10 +121,12 @@ class VerbRelay:
     def join(self, verb: Verb, now: float) -> None:
         """Start a verb, and report the present state to it."""
         verb.heard_at = now
-        verb.report(self._reports)
+        verb.seat.report(self._reports, now)
         # The HEARTBEAT first: a verb takes nothing from a vehicle that it does not know.
         newest = sorted(self._newest.values(), key=lambda each: (not is_vehicle(each[0].message), each[1]))
-        verb.deliver([received for received, at in newest if now - at <= FRESH or self._holds(received, now)])
+        for received, at in newest:
+            if now - at <= FRESH or self._holds(received, now):
+                verb.seat.deliver(received, now)
         self._verbs.append(verb)
 
     def leave(self, verb: Verb, now: float) -> None:
@@ -122,7 +137,9 @@ class VerbRelay:
     # ---- from the vehicles ----
 
     def receive(self, received: Received, now: float) -> None:
-        """Pass a message on to all verbs, and keep it for the next one."""
+        """Pass a message on to all verbs, and keep it for the next one; without the key of a SETUP_SIGNING."""
+        if type(received.message) is m.SetupSigning:
+            received = received._replace(message=m.hide_key(received.message))
         number = type(received.message).id
         if number not in ACKED:
             if len(self._newest) >= MAX_KINDS:
@@ -130,15 +147,15 @@ class VerbRelay:
             peer = received.peer if number == m.Heartbeat.id else None
             self._newest[received.system, received.component, number, peer] = (received, now)
         for verb in list(self._verbs):
-            verb.deliver((received,))
+            verb.seat.deliver(received, now)
         if isinstance(received.message, m.CommandAck):
             self._note_arming(received.message, received.system, now)
 
-    def observe(self, reports: Sequence[LinkReport]) -> None:
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Pass the state of the links on."""
         self._reports = tuple(reports)
         for verb in self._verbs:
-            verb.report(self._reports)
+            verb.seat.report(self._reports, now)
 
     def _holds(self, received: Received, now: float) -> bool:
         """Return whether a message is still true, however old."""
@@ -186,7 +203,7 @@ class VerbRelay:
         if self._operator.live:
             self._used_at = -math.inf
         for verb in list(self._verbs):
-            verb.tick(now)
+            verb.seat.tick(now)
             verb.follows &= not self._operator.live
             self._check_silence(verb, now)
             if screen is not None and verb.demands:
@@ -200,11 +217,11 @@ class VerbRelay:
         self._sent, self._senders = self._senders, []
         return outbox
 
-    def handle_refused(self, message: m.Message, why: str) -> bool:
+    def handle_refused(self, message: m.Message, why: str, now: float) -> bool:
         """Tell the verb whose message our role does not allow; return whether it is one of a verb."""
         verb = next((verb for sent, verb in self._sent if sent is message), None)
         if verb is not None:
-            verb.tell_refusal(message, why)
+            verb.seat.tell_refusal(message, why, now)
         return verb is not None
 
     @property
@@ -243,7 +260,7 @@ class VerbRelay:
         if not verb.refused and (screen or other):
             self._refuse(verb, f"the {screen or (other.name if other else '')} drives", now)
         if verb.refused:
-            verb.refuse(verb.refused)
+            verb.seat.refuse(verb.refused)
             return False
         verb.demands[type(message), contact.state.system] = message
         return True

@@ -11,12 +11,12 @@ from dialects.enums import Command
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.plan import ClearPlan
 from groundstation.intents.vehicle import Arm, Disarm
-from groundstation.station.relay.verb_relay import Verb
 from groundstation.views.requests import RequestsRequest
 from link.fleet.keys import read_frame
 from link.fleet.roles import needed_role
 from link.signing.role import Role
 from tests.fakes.vehicle import QUERIES, FakeVehicle
+from tests.fakes.verb_seat import SeatLog, verb_of
 from tests.groundstation.cockpits import Cockpit
 from tests.world import Host
 
@@ -86,14 +86,11 @@ def test_a_request_ends_as_refused(cockpit: Cockpit) -> None:
 
 
 def test_a_verb_is_told_of_its_own_messages_only(cockpit: Cockpit) -> None:
-    told: list[tuple[m.Message, str]] = []
-    relay = cockpit.station.relay
-    verb = Verb(
-        "arm", True, lambda _: None, lambda _: None, lambda _: None, tell_refusal=lambda *each: told.append(each)
-    )
-    relay.join(verb, cockpit.now)
+    told, verbs = (seat := SeatLog()).refused, cockpit.station.verbs
+    verb = verb_of("arm", takes_part=True, seat=seat)
+    verbs.join(verb, cockpit.now)
     arm = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
-    relay.handle(verb, arm, cockpit.now)
+    verbs.handle(verb, arm, cockpit.now)
     cockpit.world.settle()
     assert told == [(arm, WHY)]
     cockpit.do(Arm(held=1.0))

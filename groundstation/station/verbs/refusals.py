@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Severity
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
-from groundstation.station.relay.verb_relay import VerbRelay, moves
+from groundstation.station.verbs.running_verbs import RunningVerbs, moves
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.state.message_log import MessageLog
 
@@ -21,13 +21,13 @@ _DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 class Refusals:
     """Tells verbs, commands and requests that wait for an answer, and the operator."""
 
-    def __init__(self, fleet: Fleet, commander: Commander, relay: VerbRelay, log: MessageLog) -> None:
-        self._fleet, self._commander, self._relay, self._log = fleet, commander, relay, log
+    def __init__(self, fleet: Fleet, commander: Commander, verbs: RunningVerbs, log: MessageLog) -> None:
+        self._fleet, self._commander, self._verbs, self._log = fleet, commander, verbs, log
         self._said: tuple[str, float] = ("", -math.inf)
 
     def handle(self, message: m.Message, why: str, now: float) -> None:
         """Note that `message` was not sent."""
-        if self._relay.handle_refused(message, why):
+        if self._verbs.handle_refused(message, why, now):
             return
         contact = self._fleet.get(m.target_system(message))
         if contact is None or not _is_wanted(message, contact):

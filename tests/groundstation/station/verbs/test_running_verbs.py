@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, OperatorFlag, SystemState, VehicleType
 from dialects.messages import INVALID_AXIS, UINT16_MAX
-from groundstation.station.relay.verb_relay import Verb, VerbRelay
+from groundstation.station.verbs.running_verbs import RunningVerbs, Verb
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
-from link.core import Received
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
+from tests.fakes.verb_seat import SeatLog, verb_of
 from tests.groundstation.cockpits import Cockpit, armed_cockpit
 
 BEAT = m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)
@@ -28,26 +26,23 @@ class Ashore:
         self.cockpit.leasing = False
         self.cockpit.run(2.0)
         self.began = self.cockpit.now
-        self.heard: list[Received] = []
-        self.refusals: list[str] = []
+        self.seat = SeatLog()
+        self.heard, self.refusals = self.seat.heard, self.seat.refusals
         self.verb = self.add("groundstation send", takes_part=takes_part)
         self.alive = True
 
     def add(self, name: str, *, takes_part: bool = True, follows: bool = False) -> Verb:
-        def deliver(received: Sequence[Received]) -> None:
-            self.heard.extend(received)
-
-        verb = Verb(name, takes_part, deliver, lambda _: None, self.refusals.append, follows=follows)
-        self.relay.join(verb, self.cockpit.now)
+        verb = verb_of(name, takes_part=takes_part, follows=follows, seat=self.seat)
+        self.verbs.join(verb, self.cockpit.now)
         return verb
 
     @property
-    def relay(self) -> VerbRelay:
-        return self.cockpit.station.relay
+    def verbs(self) -> RunningVerbs:
+        return self.cockpit.station.verbs
 
     def send(self, *messages: m.Message, verb: Verb | None = None) -> None:
         for message in messages:
-            self.relay.handle(verb or self.verb, message, self.cockpit.now)
+            self.verbs.handle(verb or self.verb, message, self.cockpit.now)
         self.cockpit.world.settle()
 
     def run(self, seconds: float, *messages: m.Message) -> None:
@@ -55,14 +50,14 @@ class Ashore:
         end = self.cockpit.now + seconds
         while self.cockpit.now < end:
             if self.alive:
-                self.relay.hear(self.verb, self.cockpit.now)
+                self.verbs.hear(self.verb, self.cockpit.now)
                 self.send(*messages)
             self.cockpit.run(STEP)
 
     def passed(self, *messages: m.Message, verb: Verb) -> list[int]:
         """Send messages of a verb; return how many of each kind reach the vehicle."""
         before = [len(self.of(type(each))) for each in messages]
-        self.relay.hear(verb, self.cockpit.now)
+        self.verbs.hear(verb, self.cockpit.now)
         self.send(*messages, verb=verb)
         self.cockpit.run(STEP)
         return [len(self.of(type(each))) - was for each, was in zip(messages, before, strict=True)]
@@ -107,12 +102,12 @@ def test_a_demand_ends_with_neutral_when_the_verb_ends() -> None:
     ashore = Ashore()
     ashore.run(0.5, FULL)
     assert ashore.cockpit.demands()[-1][1] == 1000
-    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     ashore.cockpit.world.settle()
     at = ashore.cockpit.now
     ashore.cockpit.run(1.0)
     assert [x for _, x, _ in ashore.cockpit.demands(at)] == [0] * 5
-    assert ashore.relay.finished
+    assert ashore.verbs.finished
 
 
 def test_a_demand_of_a_stopped_verb_ends_and_does_not_resume() -> None:
@@ -134,10 +129,10 @@ def test_a_thawed_verb_is_found_out_by_its_first_packet() -> None:
     ashore = Ashore()
     ashore.run(0.5, FULL)
     now = ashore.cockpit.now + 1.0
-    ashore.relay.hear(ashore.verb, now)
-    ashore.relay.handle(ashore.verb, FULL, now)
+    ashore.verbs.hear(ashore.verb, now)
+    ashore.verbs.handle(ashore.verb, FULL, now)
     assert "stood still for 1." in ashore.refusals[0]
-    sent = [each.message for each in ashore.relay.messages_to_send() if isinstance(each.message, m.ManualControl)]
+    sent = [each.message for each in ashore.verbs.messages_to_send() if isinstance(each.message, m.ManualControl)]
     assert {message.x for message in sent} == {0}
 
 
@@ -154,7 +149,7 @@ def test_of_two_verbs_the_first_drives() -> None:
 def test_a_screen_that_comes_ends_the_demand() -> None:
     ashore = Ashore()
     ashore.run(0.2, FULL)
-    ashore.relay.screen_that_drives = lambda: "screen on pts/1"
+    ashore.verbs.screen_that_drives = lambda: "screen on pts/1"
     ashore.run(0.5)
     assert ashore.cockpit.demands()[-1][1] == 0
     ashore.send(FULL)
@@ -164,7 +159,7 @@ def test_a_screen_that_comes_ends_the_demand() -> None:
 def test_channels_are_centred_and_given_back() -> None:
     ashore = Ashore(FakeArduPilot())
     ashore.run(0.2, m.RcChannelsOverride(1, 1, 1500, UINT16_MAX, 1900, *[UINT16_MAX] * 5))
-    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     ashore.cockpit.run(1.0)
     sent = ashore.cockpit.vehicle.all(m.RcChannelsOverride)
     assert [message.chan3_raw for _, message in sent[-2:]] == [1500, 0]
@@ -173,7 +168,7 @@ def test_channels_are_centred_and_given_back() -> None:
 def test_a_demand_to_nobody_is_not_sent() -> None:
     ashore = Ashore()
     ashore.send(m.ManualControl(9, 1000, 0, 0, 0, 0))
-    assert ashore.relay.messages_to_send() == []
+    assert ashore.verbs.messages_to_send() == []
 
 
 def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:
@@ -188,10 +183,10 @@ def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:
 def test_arming_by_verb_is_control_of_a_vehicle_that_tells_none() -> None:
     cockpit = Cockpit(FakeArduPilot())
     cockpit.run(1.5)
-    verb = Verb("groundstation arm", True, lambda _: None, lambda _: None, lambda _: None)
-    cockpit.station.relay.join(verb, cockpit.now)
+    verb = verb_of("groundstation arm", takes_part=True)
+    cockpit.station.verbs.join(verb, cockpit.now)
     command = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
-    cockpit.station.relay.handle(verb, command, cockpit.now)
+    cockpit.station.verbs.handle(verb, command, cockpit.now)
     cockpit.run(1.5)
     assert cockpit.view.armed
     assert cockpit.view.in_control
@@ -205,6 +200,18 @@ def test_a_verb_that_comes_knows_at_once_what_was_heard() -> None:
     assert kinds[0] is m.Heartbeat, "the verb would take nothing that comes before it"
     assert len(kinds) > 1
     assert m.CommandAck not in kinds
+
+
+def test_the_key_of_setup_signing_reaches_no_verb() -> None:
+    ashore = Ashore()
+    ashore.run(1.0)
+    key = ashore.heard[-1]._replace(message=m.SetupSigning(255, 190, [7] * 32, 1))
+    ashore.heard.clear()
+    ashore.verbs.receive(key, ashore.cockpit.now)
+    ashore.add("groundstation status")
+    heard = [each.message for each in ashore.heard if isinstance(each.message, m.SetupSigning)]
+    assert len(heard) >= 1
+    assert not any(byte for message in heard for byte in message.secret_key)
 
 
 @pytest.mark.parametrize("takes_part", [True, False])
@@ -222,20 +229,20 @@ PROOF = m.RoverOperatorPresence(1, 1, 5, 6, 99, 1, 0, OperatorFlag.AXES)
 
 def test_verb_that_follows_keeps_the_session_of_the_former_verb() -> None:
     ashore = Ashore()
-    assert not ashore.relay.may_follow(ashore.cockpit.now)  # the last driver was a screen
+    assert not ashore.verbs.may_follow(ashore.cockpit.now)  # the last driver was a screen
     ashore.run(0.5)
-    watch = ashore.add("groundstation watch", takes_part=False, follows=ashore.relay.may_follow(ashore.cockpit.now))
+    watch = ashore.add("groundstation watch", takes_part=False, follows=ashore.verbs.may_follow(ashore.cockpit.now))
     assert ashore.passed(BEAT, PROOF, verb=watch) == [0, 0]  # the verb before still runs
-    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     assert ashore.passed(BEAT, PROOF, verb=watch) == [1, 1]
 
 
 def test_what_follows_begins_soon_and_a_verb_that_looks_is_none() -> None:
     ashore = Ashore()
     ashore.run(0.5)
-    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
-    assert ashore.relay.may_follow(ashore.cockpit.now + KEEP - STEP)
-    assert not ashore.relay.may_follow(ashore.cockpit.now + KEEP + STEP)
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
+    assert ashore.verbs.may_follow(ashore.cockpit.now + KEEP - STEP)
+    assert not ashore.verbs.may_follow(ashore.cockpit.now + KEEP + STEP)
     assert ashore.passed(BEAT, PROOF, verb=ashore.add("groundstation status", takes_part=False)) == [0, 0]
 
 
@@ -244,10 +251,10 @@ def test_a_screen_that_drove_since_then_leaves_nothing_to_follow() -> None:
     ashore = Ashore()
     ashore.run(0.5)
     watch = ashore.add("groundstation watch", takes_part=False, follows=True)
-    ashore.relay.leave(ashore.verb, ashore.cockpit.now)
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     ashore.cockpit.leasing = True
     ashore.cockpit.run(0.5)
     ashore.cockpit.leasing = False
     ashore.cockpit.run(2.0)
-    assert not ashore.relay.may_follow(ashore.cockpit.now)
+    assert not ashore.verbs.may_follow(ashore.cockpit.now)
     assert ashore.passed(BEAT, PROOF, verb=watch) == [0, 0]

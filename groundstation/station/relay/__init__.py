@@ -1,1 +1,0 @@
-"""Messages that verbs send through a running station."""
