@@ -184,7 +184,7 @@ SCHEMES: dict[str, Scheme] = {
     ),
     ZENOH: Scheme(
         "zenoh:FILE_OR_ROUTER/FLEET[/VEHICLE]",
-        "over a router on the internet, see docs/fleet.md; FILE.json5 is made by `bridge fleet`",
+        "over a router on the internet, see docs/fleet.md; FILE.json5 is made by `mavhelm bridge fleet`",
         _parse_zenoh,
         "link.fleet.transport:open_fleet",
         private="link.fleet.config:is_private",

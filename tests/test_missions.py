@@ -261,7 +261,7 @@ def test_verb_that_only_looks_does_not_end_auto_without_station() -> None:
     assert (drive.is_in(Mode.AUTO), drive.power > 0.2) == (True, True), "it goes on without a ground station"
 
     verbs, ended = drive.station.verbs, drive.world.now + 4.0
-    verb = verb_of("groundstation status")
+    verb = verb_of("mavhelm status")
     verbs.join(verb, drive.world.now)
     while drive.world.now < ended:
         for kind in (m.SysStatus, m.VfrHud, m.AutopilotVersion, m.ControlStatus):

@@ -122,7 +122,7 @@ def test_setup_signing_is_counted_and_its_key_is_not_kept() -> None:
 def test_a_key_is_refused_on_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
     run = run_verb(capsys, "send", "SETUP_SIGNING", "secret_key=1", "-e", "udpout:127.0.0.1:9")
     assert run.code == 2
-    assert "use `groundstation sign setup`" in run.err
+    assert "use `mavhelm sign setup`" in run.err
 
 
 def test_a_process_with_keys_dumps_no_core(tmp_path: Path) -> None:

@@ -113,7 +113,7 @@ def test_station_that_loses_its_key_while_driving_stops_rover() -> None:
     ("key", "policy", "state", "words"),
     [
         (DRIVER, SIGNED_ONLY, SigningState.ON, "our key is laptop ("),
-        (None, WATCHED, SigningState.NO_KEY, "groundstation sign install"),
+        (None, WATCHED, SigningState.NO_KEY, "mavhelm sign install"),
         (OTHER, SIGNED_ONLY, SigningState.REJECTED, "wrong key from system 1; compare the fingerprints"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Drive a square in GUIDED with pymavlink: `vehicle --sim` in one terminal, `python drive_square.py` in another."""
+"""Drive a square in GUIDED with pymavlink: `mavhelm vehicle --sim` in one terminal, this in another."""
 
 from __future__ import annotations
 

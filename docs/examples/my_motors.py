@@ -1,4 +1,4 @@
-"""A motor driver of your own: `PYTHONPATH=docs/examples vehicle udpin:127.0.0.1:14550 --motors my_motors:PrintMotors`.
+"""Own motor driver: `PYTHONPATH=docs/examples mavhelm vehicle udpin:127.0.0.1:14550 --motors my_motors:PrintMotors`.
 
 The rules for a driver are in vehicle/motors/__init__.py; tests/test_examples.py runs the contract test on this one.
 """

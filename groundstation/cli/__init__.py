@@ -1,1 +1,1 @@
-"""Command line of `groundstation`."""
+"""Command line of `mavhelm`."""

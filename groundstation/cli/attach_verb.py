@@ -1,4 +1,4 @@
-"""`groundstation attach`: a screen for a station that runs."""
+"""`mavhelm attach`: a screen for a station that runs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from link.runtime.command_line import CommandLineParser
 
 EPILOG = """\
 The first screen of a station drives. Another one watches, and may stop; the key of `Take control` asks for the keys,
-which the driver gives (Y) or keeps (N). Quitting leaves a station of `serve` running; one of `groundstation --keep`
+which the driver gives (Y) or keeps (N). Quitting leaves a station of `serve` running; one of `mavhelm --keep`
 ends when its driver quits.
 
 exit codes: 0 after a session, 2 for wrong arguments or no station, 128 + n after signal n
@@ -29,7 +29,7 @@ exit codes: 0 after a session, 2 for wrong arguments or no station, 128 + n afte
 def build_parser() -> CommandLineParser:
     """Return the parser."""
     parser = CommandLineParser(
-        prog="groundstation attach",
+        prog="mavhelm attach",
         description="Open a screen for a station that runs here.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -42,7 +42,7 @@ def build_parser() -> CommandLineParser:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run `groundstation attach`; return the exit code."""
+    """Run `mavhelm attach`; return the exit code."""
     return run_local(build_parser(), arguments, _attach)
 
 
@@ -64,7 +64,7 @@ def choose_station(wanted: int | None) -> int:
     except FolderError as error:
         raise StationError(str(error)) from error
     if not found:
-        raise StationError("no station runs here: `groundstation` or `groundstation serve --headless` starts one")
+        raise StationError("no station runs here: `mavhelm` or `mavhelm serve --headless` starts one")
     if wanted is None and len(found) > 1:
         raise UsageError(f"stations {describe_stations(found)} run here: name one, as in `attach {found[0]}`")
     return found[0] if wanted is None else wanted

@@ -1,4 +1,4 @@
-"""`groundstation completion`: prints the script of a shell, and answers that script with the names of a station."""
+"""`mavhelm completion`: prints the script of a shell, and answers that script with the names of a station."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from link.runtime.command_line import CommandLineParser
 def build_parser() -> CommandLineParser:
     """Return the parser."""
     parser = CommandLineParser(
-        prog="groundstation completion",
+        prog="mavhelm completion",
         description="Print a script that completes verbs, options and names in a shell.",
-        epilog='bash: eval "$(groundstation completion bash)" in ~/.bashrc; the same for zsh; '
-        "fish: groundstation completion fish | source",
+        epilog='bash: eval "$(mavhelm completion bash)" in ~/.bashrc; the same for zsh; '
+        "fish: mavhelm completion fish | source",
     )
     add = parser.add_mutually_exclusive_group(required=True).add_argument
     add("shell", nargs="?", choices=SHELLS)
@@ -34,7 +34,7 @@ def run(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
         code = _print_names(options.names) if options.names else _print_script(options.shell, helps)
         sys.stdout.flush()
     except OSError as error:
-        return stdio.end_output(error, lambda reason: sys.stderr.write(f"groundstation: output: {reason}\n"))
+        return stdio.end_output(error, lambda reason: sys.stderr.write(f"mavhelm: output: {reason}\n"))
     return int(code)
 
 

@@ -1,4 +1,4 @@
-"""`groundstation config`: check, show or create the config file. Needs no vehicle and no screen."""
+"""`mavhelm config`: check, show or create the config file. Needs no vehicle and no screen."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from link.runtime.command_line import CommandLineParser
 EPILOG = """\
 exit codes: 0 done, or no mistake; 2 a mistake in the file or the arguments; 7 there is no file
 
-The file is that of --config, else of the variable MAVHELM_CONFIG, else the one that `groundstation config path` prints.
+The file is that of --config, else of the variable MAVHELM_CONFIG, else the one that `mavhelm config path` prints.
 """
 
 
@@ -37,7 +37,7 @@ class _Code(IntEnum):
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run `groundstation config`; return the exit code."""
+    """Run `mavhelm config`; return the exit code."""
     parser = build_parser()
     options = parser.parse_args(parser.reject_empty(arguments))
     try:
@@ -56,7 +56,7 @@ def run(arguments: Sequence[str]) -> int:
 def _check(options: argparse.Namespace) -> int:
     path, named = choose_path(options.file or options.config, os.environ)
     if not named and not path.exists():
-        _print_errors(f"there is no {path}, so the defaults hold; `groundstation config init` writes one")
+        _print_errors(f"there is no {path}, so the defaults hold; `mavhelm config init` writes one")
         return _Code.DIFFERS
     read_config(path, RESERVED)
     _print(f"{path}: no mistakes")
@@ -116,7 +116,7 @@ _FORMAT = argparse.RawDescriptionHelpFormatter
 
 def build_parser() -> CommandLineParser:
     """Return the parser for the arguments behind `config`."""
-    parser = CommandLineParser(prog="groundstation config", epilog=EPILOG, formatter_class=_FORMAT)
+    parser = CommandLineParser(prog="mavhelm config", epilog=EPILOG, formatter_class=_FORMAT)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=CommandLineParser)
     for name, text in _HELP.items():
         action = actions.add_parser(
@@ -137,4 +137,4 @@ def _print(text: str) -> None:
 
 def _print_errors(*lines: str) -> None:
     for line in lines:
-        sys.stderr.write(f"groundstation: {line}\n")
+        sys.stderr.write(f"mavhelm: {line}\n")

@@ -42,7 +42,7 @@ MIN_TERMINAL_SIZE = (40, 10)
 
 
 def run(arguments: Sequence[str], process: HostProcess | None) -> int:
-    """Run `groundstation` without a verb; return the exit code. `process` waits for the arguments of a station."""
+    """Run `mavhelm` without a verb; return the exit code. `process` waits for the arguments of a station."""
     parser, names = build_parser()
     options, unknown = parser.parse_known_args(parser.reject_empty(arguments))
     if unknown:
@@ -154,7 +154,7 @@ def remember(endpoints: Sequence[str], vehicle: str = "") -> None:
     file = RecentFile()
     file.update(lambda recent: recent.add_all(endpoints, time.time(), vehicle))
     if file.warning:
-        print(f"groundstation: {file.warning}", file=sys.stderr)
+        print(f"mavhelm: {file.warning}", file=sys.stderr)
 
 
 def import_screen() -> None:
@@ -179,14 +179,10 @@ def _endpoints(options: argparse.Namespace, effective: Effective, names: Sequenc
 def check_terminal() -> None:
     """Raise UsageError where no screen can be shown."""
     if os.environ.get("TERM") == "dumb":
-        raise UsageError(
-            "TERM=dumb cannot place text on the screen: run groundstation in a terminal such as xterm or tmux"
-        )
+        raise UsageError("TERM=dumb cannot place text on the screen: run mavhelm in a terminal such as xterm or tmux")
     for name, stream in (("input", sys.stdin), ("output", sys.stdout)):
         if stream is None or not stream.isatty():
-            raise UsageError(
-                f"standard {name} is not a terminal: run groundstation in one, without a pipe or redirection"
-            )
+            raise UsageError(f"standard {name} is not a terminal: run mavhelm in one, without a pipe or redirection")
     columns, rows = shutil.get_terminal_size()
     least_columns, least_rows = MIN_TERMINAL_SIZE
     if columns < least_columns or rows < least_rows:
@@ -264,7 +260,7 @@ def report_session(armed: Sequence[str], logs: Sequence[str]) -> None:
     """Print what is left armed, and the logs of the session; the terminal may be closed."""
     with contextlib.suppress(OSError):
         for line in (*armed, *map(_describe_log, logs)):
-            sys.stderr.write(f"groundstation: {stdio.escape(line)}\n")
+            sys.stderr.write(f"mavhelm: {stdio.escape(line)}\n")
             sys.stderr.flush()
 
 

@@ -1,4 +1,4 @@
-"""`groundstation keys`: shows what this terminal sends for keys, as bytes and as this program reads them."""
+"""`mavhelm keys`: shows what this terminal sends for keys, as bytes and as this program reads them."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class KeyPrinter:
 def build_parser() -> CommandLineParser:
     """Return the parser of the command line."""
     return CommandLineParser(
-        prog="groundstation keys",
+        prog="mavhelm keys",
         description="Show what this terminal sends for each key: bytes, and how they are read. q ends it.",
     )
 
@@ -85,7 +85,7 @@ def run(arguments: Sequence[str]) -> int:
     parser = build_parser()
     parser.parse_args(parser.reject_empty(arguments))
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        sys.stderr.write("groundstation: this is not a terminal: run `groundstation keys` in one, without a pipe\n")
+        sys.stderr.write("mavhelm: this is not a terminal: run `mavhelm keys` in one, without a pipe\n")
         return 2
     before = termios.tcgetattr(sys.stdin)
     for number in (signal.SIGTERM, signal.SIGHUP):

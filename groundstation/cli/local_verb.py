@@ -38,9 +38,9 @@ def report_mistakes(run: Callable[[], int], word: str = "") -> int:
     try:
         return run()
     except ConfigError as error:
-        sys.stderr.writelines(f"groundstation: {problem}\n" for problem in error.problems)
+        sys.stderr.writelines(f"mavhelm: {problem}\n" for problem in error.problems)
     except (UsageError, EndpointError, KeymapError, StationError) as error:
         is_word = isinstance(error, EndpointError) and repr(word) in str(error)
         hint = describe_word(word, RESERVED) if is_word else None
-        sys.stderr.write(f"groundstation: {hint or error}\n")
+        sys.stderr.write(f"mavhelm: {hint or error}\n")
     return 2

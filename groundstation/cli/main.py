@@ -26,14 +26,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     A verb returns a code of groundstation/verbs/common/exit_codes.py.
     """
     stdio.ensure_open()
-    return stdio.run_program("groundstation", lambda: _run(sys.argv[1:] if arguments is None else arguments))
+    return stdio.run_program("mavhelm", lambda: _run(sys.argv[1:] if arguments is None else arguments))
 
 
 def _run(arguments: Sequence[str]) -> int:
     arguments = _verb_first(arguments)
     verb = arguments[0] if arguments else ""
     if hint := describe_action(arguments):
-        print(f"groundstation: {hint}", file=sys.stderr)
+        print(f"mavhelm: {hint}", file=sys.stderr)
         return 2
     if verb in VERB_HELP:
         without_openssl.load()

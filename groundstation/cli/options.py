@@ -1,4 +1,4 @@
-"""The options of `groundstation`: those of the table of settings, and a few that hold for one run only."""
+"""The options of `mavhelm`: those of the table of settings, and a few that hold for one run only."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from link.runtime.command_line import CommandLineParser
 
 EXAMPLES = f"""\
 examples:
-  groundstation --sitl                     start a simulated rover and drive it
-  groundstation                            choose what to connect to: vehicles heard, recent endpoints, serial ports
-  groundstation udpin:0.0.0.0:14550        wait for vehicles, from any machine of the network
-  groundstation udpout:192.168.1.20:14550  send first, to a vehicle that listens
-  groundstation --style latch --speed 0.3  a key drives until the next key, slowly
-  groundstation --keys teleop              the keys of teleop_twist_keyboard
-  groundstation --keys my.toml             your own keys; see below
-  groundstation --gamepad any              a gamepad drives as well; docs/gamepad.md
-  groundstation --dialect mine.xml         name the messages of your vehicle's dialect; see below
+  mavhelm --sitl                     start a simulated rover and drive it
+  mavhelm                            choose what to connect to: vehicles heard, recent endpoints, serial ports
+  mavhelm udpin:0.0.0.0:14550        wait for vehicles, from any machine of the network
+  mavhelm udpout:192.168.1.20:14550  send first, to a vehicle that listens
+  mavhelm --style latch --speed 0.3  a key drives until the next key, slowly
+  mavhelm --keys teleop              the keys of teleop_twist_keyboard
+  mavhelm --keys my.toml             your own keys; see below
+  mavhelm --gamepad any              a gamepad drives as well; docs/gamepad.md
+  mavhelm --dialect mine.xml         name the messages of your vehicle's dialect; see below
 
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
 one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
 Keys drive on the Drive screen only. F6 lists all alerts and messages, F3 every MAVLink message,
 Ctrl-G goes to the other screens, Escape back.
 
-verbs, which open no screen (groundstation VERB --help):
+verbs, which open no screen (mavhelm VERB --help):
 {verb_help()}
 
 endpoints:
@@ -78,7 +78,7 @@ class _Version(argparse.Action):
 def build_parser() -> tuple[CommandLineParser, list[str]]:
     """Return the parser and the names of all options."""
     parser = CommandLineParser(
-        prog="groundstation",
+        prog="mavhelm",
         description="Drive a MAVLink rover from the terminal.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -90,7 +90,7 @@ def build_parser() -> tuple[CommandLineParser, list[str]]:
         add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station"),
         add("--plain", action="store_true",
             help="print lines in place of a screen: what changes, and the vehicle's texts, beside a station that verbs "
-            "in other shells go through; takes the options of `groundstation status --watch`"),
+            "in other shells go through; takes the options of `mavhelm status --watch`"),
         *add_settings(parser),
         add_config(parser),
         add("--version", action=_Version, nargs=0, help="show the version and exit"),
@@ -100,7 +100,7 @@ def build_parser() -> tuple[CommandLineParser, list[str]]:
 
 def add_config(parser: argparse.ArgumentParser) -> argparse.Action:
     """Add --config."""
-    return parser.add_argument("--config", metavar="FILE", help="config file (`groundstation config path` prints it)")
+    return parser.add_argument("--config", metavar="FILE", help="config file (`mavhelm config path` prints it)")
 
 
 def add_settings(parser: argparse.ArgumentParser, names: Collection[str] = tuple(ROWS)) -> list[argparse.Action]:

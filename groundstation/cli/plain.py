@@ -1,4 +1,4 @@
-"""`groundstation --plain`: lines in place of a screen, beside a station that verbs in other shells go through."""
+"""`mavhelm --plain`: lines in place of a screen, beside a station that verbs in other shells go through."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ END_WITHIN = 5.0
 def run(arguments: Sequence[str]) -> int:
     """Run a station, unless one has the endpoints, and print what changes until the end; return the exit code.
 
-    `arguments` are those of `groundstation` without --plain.
+    `arguments` are those of `mavhelm` without --plain.
     """
     endpoints = [each for each in arguments if not each.startswith("-") and ":" in each]
     options = [each for each in arguments if each not in endpoints and each != "--sitl"]
@@ -89,7 +89,7 @@ def _usual_endpoints(options: Sequence[str]) -> list[str]:
 
 
 def _note(text: str) -> None:
-    sys.stderr.write(f"groundstation: {text}\n")
+    sys.stderr.write(f"mavhelm: {text}\n")
 
 
 def _shared(options: Sequence[str]) -> list[str]:

@@ -1,4 +1,4 @@
-"""`groundstation replay`: a telemetry log in the screens."""
+"""`mavhelm replay`: a telemetry log in the screens."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ exit codes: 0 after a session, 2 for wrong arguments or a file that is not a tel
 def build_replay_parser() -> CommandLineParser:
     """Return the parser."""
     parser = CommandLineParser(
-        prog="groundstation replay",
+        prog="mavhelm replay",
         description="Show a telemetry log in the screens.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -63,7 +63,7 @@ def _factor(text: str) -> float:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run `groundstation replay`; return the exit code."""
+    """Run `mavhelm replay`; return the exit code."""
     return run_local(build_replay_parser(), arguments, _replay)
 
 

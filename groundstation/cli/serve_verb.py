@@ -1,4 +1,4 @@
-"""`groundstation serve`: a station without a screen, for verbs, `groundstation attach` and browsers of this machine."""
+"""`mavhelm serve`: a station without a screen, for verbs, `mavhelm attach` and browsers of this machine."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ exit codes: 0 after its end, 1 if it crashed, 2 for wrong arguments
 def build_parser() -> CommandLineParser:
     """Return the parser."""
     parser = CommandLineParser(
-        prog="groundstation serve",
-        description="Run a station that verbs and `groundstation attach` use.",
+        prog="mavhelm serve",
+        description="Run a station that verbs and `mavhelm attach` use.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -52,13 +52,13 @@ def build_parser() -> CommandLineParser:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run `groundstation serve`; return the exit code."""
+    """Run `mavhelm serve`; return the exit code."""
     return run_local(build_parser(), arguments, _serve)
 
 
 def _serve(options: argparse.Namespace) -> int:
     if not options.headless and not options.web:
-        raise UsageError("give --headless or --web; `groundstation --keep` opens a screen whose station survives it")
+        raise UsageError("give --headless or --web; `mavhelm --keep` opens a screen whose station survives it")
     settings = load_settings(options).settings
     try:
         make_folder()
@@ -121,6 +121,6 @@ def _station_options(settings: Settings, endpoints: Sequence[str], *, sitl: bool
 
 def _announce(endpoints: tuple[str, ...], launch: WebLaunch | None) -> None:
     where = " ".join(endpoints) or "no link yet"
-    print(f"station {os.getpid()} on {where}; `groundstation attach` opens a screen", file=sys.stderr, flush=True)
+    print(f"station {os.getpid()} on {where}; `mavhelm attach` opens a screen", file=sys.stderr, flush=True)
     if launch is not None:
         print(f"in a browser on this machine: {launch.url}", file=sys.stderr, flush=True)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 MAVPROXY_OPTIONS = {
     "--master": "write the endpoint without an option, e.g. udpin:127.0.0.1:14550",
     "--baudrate": "write serial:PATH:BAUD, e.g. serial:/dev/ttyUSB0:57600",
-    "--out": "the program `bridge` forwards to other ground stations",
+    "--out": "the program `mavhelm bridge` forwards to other ground stations",
     "--source-system": "use --system",
     "--logfile": "use --log-file",
     "--aircraft": "use --log-file",

@@ -1,4 +1,4 @@
-"""The verbs of `groundstation`, for --help. groundstation/verbs/table.py has what they do."""
+"""The verbs of `mavhelm`, for --help. groundstation/verbs/table.py has what they do."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ VERB_HELP = {
 LOCAL_HELP = {
     "config": "check, show, init or path of the config file",
     "attach": "drive or watch with a station that runs: after an SSH drop, or as a second screen",
-    "serve": "run a station without a screen, for verbs, `groundstation attach` and browsers",
+    "serve": "run a station without a screen, for verbs, `mavhelm attach` and browsers",
     "keys": "show what this terminal sends for keys",
     "replay": "show a telemetry log in the screens, with a timeline and search",
     "completion": "print a script that completes verbs in bash, zsh or fish",
@@ -58,4 +58,4 @@ RESERVED = frozenset({**VERB_HELP, **LOCAL_HELP})
 
 def verb_help() -> str:
     """Return the verbs as lines for --help."""
-    return "\n".join(f"  groundstation {name:<10} {text}" for name, text in {**VERB_HELP, **LOCAL_HELP}.items())
+    return "\n".join(f"  mavhelm {name:<10} {text}" for name, text in {**VERB_HELP, **LOCAL_HELP}.items())

@@ -105,7 +105,7 @@ def _endpoint_problems(name: str, value: Any, reserved: Collection[str]) -> Iter
     if not NAME.fullmatch(name):
         yield "a name has letters, digits, - _ . only, and begins with a letter or digit"
     if name in reserved:
-        yield f"`groundstation {name}` is a command; choose another name"
+        yield f"`mavhelm {name}` is a command; choose another name"
     texts = [value] if isinstance(value, str) else value
     if not isinstance(texts, list) or not texts or not all(isinstance(text, str) for text in texts):
         yield f"{_show(value)} is not {TEXTS}"

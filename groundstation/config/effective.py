@@ -96,6 +96,6 @@ def resolve_endpoints(texts: str | Sequence[str], settings: Settings) -> list[st
 
 def _check_endpoint(text: str, names: Collection[str]) -> None:
     if ":" not in text and "/" not in text:
-        hint = f", nor a name of [endpoints]; {suggest(text, names)}" if names else " (groundstation --help lists them)"
+        hint = f", nor a name of [endpoints]; {suggest(text, names)}" if names else " (mavhelm --help lists them)"
         raise EndpointError(f"{text!r} is not an endpoint such as {DEFAULT_ENDPOINT}{hint}")
     parse_endpoint(text)

@@ -63,15 +63,15 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     reduce_motion: Annotated[bool, Option("--reduce-motion")] = False
     """Nothing on the screen moves by itself: no spinners, no animations, no blinking cursor."""
     keep: Annotated[bool, Option("--keep")] = False
-    """Keep the station when the screen is killed or hung up, as by SSH: it goes neutral; `groundstation attach`."""
+    """Keep the station when the screen is killed or hung up, as by SSH: it goes neutral; `mavhelm attach`."""
     folder: Annotated[str | None, Option("--folder", "FOLDER", "that of the log file")] = None
     """Folder in which the screens save files."""
     log_file: Annotated[str | None, Option("--log-file", "FILE", "groundstation.log in the user's log folder")] = None
     """Log of the program itself."""
     dialect: Annotated[str | None, Option("--dialect", "FILE.xml", "the built-in one alone")] = None
     """MAVLink definitions of a vehicle that sends messages of its own."""
-    sign_key: Annotated[str | None, Option("--sign-key", "NAME", "the one that `groundstation sign use` chose")] = None
-    """Key that signs what we send; `groundstation sign list` shows all."""
+    sign_key: Annotated[str | None, Option("--sign-key", "NAME", "the one that `mavhelm sign use` chose")] = None
+    """Key that signs what we send; `mavhelm sign list` shows all."""
     require_signing: Annotated[bool, Option("--require-signing")] = False
     """Ignore everything that is not signed with a key of ours. Else only what has the ids of a system that signs."""
     param_docs: Annotated[str | None, Option("--param-docs", "FILE", "those in the configuration folder")] = None
@@ -85,7 +85,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     record_folder_size: Annotated[int, msgspec.Meta(ge=1, le=1_000_000)] = 2000
     """MB of all recordings in the folder; the oldest are removed."""
     endpoints: dict[str, str | tuple[str, ...]] = {}
-    """Names for endpoints: `groundstation field` opens what `field` names, one endpoint or a list."""
+    """Names for endpoints: `mavhelm field` opens what `field` names, one endpoint or a list."""
     groups: dict[str, str | tuple[str, ...]] = {}
     """Groups of vehicles for `--group` of verbs: system ids, ranges, patterns of names, as text or a list of texts."""
     keys: dict[str, Any] = {}

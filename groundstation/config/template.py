@@ -1,4 +1,4 @@
-"""The commented file that `groundstation config init` writes, with every setting and its default."""
+"""The commented file that `mavhelm config init` writes, with every setting and its default."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from groundstation.config.settings import ROWS, SettingRow
 WIDTH = 116
 
 HEAD = """\
-# Settings of the ground station: `groundstation config check` checks this file, `config show` prints what holds.
+# Settings of the ground station: `mavhelm config check` checks this file, `config show` prints what holds.
 #
 # A line like "#key = value", without a space after #, is a setting: remove the # to set it. The value shown is the
 # default, or an example if there is no default. The command line and MAVHELM_ENDPOINT win over this file.

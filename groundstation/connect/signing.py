@@ -31,7 +31,7 @@ def open_signing(now: float, *, key: str | None = None, required: bool = False) 
 
 
 class StationSigning:
-    """The keys of a station while it runs: it takes over what `groundstation sign` changes."""
+    """The keys of a station while it runs: it takes over what `mavhelm sign` changes."""
 
     def __init__(self, now: float, *, key: str | None = None, required: bool = False) -> None:
         """Read the keys, and what the last run remembers. `key` and `required`: as above. Raises SigningError."""
@@ -96,5 +96,5 @@ def _choose(ring: KeyRing, key: str | None, required: bool) -> KeyRing:
             raise SigningError(f"--sign-key {key}: there is no such key in {path}; there are: {known}")
         ring = ring.choose(key)
     if required and not ring.keys:
-        raise SigningError(f"require_signing: there is no key in {path}; `groundstation sign new NAME` makes one")
+        raise SigningError(f"require_signing: there is no key in {path}; `mavhelm sign new NAME` makes one")
     return ring

@@ -145,7 +145,7 @@ def our_id(facts: DoctorFacts) -> ChainFinding:
             f"the vehicle obeys ground station {wanted} only, this is {facts.system}", f"use --system {wanted}"
         )
     if facts.signs:
-        return warn("the vehicle signs with a key that is not here", "groundstation sign install NAME --words")
+        return warn("the vehicle signs with a key that is not here", "mavhelm sign install NAME --words")
     return ok(f"{facts.system}, nobody else has it{', signed both ways' if facts.verified else ''}")
 
 

@@ -26,7 +26,7 @@ def _to(text: str, *words: str) -> Advice:
 
 ADVICE: tuple[Advice, ...] = (
     # Our rover
-    _to("install a key: groundstation sign install (docs/keys.md)", "not signed"),
+    _to("install a key: mavhelm sign install (docs/keys.md)", "not signed"),
     _to("restart the vehicle", "terminated"),
     _to("release the emergency stop on Drive", "emergency stop"),
     _to("check power and wiring of the motor driver, then restart", "motor driver"),

@@ -46,4 +46,4 @@ FORMATS: Mapping[str, Format] = {
     "jsonl": Format(JsonExport, "one JSON object a line for each message"),
     "tlog": Format(TlogExport, "that part as a log again", keeps_unknown=True),
 }
-"""Option of `groundstation export` -> its format."""
+"""Option of `mavhelm export` -> its format."""

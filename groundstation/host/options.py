@@ -25,7 +25,7 @@ def open_screen_pipe(parser: argparse.ArgumentParser) -> tuple[socket.socket, ar
     """
     for number in (signal.SIGINT, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
-    given = argparse.ArgumentParser(prog=parser.prog, description="Started by `groundstation`, not by hand.")
+    given = argparse.ArgumentParser(prog=parser.prog, description="Started by `mavhelm`, not by hand.")
     given.add_argument("--fd", type=int, required=True, help="our end of the pipe, which brings all other arguments")
     pipe = socket.socket(fileno=given.parse_args().fd)
     pipe.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)

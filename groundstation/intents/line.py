@@ -6,7 +6,7 @@ from groundstation.intents.base import Intent
 
 
 class RunLine(Intent, frozen=True):
-    """Run a verb of `groundstation` in the station, for the vehicle that the operator saw."""
+    """Run a verb of `mavhelm` in the station, for the vehicle that the operator saw."""
 
     request: int
     """By which LineView reports how it stands; see ui/display/request_numbers.py."""

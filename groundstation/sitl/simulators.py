@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import msgspec
 
 DEFAULT_SYSTEM = 1
-"""System id of `vehicle --sim` without --system."""
+"""System id of `mavhelm vehicle --sim` without --system."""
 
 
 class SimulatorRow(msgspec.Struct, frozen=True):
@@ -19,7 +19,7 @@ class SimulatorRow(msgspec.Struct, frozen=True):
     label: str
     help: str
     options: tuple[tuple[str, ...], ...]
-    """Options of `vehicle --sim`, one tuple for each process."""
+    """Options of `mavhelm vehicle --sim`, one tuple for each process."""
 
 
 SIMULATORS: tuple[SimulatorRow, ...] = (

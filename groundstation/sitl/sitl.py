@@ -1,4 +1,4 @@
-"""Runs the simulated rover (`vehicle --sim`) as a child process that ends with this one. Imports nothing of it."""
+"""Runs the simulated rover (`mavhelm vehicle --sim`) as a child process that ends with it. Imports nothing of it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def free_port() -> int:
 
 
 class Simulator:
-    """One `vehicle --sim`. Its output is kept; the last line is the reason when it exits.
+    """One `mavhelm vehicle --sim`. Its output is kept; the last line is the reason when it exits.
 
     It records its drives, as a real rover does, so that they can be listed and downloaded until it ends.
     """

@@ -22,7 +22,7 @@ ANSWER_WITHIN = 0.3
 MAX_ANSWER = 1 << 16
 """Bytes of the largest answer."""
 
-ATTACH = "groundstation attach"
+ATTACH = "mavhelm attach"
 """What to do where a station of one's own has the port or device that a screen opens."""
 
 MAX_NAMES = 3

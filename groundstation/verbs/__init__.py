@@ -1,4 +1,4 @@
-"""Verbs of the command line: `groundstation param get`, each one thing with one vehicle, without a screen.
+"""Verbs of the command line: `mavhelm param get`, each one thing with one vehicle, without a screen.
 
 To add or change:
 - a command without a screen: `groundstation/verbs/table.py`, `VERBS`, and its function in a module beside it; a new

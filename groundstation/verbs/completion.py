@@ -1,7 +1,7 @@
-"""`groundstation completion`: a script for a shell that completes verbs, actions, options and names.
+"""`mavhelm completion`: a script for a shell that completes verbs, actions, options and names.
 
 It is made from the table of verbs. Names of parameters, modes and vehicles come from a station that runs, by
-`groundstation completion --names`, which opens no link; without a station there are the names of usual modes. bash and
+`mavhelm completion --names`, which opens no link; without a station there are the names of usual modes. bash and
 zsh share the rules that say what is proposed where. No shell expands a name of a vehicle, and one that is no PLAIN_NAME
 is left out twice, by the program and by the script.
 """
@@ -28,7 +28,7 @@ MANY = ("--all", "--group")
 """Options of those that may be for many vehicles."""
 
 _BASH = """\
-# completion of groundstation for bash: eval "$(groundstation completion bash)"
+# completion of mavhelm for bash: eval "$(mavhelm completion bash)"
 _groundstation() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local verb=${COMP_WORDS[1]} action=${COMP_WORDS[2]} at=$COMP_CWORD
@@ -55,12 +55,12 @@ _groundstation() {
         COMPREPLY=(./*)
     fi
 }
-complete -o default -F _groundstation groundstation
+complete -o default -F _groundstation mavhelm
 """
 """Where it proposes nothing, bash proposes files (-o default). It never expands a name: `compgen -W` would run what
 is in it, so that words are compared letter by letter. If a file begins with - or ~, all get ./ before them."""
 _ZSH = """\
-# completion of groundstation for zsh: eval "$(groundstation completion zsh)"
+# completion of mavhelm for zsh: eval "$(mavhelm completion zsh)"
 (( $+functions[compdef] )) || { autoload -U +X compinit && compinit }
 _groundstation() {
     local current=$words[CURRENT] previous=$words[CURRENT-1] verb=$words[2] action=$words[3] at=$((CURRENT - 1))
@@ -84,12 +84,12 @@ _groundstation() {
         _default
     fi
 }
-compdef _groundstation groundstation
+compdef _groundstation mavhelm
 """
 
 
 _FISH = """\
-# completion of groundstation for fish: groundstation completion fish | source
+# completion of mavhelm for fish: mavhelm completion fish | source
 function __groundstation_dashed # whether a file here would look like an option
     set -l token (commandline -ct)
     set -l found ./-*
@@ -99,7 +99,7 @@ function __groundstation_files
     set -l token (commandline -ct)
     complete -C "'' $token" | string match -v -- '-*'
 end
-complete -c groundstation -f
+complete -c mavhelm -f
 """
 _FISH_FILES = (
     ("; and not __groundstation_dashed", " -r -F"),
@@ -170,26 +170,26 @@ def _station_names(verb: str, action: VerbAction) -> str:
 
 
 def _fish_lines(helps: Mapping[str, str]) -> Iterator[str]:
-    yield f"complete -c groundstation -s v -l vehicle -x -a {_quote(_fish_names(VEHICLES))}"
+    yield f"complete -c mavhelm -s v -l vehicle -x -a {_quote(_fish_names(VEHICLES))}"
     for verb, text in helps.items():
-        yield f"complete -c groundstation -n __fish_use_subcommand -a {verb} -d {_quote(text)}"
+        yield f"complete -c mavhelm -n __fish_use_subcommand -a {verb} -d {_quote(text)}"
         chosen = f"__fish_seen_subcommand_from {verb}"
         if verb in LOCAL:
-            yield f"complete -c groundstation -n {_quote(chosen)} -a {_quote(' '.join(LOCAL[verb]))}"
+            yield f"complete -c mavhelm -n {_quote(chosen)} -a {_quote(' '.join(LOCAL[verb]))}"
         elif verb not in VERBS:
             yield from _fish_file(chosen)
         actions = VERBS.get(verb, {})
         for name, action in actions.items():
             if name != ONLY:
                 first = f"{chosen}; and not __fish_seen_subcommand_from {' '.join(actions)}"
-                yield f"complete -c groundstation -n {_quote(first)} -a {name} -d {_quote(action.help)}"
+                yield f"complete -c mavhelm -n {_quote(first)} -a {name} -d {_quote(action.help)}"
             yield from _fish_action(verb, name, action)
 
 
 def _fish_action(verb: str, name: str, action: VerbAction) -> Iterator[str]:
     """Yield what fish shall propose behind a verb and its action."""
     both = f"__fish_seen_subcommand_from {verb}" + (f"; and __fish_seen_subcommand_from {name}" if name else "")
-    start = f"complete -c groundstation -n {_quote(both)}"
+    start = f"complete -c mavhelm -n {_quote(both)}"
     if kind := _station_names(verb, action):
         yield f"{start} -a {_quote(_fish_names(kind))}"
     if words := _words(action):
@@ -210,13 +210,13 @@ def _fish_action(verb: str, name: str, action: VerbAction) -> Iterator[str]:
 def _fish_file(condition: str, option: str = "") -> Iterator[str]:
     """Yield what proposes files, as the value of an option or as an argument."""
     for more, files in _FISH_FILES:
-        yield f"complete -c groundstation -n {_quote(condition + more)}{option}{files}"
+        yield f"complete -c mavhelm -n {_quote(condition + more)}{option}{files}"
 
 
 def _fish_names(kind: str) -> str:
     usual = " ".join(USUAL.get(kind, ()))
     otherwise = f"; or string split ' ' '{usual}'" if usual else ""
-    return f"(groundstation completion --names {kind} 2> /dev/null | string match -r '^{PLAIN_NAME}$'{otherwise})"
+    return f"(mavhelm completion --names {kind} 2> /dev/null | string match -r '^{PLAIN_NAME}$'{otherwise})"
 
 
 def _options(action: VerbAction) -> list[str]:

@@ -236,7 +236,7 @@ def _find_way(
         return choose_endpoints(options.endpoints, options.config, os.environ, note=output.note, reserved=VERBS)
 
     endpoints = choose() if options.endpoints or os.environ.get(ENDPOINT_VARIABLE) else []
-    hello = Hello(VERB, VERSION, f"groundstation {output.verb}", follows=action.follows)
+    hello = Hello(VERB, VERSION, f"mavhelm {output.verb}", follows=action.follows)
     station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
         return station, station.ready.endpoints
@@ -275,7 +275,7 @@ def _cancel_on_signals(caught: list[int]) -> None:
 
 def build_parser(verb: str, kind: type[CommandLineParser] = CommandLineParser) -> CommandLineParser:
     """Return the parser for the arguments behind a verb."""
-    parser = kind(prog=f"groundstation {verb}", epilog=EPILOG, formatter_class=_HELP)
+    parser = kind(prog=f"mavhelm {verb}", epilog=EPILOG, formatter_class=_HELP)
     if ONLY in VERBS[verb]:
         _add_arguments(parser, VERBS[verb][ONLY])
         parser.set_defaults(action=ONLY)

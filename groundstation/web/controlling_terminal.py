@@ -1,4 +1,4 @@
-"""Runs `groundstation` with its standard input as controlling terminal, whose end is then SIGHUP. Started by tab.py."""
+"""Runs `mavhelm` with its standard input as controlling terminal, whose end is then SIGHUP. Started by tab.py."""
 
 from __future__ import annotations
 

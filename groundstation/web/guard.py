@@ -68,7 +68,7 @@ class Guard(msgspec.Struct, frozen=True):
         if not self._may_origin(request):
             return RequestRefusal(403, "wrong Origin: only this server's own page may open it")
         if not self.admits(request):
-            return RequestRefusal(401, "no valid token: open the address that `groundstation serve --web` has printed")
+            return RequestRefusal(401, "no valid token: open the address that `mavhelm serve --web` has printed")
         return None
 
     def admits(self, request: WebRequest) -> bool:

@@ -40,7 +40,7 @@ class WebLaunch:
         self._process: subprocess.Popen[bytes] | None = None
 
     def start(self, arguments: Sequence[str]) -> None:
-        """Start to serve; `arguments` are those of `groundstation` for a tab. Raises OSError.
+        """Start to serve; `arguments` are those of `mavhelm` for a tab. Raises OSError.
 
         Before this process forks: the port must be the server's alone.
         """

@@ -217,7 +217,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Serve the tabs of one station; the token comes as the first line of standard input."""
     parser = argparse.ArgumentParser(prog="groundstation.web.server")
     parser.add_argument("--fd", type=int, required=True, help="the socket that listens")
-    parser.add_argument("rest", nargs="*", help="arguments of `groundstation` for a tab")
+    parser.add_argument("rest", nargs="*", help="arguments of `mavhelm` for a tab")
     options: Any = parser.parse_args(arguments)
     parent = sys.stdin.fileno()
     token = os.read(parent, 256).decode().strip()

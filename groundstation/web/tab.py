@@ -1,4 +1,4 @@
-"""One tab: a pseudo-terminal with `groundstation attach` in it, as a terminal window has.
+"""One tab: a pseudo-terminal with `mavhelm attach` in it, as a terminal window has.
 
 The screen cannot tell a tab from a terminal: the same keys, timers and pings. The end of the tab closes the terminal,
 which means neutral at once.
@@ -36,7 +36,7 @@ _OTHERS = ("TMUX", "TMUX_PANE", "STY", "COLUMNS", "LINES", "TERM_PROGRAM", "NO_C
 
 
 def screen_command(arguments: Sequence[str]) -> list[str]:
-    """Return the command that runs `groundstation` with these arguments in the terminal that is its standard input."""
+    """Return the command that runs `mavhelm` with these arguments in the terminal that is its standard input."""
     return [sys.executable, "-P", "-m", "groundstation.web.controlling_terminal", *arguments]
 
 

@@ -32,11 +32,12 @@ log = logging.getLogger(__name__)
 
 EXAMPLES = """\
 examples:
-  bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550        an autopilot, for any number of ground stations
-  bridge serial:/dev/ttyACM0:921600 udpout:192.168.1.20:14550 udpin:127.0.0.1:14551
-  bridge udpin:0.0.0.0:14550 tcpin:0.0.0.0:5760 --json --tlog logs
-  bridge doctor serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550  what arrives there, and where it would go; sends nothing
-  bridge fleet --help, bridge router --help                    vehicles and ground stations over the internet
+  mavhelm bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550         an autopilot, for many ground stations
+  mavhelm bridge serial:/dev/ttyACM0:921600 udpout:192.168.1.20:14550 udpin:127.0.0.1:14551
+  mavhelm bridge udpin:0.0.0.0:14550 tcpin:0.0.0.0:5760 --json --tlog logs
+  mavhelm bridge doctor serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550  what arrives, where it would go; sends nothing
+  mavhelm bridge fleet --help                                          vehicles and ground stations over the internet:
+  mavhelm bridge router --help                                         certificates, and the router
 
 endpoints (two or more):
 {endpoints}
@@ -60,14 +61,14 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         from importlib.metadata import version
 
-        print(f"bridge (mavhelm) {version('mavhelm')}")
+        print(f"mavhelm bridge {version('mavhelm')}")
         parser.exit()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the bridge; return the exit code."""
     stdio.ensure_open()
-    return stdio.run_program("bridge", lambda: _run(list(sys.argv[1:] if argv is None else argv)))
+    return stdio.run_program("mavhelm bridge", lambda: _run(list(sys.argv[1:] if argv is None else argv)))
 
 
 def _run(arguments: list[str]) -> int:
@@ -86,7 +87,7 @@ def _run(arguments: list[str]) -> int:
         with ExitStack() as stack:
             asyncio.run(_serve(options, stack))
     except (DialectError, LinkError, RecorderError) as error:
-        parser.exit(2, f"bridge: {error}\n")
+        parser.exit(2, f"{parser.prog}: {error}\n")
     except KeyboardInterrupt:  # before the loop handles signals
         return 0
     return 0
@@ -165,7 +166,7 @@ def _endpoint(text: str) -> str:
 
 def _parser() -> CommandLineParser:
     parser = CommandLineParser(
-        prog="bridge",
+        prog="mavhelm bridge",
         description="Joins MAVLink endpoints: forwards frames by system and component id and changes none.",
         epilog=EXAMPLES.format(endpoints=endpoint_help()),
         formatter_class=argparse.RawDescriptionHelpFormatter,

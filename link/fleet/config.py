@@ -178,9 +178,9 @@ def _mismatch(endpoint: Endpoint, whose: dict[str, Any]) -> str | None:
     if whose.get("fleet") != endpoint.fleet:
         return f"is of the fleet {whose.get('fleet')}, not {endpoint.fleet}"
     if endpoint.side is Side.GROUND_STATION and role == VEHICLE_ROLE:
-        return f"is the file of a vehicle; make one for an operator: bridge fleet add operator NAME --role {'drive'}"
+        return "is the file of a vehicle; make one for an operator: mavhelm bridge fleet add operator NAME --role drive"
     if endpoint.side is Side.VEHICLE and role != VEHICLE_ROLE:
-        return "is the file of an operator; make one for this vehicle: bridge fleet add vehicle NAME"
+        return "is the file of an operator; make one for this vehicle: mavhelm bridge fleet add vehicle NAME"
     if role == VEHICLE_ROLE and name != endpoint.vehicle:
         return f"is the file of {name}; write {endpoint.locator}/{endpoint.fleet}/{name}"
     return None

@@ -95,7 +95,7 @@ class FleetTransport:
         """Start to connect."""
         self._loop, self._on_receive, self._on_disconnect = loop, on_receive, on_disconnect
         self._session.start()
-        remedy = f"`bridge fleet renew {self._name}` makes a new file"
+        remedy = f"`mavhelm bridge fleet renew {self._name}` makes a new file"
         if warning := warning_of(self._name, self._certificate, time.time(), remedy):
             log.warning("%s: %s", self.endpoint.text, warning)
         self._tick(loop)

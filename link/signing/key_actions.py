@@ -1,4 +1,4 @@
-"""What `vehicle key` and `groundstation sign` do with a key file."""
+"""What `mavhelm vehicle key` and `mavhelm sign` do with a key file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Options of `vehicle key` and `groundstation sign` for argparse: how a secret is shown, and how it is entered."""
+"""Options of `mavhelm vehicle key` and `mavhelm sign` for argparse: how a secret is shown, and how it is entered."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The least that a vehicle in Python can do with a demand: receive it by UDP, set the motors.
 
-A reference for key_to_motor.py. It writes the log that `vehicle --motor-log` writes.
+A reference for key_to_motor.py. It writes the log that `mavhelm vehicle --motor-log` writes.
 
 Usage: python -m tests.benchmarks.bare_vehicle PORT MOTOR_LOG
 """

@@ -36,7 +36,7 @@ LATENCY_SECONDS, QUICK_LATENCY_SECONDS = 6.0, 2.0
 TOGETHER = (1, 8)
 """Frames in one datagram of the load."""
 
-BRIDGE, ONE_FRAME = "bridge", "bridge --one-frame"
+BRIDGE, ONE_FRAME = "bridge", "mavhelm bridge --one-frame"
 RELAY, FORWARDER = "C relay with CRC", "pymavlink forwarder"
 MAVPROXY = "MAVProxy"
 MAVLINK_ROUTER = {1: 153_813 / 190_755, 8: 208_306 / 190_755}

@@ -48,7 +48,7 @@ SIZE = (140, 45)
 BARE_PYTHON = [sys.executable, "-c", "input('bare python ready')"]
 DRIVING = {OURS_WIDE: "driving", OURS_NARROW: "driving at 80x24"}
 """Terminal -> the state in the table."""
-GROUND, VEHICLE, PYTHON, TEXTUAL = "groundstation", "vehicle --sim", "bare python", "bare Textual app"
+GROUND, VEHICLE, PYTHON, TEXTUAL = "mavhelm", "mavhelm vehicle --sim", "bare python", "bare Textual app"
 LOOP = "bare asyncio loop at 50 Hz"
 
 MULTIPLES = (
@@ -184,12 +184,12 @@ def _goals(costs: dict[str, Cost]) -> Iterator[Goal]:
     loop = f"bare loop at 50 Hz, {brief(median(costs[LOOP].cpu))} %"
     textual = f"{TEXTUAL} at rest, {brief(median(costs[TEXTUAL].cpu))} %"
     for what, name, limit in (
-        ("groundstation, CPU waiting", f"{GROUND}, waiting", 1.0),
-        ("groundstation, CPU with a rover that stands", f"{GROUND}, rover disarmed", 2.0),
-        ("groundstation, CPU driving", f"{GROUND}, driving", 8.0),
-        ("groundstation, CPU at 1000 messages/s", f"{GROUND}, {FLOOD} messages/s", 12.0),
-        ("groundstation, CPU at 1000 messages/s, Messages screen", f"{GROUND}, {FLOOD} messages/s, Messages", 20.0),
-        ("groundstation, CPU at 1000 messages/s, Charts with 24 lines", f"{GROUND}, {FLOOD} messages/s, Charts", 20.0),
+        ("mavhelm, CPU waiting", f"{GROUND}, waiting", 1.0),
+        ("mavhelm, CPU with a rover that stands", f"{GROUND}, rover disarmed", 2.0),
+        ("mavhelm, CPU driving", f"{GROUND}, driving", 8.0),
+        ("mavhelm, CPU at 1000 messages/s", f"{GROUND}, {FLOOD} messages/s", 12.0),
+        ("mavhelm, CPU at 1000 messages/s, Messages screen", f"{GROUND}, {FLOOD} messages/s, Messages", 20.0),
+        ("mavhelm, CPU at 1000 messages/s, Charts with 24 lines", f"{GROUND}, {FLOOD} messages/s, Charts", 20.0),
         ("vehicle, CPU disarmed", f"{VEHICLE}, disarmed", 1.2),
         ("vehicle, CPU driving", f"{VEHICLE}, driving", 2.0),
     ):
@@ -199,7 +199,7 @@ def _goals(costs: dict[str, Cost]) -> Iterator[Goal]:
         yield Goal(f"all processes, CPU driving, {terminal}", together, most, "%", reference=loop)
     used = median(costs[f"{GROUND}, driving"].pss)
     bare = f"{TEXTUAL}, {brief(median(costs[TEXTUAL].pss))} MiB"
-    yield Goal("groundstation driving, PSS of all its processes", used, GROUND_MEMORY, "MiB", reference=bare)
+    yield Goal("mavhelm driving, PSS of all its processes", used, GROUND_MEMORY, "MiB", reference=bare)
     bare = f"{PYTHON}, {brief(median(costs[PYTHON].rss))} MiB"
     yield Goal("vehicle, RSS", median(costs[f"{VEHICLE}, driving"].rss), 34, "MiB", reference=bare)
 

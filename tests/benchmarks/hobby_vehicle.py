@@ -20,7 +20,7 @@ HEARTBEAT_PERIOD = 1.0
 
 
 class Motors:
-    """Writes the log that `vehicle --motor-log` writes."""
+    """Writes the log that `mavhelm vehicle --motor-log` writes."""
 
     def __init__(self, path: str) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)

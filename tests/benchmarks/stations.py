@@ -151,7 +151,7 @@ def run(options: Options) -> Report:
             _measure(seen[count], count, QUICK_WINDOW if options.quick else WINDOW)
     note = f"A link of the vehicle has {MAX_PEERS} places; a bridge before it serves more. "
     note += "One of them drives at 20 Hz. CPU: 100 % is one core. least: of the station that is told least."
-    table = Table("vehicle --sim with ground stations", [_row(*each) for each in seen.items()], note)
+    table = Table("mavhelm vehicle --sim with ground stations", [_row(*each) for each in seen.items()], note)
     goals = [Goal(f"vehicle, {count} stations reached", min(seen[count].reached), count, "", True) for count in COUNTS]
     alone = f"1 station, {brief(median(seen[1].cpu))} %"
     goals += [

@@ -57,7 +57,7 @@ def run(options: Options) -> Report:
             options.say(f"strangers: round {turn + 1} of {ROUNDS}, {kind}")
             _measure(seen[kind], kind, QUICK_WINDOW if options.quick else WINDOW)
     note = "CPU: 100 % is one core. stop: from the first disarm of a new ground station, repeated every 0.35 s."
-    table = Table("vehicle --sim under strangers", [_row(*each) for each in seen.items()], note)
+    table = Table("mavhelm vehicle --sim under strangers", [_row(*each) for each in seen.items()], note)
     calm = f"{NOBODY}, {brief(max(seen[NOBODY].stops))} ms"
     goals = [
         Goal(f"stop under {kind}, worst", max(each.stops), 1000.0, "ms", reference=calm)

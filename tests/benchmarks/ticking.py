@@ -1,6 +1,6 @@
 """Motors that turn nothing and record when each control cycle reached them; and the two reference loops.
 
-`vehicle --config` accepts `Motors` as the driver "tests.benchmarks.ticking:Motors" with a file to append to.
+`mavhelm vehicle --config` accepts `Motors` as the driver "tests.benchmarks.ticking:Motors" with a file to append to.
 
 Usage of the references: python -m tests.benchmarks.ticking asyncio|blocking FILE
 """

@@ -26,18 +26,18 @@ class Stays(NamedTuple):
 
 
 STAYS = (
-    Stays(r"groundstation (?:attach|replay)\b", "F1.*F10|Drive", CTRL_Q),
-    Stays(r"groundstation keys\b", "q", "q"),
-    Stays(r"groundstation serve --web\b", r"http://127\.0\.0\.1:\d+/\?token=\w+"),
-    Stays(r"groundstation serve --headless\b", r"station \d+ on "),
-    Stays(r"groundstation ros1\b", "publish to command or cmd_vel", codes=(130,)),
-    Stays(r"groundstation ros2\b", "node /mavhelm_1 at", codes=(130,)),
-    Stays(r"groundstation watch (?!.*--(?:until|for|count)\b)", r"\d", codes=(0, 130)),
-    Stays(r"groundstation(?! (?:[a-z]+[0-9]?)(?: |$))", "Drive", CTRL_Q),
-    Stays(r"groundstation control give\b", "waiting until", codes=(130,)),
-    Stays(r"(?:until )?\S*vehicle (?=--|udp)|GPIOZERO", "vehicle: ready"),
-    Stays(r"bridge router\b", "bridge router: ready"),
-    Stays(r"bridge (?=serial:|udp|tcp|zenoh:)", r'ready.*"system": 1,|\n *1 +1 +serial:'),
+    Stays(r"mavhelm (?:attach|replay)\b", "F1.*F10|Drive", CTRL_Q),
+    Stays(r"mavhelm keys\b", "q", "q"),
+    Stays(r"mavhelm serve --web\b", r"http://127\.0\.0\.1:\d+/\?token=\w+"),
+    Stays(r"mavhelm serve --headless\b", r"station \d+ on "),
+    Stays(r"mavhelm ros1\b", "publish to command or cmd_vel", codes=(130,)),
+    Stays(r"mavhelm ros2\b", "node /mavhelm_1 at", codes=(130,)),
+    Stays(r"mavhelm watch (?!.*--(?:until|for|count)\b)", r"\d", codes=(0, 130)),
+    Stays(r"mavhelm(?! (?:[a-z]+[0-9]?)(?: |$))", "Drive", CTRL_Q),
+    Stays(r"mavhelm control give\b", "waiting until", codes=(130,)),
+    Stays(r"(?:until )?\S*mavhelm vehicle (?=--|udp)|GPIOZERO", "vehicle: ready"),
+    Stays(r"mavhelm bridge router\b", "bridge router: ready"),
+    Stays(r"mavhelm bridge (?=serial:|udp|tcp|zenoh:)", r'ready.*"system": 1,|\n *1 +1 +serial:'),
     Stays(r"python own_sensor.py", "water to udpout"),
     Stays(r"roscore\b", "started core service"),
     Stays(r"rostopic echo\b", "---", codes=(0, 130)),
@@ -47,7 +47,7 @@ STAYS = (
 
 
 NEEDS = (
-    (r"roscore\b|groundstation ros1\b|/usr/bin/python3 docs/examples/command_node", "roscore"),
+    (r"roscore\b|mavhelm ros1\b|/usr/bin/python3 docs/examples/command_node", "roscore"),
     (r"rostopic\b", "rostopic"),
 )
 """Begin of a command -> a program that a laptop may lack: there it is left out."""
@@ -68,8 +68,8 @@ def words_of(printed: str) -> str:
 
 
 ASKS = (
-    Asks(r"groundstation sign install \S+ --words", "word 1 of 24", words_of),
-    Asks(r"\S*vehicle motor-test\b", r"\?", lambda _: "y\n"),
+    Asks(r"mavhelm sign install \S+ --words", "word 1 of 24", words_of),
+    Asks(r"\S*mavhelm vehicle motor-test\b", r"\?", lambda _: "y\n"),
 )
 
 

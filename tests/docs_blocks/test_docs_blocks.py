@@ -25,7 +25,7 @@ EXPLAINED = {
     "time": 4,  # performance: an hour; reliability: the soak, the mutation run and the rounds on a late machine
 }
 """Kind of reason -> how many blocks are explained with it. A new one is counted here, in the same change."""
-OURS = re.compile(r"^\s*(?:\$ )?(?:groundstation|vehicle|bridge|python -m|pip|sudo|make)\b", re.MULTILINE)
+OURS = re.compile(r"^\s*(?:\$ )?(?:mavhelm|python -m|pip|sudo|make)\b", re.MULTILINE)
 TIMEOUT = 900
 """s; the page of all verbs takes 2 minutes on an idle machine."""
 
@@ -53,8 +53,8 @@ class TestPages:
     @pytest.mark.parametrize(
         ("block", "says"),
         [
-            ("```sh\ngroundstation config check --strict\n```\n", "unrecognized arguments: --strict"),
-            ("```sh\nbridge serial:/dev/ttyUSB0:57600 --tlogs logs\n```\n", "it ended with exit code 2"),
+            ("```sh\nmavhelm config check --strict\n```\n", "unrecognized arguments: --strict"),
+            ("```sh\nmavhelm bridge serial:/dev/ttyUSB0:57600 --tlogs logs\n```\n", "it ended with exit code 2"),
             ("```sh\nsudo reboot\n```\n", "explain the block"),
             ("```sh\necho 17 apples\n```\n<!-- output of: echo 17 apples -->\n```\n3 pears\n```\n", "3 pears"),
         ],
@@ -83,7 +83,7 @@ def test_each_block_with_a_command_is_a_shell_block() -> None:
 
 
 def shows_command(block: Block) -> bool:
-    return block.language == "" and OURS.search(block.text.removeprefix("$ bridge doctor")) is not None
+    return block.language == "" and OURS.search(block.text.removeprefix("$ mavhelm bridge doctor")) is not None
 
 
 def test_comments_and_indentation_of_a_block() -> None:

@@ -43,7 +43,7 @@ def make_fleet(folder: Path, hosts: Sequence[str] = LOCALHOST, *, quic: bool = F
 
 
 class RouterProcess:
-    """`bridge router`, which can be frozen, killed and started again."""
+    """`mavhelm bridge router`, which can be frozen, killed and started again."""
 
     def __init__(self, fleet: Path, stack: ExitStack, *, within: Sequence[str] = (), link: str = "") -> None:
         """`within`: the command that runs it in a network namespace; `link`: the locator of another router."""

@@ -1,4 +1,4 @@
-"""A router, a simulated rover, `groundstation ros2` and another node, for its tests."""
+"""A router, a simulated rover, `mavhelm ros2` and another node, for its tests."""
 
 from __future__ import annotations
 

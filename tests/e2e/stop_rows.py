@@ -213,7 +213,7 @@ class Pressed:
     """A verb as a program of its own."""
 
     def __init__(self, name: str, *options: str) -> None:
-        """Start `groundstation name options`."""
+        """Start `mavhelm name options`."""
         self.began = time.monotonic()
         command = [sys.executable, "-m", "groundstation", name, *options]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -44,6 +44,5 @@ def test_a_dumb_terminal_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch)
     code, shown = in_terminal(["--sitl"])
     assert code == 2
     assert shown == (
-        "groundstation: TERM=dumb cannot place text on the screen: run groundstation in a terminal such as xterm or "
-        "tmux\n"
+        "mavhelm: TERM=dumb cannot place text on the screen: run mavhelm in a terminal such as xterm or tmux\n"
     )

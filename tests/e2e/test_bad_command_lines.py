@@ -79,7 +79,7 @@ def assert_one_line(result: tuple[int, str, str], program: str, *names: str, cod
     ended, printed, complaint = result
     assert ended == code, result
     assert printed == ""
-    assert complaint.startswith(f"{program}: "), complaint
+    assert complaint.startswith((f"{program}: ", f"mavhelm {program}: ")), complaint  # the log, or the command line
     assert complaint.endswith("\n")
     assert complaint.count("\n") == 1, complaint
     assert "Traceback" not in complaint
@@ -124,7 +124,7 @@ NAMES = [endpoint for endpoint, _ in (*ENDPOINTS, *ABSENT)]
 
 @pytest.mark.parametrize(("endpoint", "names"), [*ENDPOINTS, *ABSENT], ids=NAMES)
 def test_endpoints_of_the_ground_station(endpoint: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "groundstation", *names)
+    assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "mavhelm", *names)
 
 
 @pytest.mark.parametrize(("endpoint", "names"), ENDPOINTS, ids=[endpoint for endpoint, _ in ENDPOINTS])
@@ -140,7 +140,7 @@ def test_endpoints_that_the_vehicle_cannot_have(endpoint: str, names: list[str],
 @pytest.mark.parametrize("kind", ["udp", "tcp"])
 def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None:
     endpoint = f"{kind}in:127.0.0.1:{taken[kind]}"
-    assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "groundstation", endpoint, "in use")
+    assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "mavhelm", endpoint, "in use")
     assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", endpoint, "in use", code=1)
 
 
@@ -161,8 +161,8 @@ def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None
         ("--speed 60", ["'60'", "0.1 to 1", "60 % is 0.6"]),
         ("--dialect none.xml", ["none.xml", "no such file", "name the XML file"]),
         ("help", ["did you mean --help?"]),
-        ("drve", ["did you mean `groundstation drive`?"]),
-        ("attach", ["no station runs here", "`groundstation` or `groundstation serve --headless` starts one"]),
+        ("drve", ["did you mean `mavhelm drive`?"]),
+        ("attach", ["no station runs here", "`mavhelm` or `mavhelm serve --headless` starts one"]),
         ("replay none.tlog", ["none.tlog", "no such file", "name a telemetry log"]),
         ("replay /etc/passwd", ["/etc/passwd", "is not a telemetry log"]),
         ("export none.tlog --csv out", ["none.tlog", "no such file", "name a telemetry log"]),
@@ -173,16 +173,16 @@ def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None
     ],
 )
 def test_options_of_the_ground_station(words: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run_in_terminal(["groundstation", *words.split()], tmp_path), "groundstation", *names)
+    assert_one_line(run_in_terminal(["groundstation", *words.split()], tmp_path), "mavhelm", *names)
 
 
 @pytest.mark.parametrize(
     ("words", "names"),
     [
         ("--sim --fly", ["--fly"]),
-        ("chek rover.toml", ["'chek'", "did you mean `vehicle check`?"]),
-        ("help", ["'help'", "did you mean vehicle --help?"]),
-        ("--config none.toml", ["none.toml", "No such file", "`vehicle init none.toml` writes a template"]),
+        ("chek rover.toml", ["'chek'", "did you mean `mavhelm vehicle check`?"]),
+        ("help", ["'help'", "did you mean mavhelm vehicle --help?"]),
+        ("--config none.toml", ["none.toml", "No such file", "`mavhelm vehicle init none.toml` writes a template"]),
         ("--sim --system 0", ["'0'", "1 to 255"]),
         ("--sim --system 300", ["'300'", "1 to 255"]),
         ("--sim --param SPEED=9", ["'SPEED'"]),
@@ -206,7 +206,7 @@ def test_options_of_the_vehicle(words: str, names: list[str], tmp_path: Path) ->
     [
         ("--config bridge.toml", ["unknown option --config"]),
         ("--tlg logs udpin:127.0.0.1:14550", ["unknown option --tlg", "did you mean --tlog?"]),
-        ("doctr udpin:127.0.0.1:14550", ["'doctr'", "did you mean `bridge doctor`?"]),
+        ("doctr udpin:127.0.0.1:14550", ["'doctr'", "did you mean `mavhelm bridge doctor`?"]),
         ("udpin:127.0.0.1:14550", ["two endpoints or more are needed, for example serial:"]),
     ],
 )
@@ -228,23 +228,23 @@ def test_a_verb_says_why_it_hears_no_vehicle(scheme: str, names: list[str], tmp_
     endpoint = scheme.format(port=port)
     result = run(["groundstation", "status", "--wait", "2", "-e", endpoint], tmp_path)
     says = [name.format(port=port) for name in names]
-    assert_one_line(result, "groundstation", f"no vehicle on {endpoint} within 2 s", *says, code=3)
+    assert_one_line(result, "mavhelm", f"no vehicle on {endpoint} within 2 s", *says, code=3)
 
 
 def test_a_terminal_that_cannot_place_text(tmp_path: Path) -> None:
     result = run_in_terminal(["groundstation", "udpin:127.0.0.1:14999"], tmp_path, term="dumb")
-    assert_one_line(result, "groundstation", "TERM=dumb", "run groundstation in a terminal such as xterm or tmux")
+    assert_one_line(result, "mavhelm", "TERM=dumb", "run mavhelm in a terminal such as xterm or tmux")
 
 
 def test_not_a_terminal(tmp_path: Path) -> None:
-    assert_one_line(run(["groundstation", "udpin:127.0.0.1:14999"], tmp_path), "groundstation", "is not a terminal")
+    assert_one_line(run(["groundstation", "udpin:127.0.0.1:14999"], tmp_path), "mavhelm", "is not a terminal")
 
 
 def test_a_terminal_that_is_too_small(tmp_path: Path) -> None:
     result = run_in_terminal(["groundstation", "udpin:127.0.0.1:14999"], tmp_path, size=(38, 9))
-    assert_one_line(result, "groundstation", "38x9", "at least 40x10, better 80x24")
+    assert_one_line(result, "mavhelm", "38x9", "at least 40x10, better 80x24")
 
 
 def test_a_key_map_that_is_no_toml(tmp_path: Path) -> None:
     (tmp_path / "keys.toml").write_text("[keys\n")
-    assert_one_line(run_in_terminal(["groundstation", "--keys", "keys.toml"], tmp_path), "groundstation", "keys.toml")
+    assert_one_line(run_in_terminal(["groundstation", "--keys", "keys.toml"], tmp_path), "mavhelm", "keys.toml")

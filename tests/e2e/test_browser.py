@@ -43,7 +43,7 @@ RAMP, SLACK, TRY = 0.4, 0.25, 4.0
 
 
 class Rig:
-    """`groundstation serve --web` for a simulated rover."""
+    """`mavhelm serve --web` for a simulated rover."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self.relay = Relay()

@@ -26,7 +26,7 @@ pytestmark = [pytest.mark.e2e, pytest.mark.skipif(REASON is not None, reason=str
 TUNSETIFF, IFF_TUN, IFF_NO_PI = 0x400454CA, 1, 0x1000
 ROVER, OTHER, PORT = "10.8.0.2", "10.8.0.1", 14550
 DRIVES, DENIED, NO_VEHICLE = 0, 4, 3
-"""Exit codes of `groundstation arm`."""
+"""Exit codes of `mavhelm arm`."""
 
 
 class Tunnel:
@@ -101,7 +101,7 @@ class Rover:
         return vehicle
 
     def arm(self, who: str, endpoint: str = f"udpout:{ROVER}:{PORT}") -> int:
-        """Return the exit code of `groundstation arm` of somebody."""
+        """Return the exit code of `mavhelm arm` of somebody."""
         command = (*self.networks.within(who), sys.executable, "-m", "groundstation", "arm", "--wait", "8")
         return subprocess.run([*command, "--station", "never", "-e", endpoint]).returncode
 

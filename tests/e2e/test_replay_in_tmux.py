@@ -53,7 +53,7 @@ def test_a_log_has_the_terminal_until_it_is_killed_or_quit(tmux: Callable[..., T
 
 
 def find_replay(log: Path) -> int:
-    """Return the process id of `groundstation replay` of this log."""
+    """Return the process id of `mavhelm replay` of this log."""
     for each in Path("/proc").iterdir():
         with suppress(OSError):  # no process, or one that has ended meanwhile
             words = (each / "cmdline").read_bytes().split(bytes(1))

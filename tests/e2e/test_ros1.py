@@ -110,7 +110,7 @@ def _signs(rig: Rig) -> tuple[int, ...]:
 
 
 def _nodes(rig: Rig) -> list[int]:
-    """Return the processes that run the node of `groundstation ros1`."""
+    """Return the processes that run the node of `mavhelm ros1`."""
     master = rig.env["ROS_MASTER_URI"].encode()
     numbers = (each for each in Path("/proc").iterdir() if each.name.isdecimal())
     found = (each for each in numbers if _reads(each / "cmdline", b"ros1/node.py") and _reads(each / "environ", master))

@@ -1,4 +1,4 @@
-"""`groundstation ros2` with a router, a simulated rover and another node as processes: all ends are stops."""
+"""`mavhelm ros2` with a router, a simulated rover and another node as processes: all ends are stops."""
 
 from __future__ import annotations
 

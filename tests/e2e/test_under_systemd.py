@@ -1,4 +1,4 @@
-"""The unit as `vehicle systemd-unit` prints it, under a real systemd: driven, killed, hung and stopped.
+"""The unit as `mavhelm vehicle systemd-unit` prints it, under a real systemd: driven, killed, hung and stopped.
 
 Only the watchdog has a longer timeout than printed, except in the test of a hang, because a machine that pauses is not
 a hang. The motor controller is an emulator on a terminal line. Its own timeout does not work, so that only a command
@@ -158,7 +158,7 @@ def stopped_by_safe_stop(service: Service, ended: int) -> None:
     """A restart does not move the rover: the demand continues, but the new daemon is not armed."""
     service.ground.wait(lambda: not service.turning(), "the wheels stand", WITHIN)
     service.ground.wait(lambda: service.back(ended), "it runs again", WITHIN)
-    assert (6, "vehicle safe-stop: sabertooth: motors neutral and without power") in service.said()
+    assert (6, "mavhelm vehicle safe-stop: sabertooth: motors neutral and without power") in service.said()
     assert not service.turning()
 
 
@@ -167,7 +167,9 @@ def test_a_mistake_in_the_file_is_in_the_journal_and_not_retried(service: Servic
     service.fail_to_start()
     assert (service.property("SubState"), service.property("NRestarts")) == ("failed", "0")
     assert (service.property("ExecMainStatus"), service.property("Result")) == ("2", "exit-code")
-    mistake = [priority for priority, text in service.said() if text.startswith(f"vehicle: {FILE}: Expected ']'")]
+    mistake = [
+        priority for priority, text in service.said() if text.startswith(f"mavhelm vehicle: {FILE}: Expected ']'")
+    ]
     assert mistake == [3]
 
 

@@ -42,7 +42,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
 
 @pytest.fixture
 def run(tmp_path: Path) -> Iterator[Callable[[str], None]]:
-    """Return a function that runs a printed command in a folder with the rover.toml of `vehicle init`."""
+    """Return a function that runs a printed command in a folder with the rover.toml of `mavhelm vehicle init`."""
     subprocess.run([sys.executable, "-m", "vehicle", "init"], cwd=tmp_path, env=ENVIRONMENT, check=True)
     with ExitStack() as stack:
 
@@ -73,7 +73,7 @@ def assert_found(station: GroundStation) -> None:
 @pytest.mark.parametrize("scheme", ["udpin", "tcpin", "udpout", "tcpout"])
 def test_the_command_for_this_machine(scheme: str, start: Start, run: Callable[[str], None]) -> None:
     station = start(f"{scheme}:127.0.0.1:{free_port()}")
-    (command,) = printed(station, "vehicle --")
+    (command,) = printed(station, "mavhelm vehicle --")
     run(command)
     assert_found(station)
 
@@ -82,11 +82,11 @@ def test_the_command_for_this_machine(scheme: str, start: Start, run: Callable[[
 def test_the_commands_for_other_machines(start: Start, run: Callable[[str], None]) -> None:
     """First the command that makes the station listen on all addresses, then each of the vehicle's."""
     first = start(f"udpin:127.0.0.1:{free_port()}")
-    (listen,) = printed(first, "groundstation udp")
+    (listen,) = printed(first, "mavhelm udp")
     first.type("\x11")
     assert first.ended() == 0
     station = start(*shlex.split(listen)[1:])
-    *real, simulated = printed(station, "vehicle --")
+    *real, simulated = printed(station, "mavhelm vehicle --")
     assert "--config rover.toml" in real[0]
     assert "--sim" in simulated
     run(real[0])
@@ -96,7 +96,7 @@ def test_the_commands_for_other_machines(start: Start, run: Callable[[str], None
 def test_bytes_that_are_not_mavlink_are_counted(start: Start) -> None:
     port = free_port()
     station = start(f"udpin:127.0.0.1:{port}")
-    printed(station, "vehicle --")
+    printed(station, "mavhelm vehicle --")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.sendto(b"Init ArduRover V4.7.0-dev" * 4, ("127.0.0.1", port))
         station.wait_for(lambda: b"100 bytes received, no MAVLink frame" in station.screen, PATIENCE, "bytes")

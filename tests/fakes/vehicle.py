@@ -35,7 +35,7 @@ Other classes around a vehicle are no stand-ins for one:
   `Vehicle` of tests/interop/test_mavsdk_vehicle.py starts MAVSDK as one; `VehicleMember` of tests/soak kills the first.
 - `Vehicle` of tests/benchmarks/bridge_stations.py sends ready frames, because building them would be measured, too;
   `VehicleInMemory` of tests/benchmarks/receive_path.py is the real one without its loop.
-- `MuteVehicle` and `Vehicles` of the groundstation tests are FakeVehicles.
+- `MuteVehicle` and `Vehicles` of the mavhelm tests are FakeVehicles.
 """
 
 from __future__ import annotations

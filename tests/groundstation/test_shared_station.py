@@ -139,9 +139,7 @@ def test_a_station_without_screens_is_silent_and_outlives_them() -> None:
     station = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=ROOT)
     try:
         assert station.stderr is not None
-        assert station.stderr.readline() == (
-            f"station {station.pid} on {endpoint}; `groundstation attach` opens a screen\n"
-        )
+        assert station.stderr.readline() == (f"station {station.pid} on {endpoint}; `mavhelm attach` opens a screen\n")
         wait_until(lambda: running_stations() == [station.pid])
         with on_line(FakeVehicle(), endpoint=endpoint) as vehicle:
             with Screen.attach(station.pid) as screen:
@@ -230,7 +228,7 @@ def test_several_stations_say_what_they_are(capsys: pytest.CaptureFixture[str]) 
         which = ", ".join(texts[pid] for pid in pids)
         assert describe_stations(pids) == which
         assert main(["arm"]) == 2
-        assert capsys.readouterr().err == f"groundstation: stations {which} run here: name one with --station PID\n"
+        assert capsys.readouterr().err == f"mavhelm: stations {which} run here: name one with --station PID\n"
         os.kill(second.client.pid, signal.SIGSTOP)
         try:
             texts[second.client.pid] = str(second.client.pid)  # it does not answer
@@ -253,9 +251,9 @@ def test_a_port_of_another_station_is_named(capsys: pytest.CaptureFixture[str]) 
             with pytest.raises(StationError) as caught:
                 StationClient.start([endpoint])
             held = f"{endpoint}: port {port} is in use; a station of yours ({pid}) has it: "
-            assert str(caught.value) == f"{held}groundstation attach"
+            assert str(caught.value) == f"{held}mavhelm attach"
             assert main(["status", "-e", endpoint, "--station", "never"]) == 2
-            assert capsys.readouterr().err == f"groundstation: {held}--station {pid} goes through it\n"
+            assert capsys.readouterr().err == f"mavhelm: {held}--station {pid} goes through it\n"
 
 
 def test_a_serial_port_of_another_station_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""`groundstation ros2` with zenoh-ros2-sdk of ROBOTIS as the other node: it finds the graph and drives."""
+"""`mavhelm ros2` with zenoh-ros2-sdk of ROBOTIS as the other node: it finds the graph and drives."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from tests.stranger.computers import Computer
 TYPED_BY_ROOT = "root"
 TYPED = ("", "network", "time", TYPED_BY_ROOT)
 """Kinds of reasons for not running a block that do not hold here: this installs and downloads."""
-SITL = "groundstation --sitl"
+SITL = "mavhelm --sitl"
 FIRST_SCREEN = "F1 Drive"
 READY = re.compile(r"DISARMED.*hold r", re.DOTALL)
 ARMED = re.compile(r"(?<!DIS)ARMED")

@@ -24,7 +24,7 @@ DRIVERS: dict[Kind, dict[str, DriverEntry]] = {
         ),
     },
 }
-"""Kind -> name of a driver -> all that the vehicle, `vehicle init` and `vehicle schema` need of it."""
+"""Kind -> name of a driver -> all that the vehicle, `mavhelm vehicle init` and `mavhelm vehicle schema` need of it."""
 
 FIRST_NUMBER: dict[Kind, int] = {"relay": 0, "servo": 9}
 """Kind -> the number in the example of a driver that gives none; SERVO_OUTPUT_RAW has the motors from 1."""

@@ -1,4 +1,4 @@
-"""`vehicle check`: check the configuration file and the hardware. Nothing moves: the motors stay without power."""
+"""`mavhelm vehicle check`: check the configuration file and the hardware. Nothing moves: the motors have no power."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""docs/dialect.md, built from the tables in the code. `vehicle dialect` prints it."""
+"""docs/dialect.md, built from the tables in the code. `mavhelm vehicle dialect` prints it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FENCE_NOTE = "RETURN_POINT, at most one, is only stored: the rover never drives 
 HEAD = f"""\
 # The MAVLink dialect of the vehicle
 
-Printed by `vehicle dialect > docs/dialect.md` from the tables in the code; a test compares the two.
+Printed by `mavhelm vehicle dialect > docs/dialect.md` from the tables in the code; a test compares the two.
 
 MAVLink 2 (version 1 is understood), component {COMPONENT} (autopilot), type ground rover, autopilot generic. The
 message set is pymavlink's common.xml with `dialects/rover.xml`. Who may send a message or a command:

@@ -1,4 +1,4 @@
-"""What `vehicle key` does: make, show, install, list, choose and revoke keys of MAVLink signing.
+"""What `mavhelm vehicle key` does: make, show, install, list, choose and revoke keys of MAVLink signing.
 
 A vehicle that runs takes a change within a second; revoked keys end at once.
 """
@@ -42,7 +42,7 @@ def new(options: argparse.Namespace) -> int:
     path = key_path(options)
     key = key_actions.make_key(path, options.name, ROLES[options.role])
     _report(f"{key} is in {path}")
-    return _show(key, options.shown_as, "install it at the ground station: groundstation sign install NAME")
+    return _show(key, options.shown_as, "install it at the ground station: mavhelm sign install NAME")
 
 
 @_one_line
@@ -70,7 +70,7 @@ def list_keys(options: argparse.Namespace) -> int:
     ring = load_keys(path)
     sys.stdout.writelines(f"{line}\n" for line in key_actions.format_list(ring, roles=True))
     if not ring.keys:
-        _report(f"there are no keys in {path}; `vehicle key new NAME` makes one")
+        _report(f"there are no keys in {path}; `mavhelm vehicle key new NAME` makes one")
     return DONE
 
 
@@ -104,10 +104,10 @@ def _show(key: SigningKey, shown_as: str | None, advice: str = "") -> int:
         _report(WARNING)
         sys.stdout.write(text)
     elif advice:
-        _report(f"--words, --qr or --hex of `vehicle key show {key.name}` show it; {advice}")
+        _report(f"--words, --qr or --hex of `mavhelm vehicle key show {key.name}` show it; {advice}")
     return DONE
 
 
 def _report(text: str) -> None:
-    sys.stderr.write(f"vehicle key: {text}\n")
+    sys.stderr.write(f"mavhelm vehicle key: {text}\n")
     sys.stderr.flush()

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the vehicle or a subcommand and return the exit code."""
     stdio.ensure_open()
-    return stdio.run_program("vehicle", lambda: _run_arguments(list(sys.argv[1:] if argv is None else argv)))
+    return stdio.run_program("mavhelm vehicle", lambda: _run_arguments(list(sys.argv[1:] if argv is None else argv)))
 
 
 def _run_arguments(arguments: list[str]) -> int:
@@ -86,7 +86,7 @@ def _load_config(options: argparse.Namespace, parser: CommandLineParser) -> Conf
     try:
         config = Config() if options.config is None else load(options.config)
     except RoverConfigError as error:
-        parser.exit(2, f"vehicle: {error}\n")
+        parser.exit(2, f"{parser.prog}: {error}\n")
     if options.motors:
         config = replace(config, motors={"driver": options.motors})
     if options.system is not None:

@@ -1,4 +1,4 @@
-"""`vehicle motor-test`: turn one motor slowly and briefly, to identify its wheel and direction."""
+"""`mavhelm vehicle motor-test`: turn one motor slowly and briefly, to identify its wheel and direction."""
 
 from __future__ import annotations
 

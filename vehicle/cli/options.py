@@ -20,23 +20,23 @@ GROUND_STATION = "udpout:127.0.0.1:14550"
 """The default link, to a ground station on this machine: 14550 is the usual port."""
 
 USAGE = """\
-usage: vehicle --sim [ENDPOINT ...]             a simulated rover, for a ground station on this machine
-       vehicle --config rover.toml              a rover with motors, as configured in the file
-       vehicle ENDPOINT ... --motors NAME       the same without a file, for drivers that need no settings
-       vehicle --help                           all options, with examples
+usage: mavhelm vehicle --sim [ENDPOINT ...]         a simulated rover, for a ground station on this machine
+       mavhelm vehicle --config rover.toml          a rover with motors, as configured in the file
+       mavhelm vehicle ENDPOINT ... --motors NAME   the same without a file, for drivers that need no settings
+       mavhelm vehicle --help                       all options, with examples
 """
 
 EXAMPLES = """\
 examples:
-  vehicle --sim                                  simulated rover; open `groundstation` beside it
-  vehicle --sim udpout:192.168.1.20:14550        ... for a ground station on another machine
-  vehicle --sim --param SPEED_MAX=3 --param DRIVE_TYPE=2     ... a faster one that steers like a car
-  vehicle --sim --param DRIVE_TYPE=4             ... one with mecanum wheels (3: omni), that also moves sideways
-  vehicle init                                   write rover.toml, with every setting and its description
-  vehicle check                                  check rover.toml and the hardware; nothing moves
-  vehicle doctor                                 the same with permissions, ports, power, clock, disk and service
-  vehicle --config rover.toml                    run with this file; options take precedence over it
-  vehicle udpin:0.0.0.0:14550 --motors my_car:Motors         use your own motor driver
+  mavhelm vehicle --sim                            simulated rover; open `mavhelm` beside it
+  mavhelm vehicle --sim udpout:192.168.1.20:14550  ... for a ground station on another machine
+  mavhelm vehicle --sim --param SPEED_MAX=3 --param DRIVE_TYPE=2   ... a faster one that steers like a car
+  mavhelm vehicle --sim --param DRIVE_TYPE=4       ... one with mecanum wheels (3: omni), that also moves sideways
+  mavhelm vehicle init                             write rover.toml, with every setting and its description
+  mavhelm vehicle check                            check rover.toml and the hardware; nothing moves
+  mavhelm vehicle doctor                           the same with permissions, ports, power, clock, disk and service
+  mavhelm vehicle --config rover.toml              run with this file; options take precedence over it
+  mavhelm vehicle udpin:0.0.0.0:14550 --motors my_car:Motors       use your own motor driver
 
 subcommands, each with its own --help:
 {subcommands}
@@ -49,8 +49,8 @@ motor drivers (--motors):
   MODULE:CLASS   a driver of your own
 
 exit codes: 0 requested stop (SIGTERM, Ctrl-C, SIGHUP), 1 a fault, also a link that cannot be opened, 2 an error on the
-command line or in the file, 7 `vehicle doctor` found a fault, 80 to 82 a ground station requested a restart of this
-program, a reboot of the computer, or its shutdown (REBOOT_ENABLE, docs/pi.md).
+command line or in the file, 7 `mavhelm vehicle doctor` found a fault, 80 to 82 a ground station requested a restart of
+this program, a reboot of the computer, or its shutdown (REBOOT_ENABLE, docs/pi.md).
 Before the program ends for any reason, the motors are set to neutral and disabled.
 """
 
@@ -66,16 +66,16 @@ class _Version(argparse.Action):
         from importlib.metadata import PackageNotFoundError, version
 
         try:
-            sys.stdout.write(f"vehicle (mavhelm) {version('mavhelm')}\n")
+            sys.stdout.write(f"mavhelm vehicle {version('mavhelm')}\n")
         except PackageNotFoundError:
-            sys.stdout.write("vehicle (mavhelm), not installed: run from source\n")
+            sys.stdout.write("mavhelm vehicle, not installed: run from source\n")
         parser.exit()
 
 
 def build_parser() -> CommandLineParser:
     """Return the parser of `vehicle` without a subcommand."""
     parser = CommandLineParser(
-        prog="vehicle",
+        prog="mavhelm vehicle",
         usage=USAGE.removeprefix("usage: ").rstrip(),
         description="The rover daemon: controlled by one ground station over MAVLink, it drives the motors safely.",
         epilog=EXAMPLES.format(
@@ -152,7 +152,7 @@ def _charge(text: str) -> float:
 OPTIONS: dict[str, dict[str, Any]] = {
     "endpoints": {"nargs": "*", "metavar": "ENDPOINT", "type": _endpoint,
                   "help": f"link to ground stations; with --sim {GROUND_STATION} by default"},
-    "--config": {"metavar": "FILE", "help": "configuration file; `vehicle init` writes a template"},
+    "--config": {"metavar": "FILE", "help": "configuration file; `mavhelm vehicle init` writes a template"},
     "--sim": {"action": "store_true", "help": "simulate motors, chassis, battery and sensors"},
     "--motors": {"metavar": "NAME", "help": "motor driver"},
     "--announce": {"action": "store_true",

@@ -1,4 +1,4 @@
-"""`vehicle safe-stop`: stop the motors that a killed vehicle left running. Reads [motors] and [accessories] only."""
+"""`mavhelm vehicle safe-stop`: stop the motors of a killed vehicle. Reads [motors] and [accessories] only."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def read_motor_table(path: str) -> dict[str, Any]:
     """Return [motors] of a file, unchecked. Raises TomlError."""
     table = read_toml(path).get("motors")
     if not isinstance(table, dict) or "driver" not in table:
-        raise TomlError(f"{path}: no driver in [motors]; see `vehicle check {path}`")
+        raise TomlError(f"{path}: no driver in [motors]; see `mavhelm vehicle check {path}`")
     return table
 
 
@@ -68,4 +68,4 @@ def _stop(motors: Mapping[str, Any]) -> None:
 
 
 def _log(severity: int, text: str) -> None:
-    sys.stderr.write(f"{journald.priority_prefix(severity)}vehicle safe-stop: {text}\n")
+    sys.stderr.write(f"{journald.priority_prefix(severity)}mavhelm vehicle safe-stop: {text}\n")

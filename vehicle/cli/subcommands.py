@@ -1,4 +1,4 @@
-"""The subcommands of the vehicle: `vehicle init`, `vehicle check` and others.
+"""The subcommands of the vehicle: `mavhelm vehicle init`, `mavhelm vehicle check` and others.
 
 To add a subcommand, add its function here and a row to SUBCOMMANDS, with its arguments.
 """
@@ -82,14 +82,14 @@ def run(arguments: Sequence[str]) -> int:
 
 def build_parser(name: str) -> CommandLineParser:
     """Return the parser for the arguments of a subcommand."""
-    parser = CommandLineParser(prog=f"vehicle {name}")
+    parser = CommandLineParser(prog=f"mavhelm vehicle {name}")
     SUBCOMMANDS[name].add_to(parser)
     return parser
 
 
 def help_lines() -> str:
     """Return the table as lines for --help."""
-    return "\n".join(f"  vehicle {name:<14} {subcommand.help}" for name, subcommand in SUBCOMMANDS.items())
+    return "\n".join(f"  mavhelm vehicle {name:<14} {subcommand.help}" for name, subcommand in SUBCOMMANDS.items())
 
 
 def _init(options: argparse.Namespace) -> int:
@@ -102,7 +102,7 @@ def _init(options: argparse.Namespace) -> int:
         raise SubcommandError(f"{options.file} exists already; choose another name, or remove it") from None
     except OSError as error:
         raise SubcommandError(f"{options.file}: {error.strerror}") from error
-    sys.stdout.write(f"wrote {options.file}; edit it, then run: vehicle check {options.file}\n")
+    sys.stdout.write(f"wrote {options.file}; edit it, then run: mavhelm vehicle check {options.file}\n")
     return DONE
 
 
@@ -185,7 +185,7 @@ def _motor_test(options: argparse.Namespace) -> int:
         if effective.damage:  # the motor could turn in another direction than with the vehicle's parameters
             raise SubcommandError(f"{effective.folder}: {effective.damage}")
         for problem in effective.left_out:
-            sys.stderr.write(f"vehicle motor-test: a saved parameter is not used: {problem}\n")
+            sys.stderr.write(f"mavhelm vehicle motor-test: a saved parameter is not used: {problem}\n")
         test = build_options(options.motor, options.throttle, options.time, effective.params)
         read_motor_table(options.config)
         if not options.yes:
@@ -197,9 +197,9 @@ def _motor_test(options: argparse.Namespace) -> int:
     except (RoverConfigError, RefusedError) as error:
         raise SubcommandError(str(error)) from error
     except MotorError as error:
-        sys.stderr.write(f"vehicle motor-test: {error}\n")
+        sys.stderr.write(f"mavhelm vehicle motor-test: {error}\n")
         return FAULT
-    sys.stderr.write(f"vehicle motor-test: {f'stopped by {ended.name}' if ended else 'done'}, motors neutral\n")
+    sys.stderr.write(f"mavhelm vehicle motor-test: {f'stopped by {ended.name}' if ended else 'done'}, motors neutral\n")
     return DONE
 
 

@@ -23,8 +23,8 @@ USER = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*|[0-9]+")
 PLAIN = re.compile(r"[A-Za-z0-9_/.:@%$+,=-]+")
 
 TEMPLATE = """\
-# Printed by `vehicle systemd-unit`. To install it:
-#   vehicle systemd-unit --config {typed} | sudo tee /etc/systemd/system/rover.service
+# Printed by `mavhelm vehicle systemd-unit`. To install it:
+#   mavhelm vehicle systemd-unit --config {typed} | sudo tee /etc/systemd/system/rover.service
 #   sudo systemctl daemon-reload && sudo systemctl enable --now rover
 # To follow its log: journalctl -u rover -f
 
@@ -109,8 +109,8 @@ POWER: dict[str, RebootRequest] = {"reboot": RebootRequest.REBOOT, "poweroff": R
 """Action of the computer -> exit code with which the daemon requests it."""
 
 POWER_TEMPLATE = """\
-# Printed by `vehicle systemd-unit --power {word}`. To install it:
-#   vehicle systemd-unit --power {word} | sudo tee /etc/systemd/system/rover-{word}.service
+# Printed by `mavhelm vehicle systemd-unit --power {word}`. To install it:
+#   mavhelm vehicle systemd-unit --power {word} | sudo tee /etc/systemd/system/rover-{word}.service
 #   sudo systemctl daemon-reload
 
 [Unit]
@@ -153,7 +153,7 @@ def build_unit(options: UnitOptions) -> str:
     groups = f"SupplementaryGroups={' '.join(options.groups)}\n" if options.groups else ""
     pwm = options.driver == PWM
     return TEMPLATE.format(
-        vehicle=f"{_quote(options.python)} -m vehicle",
+        vehicle=f"{_quote(options.python)} -m mavhelm vehicle",
         config=_quote(options.config),
         typed=shlex.quote(str(options.config)),
         user=f"User={options.user}" if options.user else "DynamicUser=yes",

@@ -33,7 +33,7 @@ class RoverConfigError(Exception):
     """The configuration file is invalid. Each of `problems` is one line: file, key, error and remedy."""
 
     def __init__(self, *problems: str) -> None:
-        more = f" (and {len(problems) - 1} more; see `vehicle check`)" if len(problems) > 1 else ""
+        more = f" (and {len(problems) - 1} more; see `mavhelm vehicle check`)" if len(problems) > 1 else ""
         super().__init__(problems[0] + more)
         self.problems = problems
 
@@ -82,7 +82,7 @@ def load(path: str | Path) -> Config:
         return _build(read_toml(path), str(path))
     except TomlError as error:
         absent = isinstance(error.__cause__, FileNotFoundError)
-        hint = f"; `vehicle init {path}` writes a template" if absent else ""
+        hint = f"; `mavhelm vehicle init {path}` writes a template" if absent else ""
         raise RoverConfigError(f"{error}{hint}") from error
 
 

@@ -1,4 +1,4 @@
-"""The JSON schema of rover.toml, for checks and completion in editors; `vehicle schema` prints it."""
+"""The JSON schema of rover.toml, for checks and completion in editors; `mavhelm vehicle schema` prints it."""
 
 from __future__ import annotations
 

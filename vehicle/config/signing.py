@@ -10,7 +10,7 @@ from link.transport.reach import is_interface_name
 
 
 class SigningSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Who may send. `vehicle key new NAME` makes a key; docs/security.md says what each choice costs."""
+    """Who may send. `mavhelm vehicle key new NAME` makes a key; docs/security.md says what each choice costs."""
 
     required: bool = False
     """Drop all that is not signed, on every link: who has no key cannot even watch. Needs a key."""

@@ -1,4 +1,4 @@
-"""The commented configuration file that `vehicle init` writes, with every key and its default."""
+"""The commented configuration file that `mavhelm vehicle init` writes, with every key and its default."""
 
 from __future__ import annotations
 
@@ -42,11 +42,12 @@ TOP: dict[str, Any] = {
 }
 
 HEAD = """\
-# Configuration of the vehicle. `vehicle --config rover.toml` runs with it, `vehicle check rover.toml` checks it.
+# Configuration of the vehicle. `mavhelm vehicle --config rover.toml` runs with it,
+# `mavhelm vehicle check rover.toml` checks it.
 #
 # A line like "#key = value", without a space after #, is a setting: remove the # to set it. The value shown is the
 # default, or an example if there is no default. An unknown key is an error, so that a typing error is not ignored.
-# Editors with JSON schema support can check and complete this file: vehicle schema > rover.schema.json
+# Editors with JSON schema support can check and complete this file: mavhelm vehicle schema > rover.schema.json
 
 """
 

@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 
 class DriverEntry(msgspec.Struct, frozen=True):
-    """One driver: where its class is, and what help and `vehicle init` show."""
+    """One driver: where its class is, and what help and `mavhelm vehicle init` show."""
 
     path: str
     """The class as "module:Class". The module is imported with the settings of the driver, on any computer: it imports
     its library only when it opens the hardware."""
     title: str = ""
-    """The hardware, for --help and the heading in the file of `vehicle init`."""
+    """The hardware, for --help and the heading in the file of `mavhelm vehicle init`."""
     example: Mapping[str, Any] = msgspec.field(default_factory=dict)
-    """Settings without a default, as `vehicle init` shows them."""
+    """Settings without a default, as `mavhelm vehicle init` shows them."""
     profile: Mapping[str, Any] = msgspec.field(default_factory=dict)
     """Settings that a known car has already: such a driver needs no settings in the file."""
     params: Mapping[str, float] = msgspec.field(default_factory=dict)
@@ -85,7 +85,7 @@ DRIVERS: dict[str, DriverEntry] = {
         example={"port": "/dev/serial0"},
     ),
 }
-"""Name of a driver -> all that the vehicle, `vehicle init`, `vehicle schema` and --help need of it."""
+"""Name of a driver -> all that the vehicle, `mavhelm vehicle init`, `mavhelm vehicle schema` and --help need of it."""
 
 
 def profile_settings(name: str) -> Mapping[str, Any]:
@@ -158,7 +158,7 @@ def _parse_settings(name: str, settings: Mapping[str, Any] | None) -> tuple[Any,
         if not own and (required := [each.encode_name for each in fields(kind) if each.required]):
             raise MotorSettingsError(
                 f"motor driver {name!r} needs settings, at least {', '.join(required)}: "
-                "[motors] of a file for --config, which `vehicle init` writes"
+                "[motors] of a file for --config, which `mavhelm vehicle init` writes"
             )
         return driver, convert(own, kind), common
     if own:

@@ -27,7 +27,7 @@ NOBODY = "everybody in the network can send here, so nobody may drive: {}, or se
 
 MISSING = "signing.private: there is no interface {} now; when it has come, restart the vehicle to trust it"
 
-NEW_KEY = "make a key with `vehicle key new NAME --state {}`"
+NEW_KEY = "make a key with `mavhelm vehicle key new NAME --state {}`"
 NO_STATE = "run the simulation with `--state FOLDER` and " + NEW_KEY.format("FOLDER")
 """What leads to a key. Keys are in the state folder, and a simulation has none unless it is told."""
 

@@ -225,7 +225,7 @@ class ParamViews:
         state = contact.state
         text = format_params(chosen, ParamForm(request.form), vehicle=state.system, component=state.component)
         if len(text) > MAX_TEXT:
-            return ParamExport(request.number, "", 0, "too many parameters for the screen: groundstation param save")
+            return ParamExport(request.number, "", 0, "too many parameters for the screen: mavhelm param save")
         return ParamExport(request.number, text, len(chosen), left_out=unset_text(unset))
 
     # ---- parts ----

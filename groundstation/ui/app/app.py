@@ -86,7 +86,7 @@ class ConsoleApp(App[int]):
     ) -> None:
         """`first` is the id of the screen that is shown at first, `first_request` the number of its first request.
 
-        `replay_options` are for `groundstation replay`, which shows logs that are opened here.
+        `replay_options` are for `mavhelm replay`, which shows logs that are opened here.
         """
         drawn_lines.free_with_widget()
         self._proxy = find_proxy()

@@ -1,4 +1,4 @@
-"""Command line: one line over the screen that is shown, for the verbs of `groundstation` and screens by name."""
+"""Command line: one line over the screen that is shown, for the verbs of `mavhelm` and screens by name."""
 
 from __future__ import annotations
 

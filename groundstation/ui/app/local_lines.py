@@ -47,7 +47,7 @@ def _quit(app: LocalPart, words: list[str]) -> None:
 def _set(app: LocalPart, words: list[str]) -> str | None:
     names = [each.value for each in ThemeName]
     if len(words) != 2 or words[0] != "theme" or words[1] not in names:
-        return f"set theme {'|'.join(names)}; other settings are in the file of `groundstation config`"
+        return f"set theme {'|'.join(names)}; other settings are in the file of `mavhelm config`"
     app.choose_theme(ThemeName(words[1]))
     return None
 

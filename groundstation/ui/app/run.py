@@ -50,8 +50,6 @@ def run(
             # No mouse events for widgets: mouse.py captures the mouse and discards its reports.
             code = app.run(mouse=False)
     if code is None:
-        sys.stderr.write(
-            f"groundstation: internal error: {log_file or 'run with --log-file: the log'} has the details\n"
-        )
+        sys.stderr.write(f"mavhelm: internal error: {log_file or 'run with --log-file: the log'} has the details\n")
         return 1
     return code

@@ -160,7 +160,7 @@ def _port_notes(each: PortRow) -> list[Cell]:
     facts = " · ".join(filter(None, (each.description, each.ids, each.driver)))
     notes = [dim(facts)] if facts else []
     if each.station:
-        notes.append(Cell(f"a station of yours ({each.station}) has it open: groundstation attach", AMBER))
+        notes.append(Cell(f"a station of yours ({each.station}) has it open: mavhelm attach", AMBER))
     elif each.holder:
         notes.append(Cell(f"{each.holder} has it open: stop it first", AMBER))
     elif not each.allowed:

@@ -64,10 +64,10 @@ class Welcome(Instrument[WelcomeValue]):
             [("   heard now: ", style(DIM)), (count, style(GREEN if value.heard else DIM, bold=True))],
             [],
             _advice("this machine", here),
-            _advice("on a rover of ours", f"vehicle --config rover.toml udpout:{address}:14550"),
+            _advice("on a rover of ours", f"mavhelm vehicle --config rover.toml udpout:{address}:14550"),
             _advice("on ArduPilot or PX4", f"send to {address}:14550; a radio shows below"),
             _advice("let the network in", "udpin:0.0.0.0:14550"),
-            _advice("from any shell", "groundstation --help"),
+            _advice("from any shell", "mavhelm --help"),
         ]
 
 

@@ -65,9 +65,9 @@ def _listening(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> I
     kind = "udpout" if endpoint.scheme == "udpin" else "tcpout"
     if is_loopback(endpoint.host):
         yield _text(f"Only programs on this machine can reach {endpoint.host}. In another terminal:")
-        yield _command(f"vehicle --sim {kind}:{_bracketed(endpoint.host)}:{endpoint.port}")
+        yield _command(f"mavhelm vehicle --sim {kind}:{_bracketed(endpoint.host)}:{endpoint.port}")
         yield _text(f"For vehicles on other machines, quit ({quit_key}) and start:")
-        yield _command(f"groundstation {endpoint.scheme}:0.0.0.0:{endpoint.port}")
+        yield _command(f"mavhelm {endpoint.scheme}:0.0.0.0:{endpoint.port}")
         return
     reachable = [*addresses[:MAX_ADDRESSES]] if endpoint.host in ANY_ADDRESSES else [endpoint.host]
     if not reachable:
@@ -75,9 +75,9 @@ def _listening(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> I
         return
     yield _text("On the computer of the vehicle, start the mavhelm daemon:")
     for host in reachable:
-        yield _command(f"vehicle --config rover.toml {kind}:{_bracketed(host)}:{endpoint.port}")
+        yield _command(f"mavhelm vehicle --config rover.toml {kind}:{_bracketed(host)}:{endpoint.port}")
     yield _text("To try the link without a rover, simulate one, there or here:")
-    yield _command(f"vehicle --sim {kind}:{_bracketed(reachable[0])}:{endpoint.port}")
+    yield _command(f"mavhelm vehicle --sim {kind}:{_bracketed(reachable[0])}:{endpoint.port}")
     protocol = kind[:3].upper()
     yield _text(f"Other autopilots: send to {reachable[0]}, {protocol} port {endpoint.port}; firewalls must let it in.")
 
@@ -87,10 +87,10 @@ def _sending(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Ite
     kind = "udpin" if endpoint.scheme == "udpout" else "tcpin"
     if is_loopback(endpoint.host):
         yield _text(f"A vehicle on this machine must listen on port {endpoint.port}. In another terminal:")
-        yield _command(f"vehicle --sim {kind}:{_bracketed(endpoint.host)}:{endpoint.port}")
+        yield _command(f"mavhelm vehicle --sim {kind}:{_bracketed(endpoint.host)}:{endpoint.port}")
         return
     yield _text(f"A vehicle must listen at {endpoint.host}, port {endpoint.port}. There, start the mavhelm daemon:")
-    yield _command(f"vehicle --config rover.toml {kind}:0.0.0.0:{endpoint.port}")
+    yield _command(f"mavhelm vehicle --config rover.toml {kind}:0.0.0.0:{endpoint.port}")
 
 
 def _serial(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iterator[WaitingAdvice]:
@@ -107,7 +107,7 @@ def _fleet(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Itera
     is_file = ".json" in endpoint.locator
     place = f"{vehicle}.json5" if is_file else endpoint.locator
     yield _text(f"A vehicle must connect to the same router{', with its own file' if is_file else ''}. There:")
-    yield _command(f"vehicle --config rover.toml zenoh:{place}/{endpoint.fleet}/{vehicle}")
+    yield _command(f"mavhelm vehicle --config rover.toml zenoh:{place}/{endpoint.fleet}/{vehicle}")
     yield _text("docs/fleet.md tells how its file is made, and what the router says of those who connect.")
 
 

@@ -1,4 +1,4 @@
-"""Exports of logs that run beside the screens: each is a process, `groundstation export` (verbs/files/export.py).
+"""Exports of logs that run beside the screens: each is a process, `mavhelm export` (verbs/files/export.py).
 
 The screen's process does not load the dialect, and reading a log must not hold up its event loop, which renews the
 lease.
@@ -44,7 +44,7 @@ class ExportRequest(msgspec.Struct, frozen=True):
     """As `--from` and `--to` take them."""
 
     def arguments(self, *, overwrite: bool) -> list[str]:
-        """Return the arguments of `groundstation export`."""
+        """Return the arguments of `mavhelm export`."""
         words = [str(self.log), f"--{self.format}", str(self.output), "--json", "--progress"]
         words += ["--from", self.begin] if self.begin else []
         words += ["--to", self.end] if self.end else []
@@ -131,7 +131,7 @@ class Exports:
             )
 
     def _finish(self, number: int, code: int, errors: str) -> None:
-        told = [line.removeprefix("groundstation: ").partition(WHERE)[0] for line in errors.splitlines()]
+        told = [line.removeprefix("mavhelm: ").partition(WHERE)[0] for line in errors.splitlines()]
         if number in self._cancelled and code not in (_DONE, _PARTLY):
             self._end(number, "cancelled", "nothing is written")
         elif code in (_DONE, _PARTLY):

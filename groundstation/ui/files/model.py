@@ -112,7 +112,7 @@ class FilesModel:
         return build_tree(self.view.folders if self.view else (), self._open)
 
     def log_name(self, number: int) -> str:
-        """Return the name of a log here, as `groundstation log get` gives it."""
+        """Return the name of a log here, as `mavhelm log get` gives it."""
         return f"{self._at}-{number:05}{self.view.log_ending if self.view is not None else '.bin'}"
 
     def is_arriving(self, name: str) -> bool:

@@ -172,7 +172,7 @@ def _empty_note(model: MapModel) -> str:
             return f"no {name} ({failed[-1].detail or failed[-1].state})"
         return f"{name} not loaded: D"
     if view.plans[layer].count > MAX_ITEMS:
-        return f"{view.plans[layer].count} items, more than {MAX_ITEMS}: groundstation {layer.name.lower()} get"
+        return f"{view.plans[layer].count} items, more than {MAX_ITEMS}: mavhelm {layer.name.lower()} get"
     return f"no {name}: a adds an item"
 
 

@@ -129,7 +129,7 @@ def _empty_note(model: ParamModel, page: ParamPage | None) -> str:
         return "nothing matches"
     ended = page.ended[-1] if page.ended else None
     if ended is not None and ended.state == "no answer":
-        return "this vehicle answers no list: R asks again; single ones: groundstation param get NAME"
+        return "this vehicle answers no list: R asks again; single ones: mavhelm param get NAME"
     return "no parameters: R reads them again"
 
 

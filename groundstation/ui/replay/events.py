@@ -69,7 +69,7 @@ def logs_value(
         for each in logs
     )
     how = "ENTER opens the marked one" if rows else "there is none here"
-    notes: tuple[Cell, ...] = (dim(f"no log is open: {how}; `groundstation replay FILE` opens any"),)
+    notes: tuple[Cell, ...] = (dim(f"no log is open: {how}; `mavhelm replay FILE` opens any"),)
     if hidden:
         notes += (dim(f"not listed: {hidden} below 30 s in which nothing was armed; Files (^g 9) has all"),)
     return RowTableValue(FILE_COLUMNS, rows, cursor if rows else None, notes)

@@ -1,4 +1,4 @@
-"""LogChild: a telemetry log that is opened from the running app, by `groundstation replay` in the same terminal."""
+"""LogChild: a telemetry log that is opened from the running app, by `mavhelm replay` in the same terminal."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ENDING = ".tlog"
 
 IN_REPLAY = "this is a replay: Ctrl-Q ends it, then o opens another log"
 ARMED = "disarm first: a vehicle is armed from here, and no key reaches it while a log is shown"
-NO_TERMINAL = "a log is opened in a terminal only: groundstation replay FILE"
+NO_TERMINAL = "a log is opened in a terminal only: mavhelm replay FILE"
 NO_LOG = "choose a telemetry log (.tlog) of this machine first"
 
 END_WITHIN = 0.5
@@ -118,7 +118,7 @@ class LogChild:
         if code < 0:
             return f"the replay was ended by signal {-code}"
         lines = told.decode("utf-8", "replace").splitlines() or [f"the replay ended with exit code {code}"]
-        return lines[-1].removeprefix("groundstation: ") if code else ""
+        return lines[-1].removeprefix("mavhelm: ") if code else ""
 
 
 async def _stop_with(child: int) -> None:

@@ -84,7 +84,7 @@ def short_summary(view: ReplayView) -> str:
 
 
 def part_text(view: ReplayView) -> str:
-    """Return the marks as `groundstation export` takes them: "0:31.5 0:44"; "" without marks."""
+    """Return the marks as `mavhelm export` takes them: "0:31.5 0:44"; "" without marks."""
     return " ".join(_offset_text(each) for each in view.cut if each is not None)
 
 

@@ -113,7 +113,7 @@ class SetupModel:
             return "no vehicle yet: switch it on, and check address and power"
         if view.faults:
             names = ", ".join(row.title for row in view.faults)
-            return f"You cannot drive yet: {names} · the same list: groundstation doctor"
+            return f"You cannot drive yet: {names} · the same list: mavhelm doctor"
         return "Nothing stops you" + ("" if view.armed else " · arm on Drive")
 
     # ---- motors ----

@@ -18,7 +18,7 @@ KINDS = ("wrong key", "replayed", "not signed", "late")
 """Names of the fields of SigningCounts."""
 REFUSED_UNSIGNED = "refused: not signed"
 """Part of the STATUSTEXT with which our vehicle refuses a request without a signature (vehicle/drive/roles.py)."""
-INSTALL = "groundstation sign install"
+INSTALL = "mavhelm sign install"
 SIGNING = f"signs with a key that is not here, and may ignore us: {INSTALL}"
 TEXTS = {
     SigningState.OFF: "off: the vehicle does not sign",

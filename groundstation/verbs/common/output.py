@@ -59,7 +59,7 @@ class Output:
         """Print an error to stderr, one line."""
         self.clear_progress()
         sys.stdout.flush()
-        sys.stderr.write(f"groundstation: {printable(' '.join(text.split()))}\n")
+        sys.stderr.write(f"mavhelm: {printable(' '.join(text.split()))}\n")
         sys.stderr.flush()
 
     def progress(self, report: RequestReport) -> None:

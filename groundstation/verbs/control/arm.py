@@ -1,4 +1,4 @@
-"""`groundstation arm`: the arming of the station (station/driving/arming.py), confirmed by the heartbeat.
+"""`mavhelm arm`: the arming of the station (station/driving/arming.py), confirmed by the heartbeat.
 
 What the vehicle takes to be armed is a live session: neutral demands and proofs go out while the verb runs. When it
 ends nobody drives, and the failsafes of the vehicle act. A verb that is interrupted before the vehicle has confirmed
@@ -88,9 +88,7 @@ async def arm(session: VerbSession, wait: float, output: Output) -> RequestRepor
     contact, state = session.contact, session.vehicle
     need_driven(session.vehicle)
     if state.emergency_stop:
-        raise VerbError(
-            ExitCode.REFUSED, f"{state.name}: emergency stop; `groundstation estop --clear` releases it first"
-        )
+        raise VerbError(ExitCode.REFUSED, f"{state.name}: emergency stop; `mavhelm estop --clear` releases it first")
     await _wait_until_ready(session, wait, output)
     contact.operator.demanding = contact.other_driver is None
     try:

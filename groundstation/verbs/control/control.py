@@ -1,4 +1,4 @@
-"""`groundstation control`: who is in control of a vehicle, and asking for it, releasing it, giving it."""
+"""`mavhelm control`: who is in control of a vehicle, and asking for it, releasing it, giving it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation drive`: drive by hand without a screen, for a time or as a script of keys says.
+"""`mavhelm drive`: drive by hand without a screen, for a time or as a script of keys says.
 
 The demands are those of the screen: neutral first, 20 Hz, in the axes of the vehicle, inside the proof of the verb's
 session to our vehicle. They end with neutral however the verb ends; when its process is killed or stands still, its

@@ -29,7 +29,7 @@ async def begin_driving(session: VerbSession, *, leave_hold: bool = True) -> Non
     contact, state = session.contact, session.vehicle
     need_driven(session.vehicle)
     if state.drives_itself:
-        raise VerbError(ExitCode.REFUSED, f"{state.name} drives itself ({state.mode}); `groundstation stop` stops it")
+        raise VerbError(ExitCode.REFUSED, f"{state.name} drives itself ({state.mode}); `mavhelm stop` stops it")
     if state.has_rover_dialect and not state.driver:
         need_accepted(await ask_for_control(session), session)
     if leave_hold and state.mode in state.model.standing:
@@ -61,7 +61,7 @@ def need_control(session: VerbSession) -> None:
         raise VerbError(ExitCode.REFUSED, f"{contact.state.name}: {contact.unproven}")
     if contact.other_driver is not None and not contact.state.control.silent:
         text = f"GCS {contact.other_driver} is in control of {contact.state.name}"
-        raise VerbError(ExitCode.NOT_IN_CONTROL, f"{text}; `groundstation control request` asks for it")
+        raise VerbError(ExitCode.NOT_IN_CONTROL, f"{text}; `mavhelm control request` asks for it")
 
 
 def drive_fault(session: VerbSession) -> str | None:

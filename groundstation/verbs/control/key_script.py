@@ -1,4 +1,4 @@
-"""Scripts of keys for `groundstation drive`: their lines, and what the keys of the key map do at each moment.
+"""Scripts of keys for `mavhelm drive`: their lines, and what the keys of the key map do at each moment.
 
 # time in s from the start, press or release, key
 0.5 press i

@@ -1,4 +1,4 @@
-"""`groundstation modes` and `mode`: the modes of a vehicle, and a change of mode."""
+"""`mavhelm modes` and `mode`: the modes of a vehicle, and a change of mode."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation motor`: turn one motor of a disarmed vehicle for a moment."""
+"""`mavhelm motor`: turn one motor of a disarmed vehicle for a moment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation reboot`: restart a vehicle."""
+"""`mavhelm reboot`: restart a vehicle."""
 
 from __future__ import annotations
 

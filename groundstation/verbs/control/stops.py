@@ -1,4 +1,4 @@
-"""`groundstation disarm`, `stop` and `estop`: repeated until the vehicle reports that it is so. They need no control.
+"""`mavhelm disarm`, `stop` and `estop`: repeated until the vehicle reports that it is so. They need no control.
 
 Without --vehicle they go to every vehicle: a stop must not fail because there are two. They are sent from the first
 moment, also to a vehicle that is not heard, which may have no place for us (vehicles/demand/blind_stop.py).

@@ -1,4 +1,4 @@
-"""`groundstation export`: writes a telemetry log, or a part of it, for other programs. Needs no vehicle."""
+"""`mavhelm export`: writes a telemetry log, or a part of it, for other programs. Needs no vehicle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation ftp`: list, get, put, remove and compare files on a vehicle, by MAVLink FTP."""
+"""`mavhelm ftp`: list, get, put, remove and compare files on a vehicle, by MAVLink FTP."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation log`: list the logs of a vehicle by LOG_REQUEST_LIST, get one, erase all.
+"""`mavhelm log`: list the logs of a vehicle by LOG_REQUEST_LIST, get one, erase all.
 
 Those of our own vehicle come by MAVLink FTP, which compares a checksum; those of others by LOG_DATA, which all have.
 """

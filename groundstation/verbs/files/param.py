@@ -1,4 +1,4 @@
-"""`groundstation param`: get, set, store and reset the parameters of a vehicle."""
+"""`mavhelm param`: get, set, store and reset the parameters of a vehicle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation param`: save, load and compare files of parameters.
+"""`mavhelm param`: save, load and compare files of parameters.
 
 Apart from the other actions, which import no formats of files: `param set` takes about as long as its imports.
 """

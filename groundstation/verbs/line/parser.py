@@ -31,12 +31,12 @@ class LineParser(CommandLineParser):
 
     def print_help(self, file: object = None) -> NoReturn:
         """Raise VerbError with the usage."""
-        usage = " ".join(self.format_usage().split()).removeprefix("usage: groundstation ")
+        usage = " ".join(self.format_usage().split()).removeprefix("usage: mavhelm ")
         raise VerbError(ExitCode.USAGE, usage)
 
     @property
     def _verb(self) -> str:
-        return self.prog.removeprefix("groundstation ")
+        return self.prog.removeprefix("mavhelm ")
 
 
 class ParsedLine(msgspec.Struct, frozen=True):

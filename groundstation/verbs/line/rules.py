@@ -58,7 +58,7 @@ LINE_RULES: Mapping[str, LineRule] = {
     "goto": _ASK, "home": _ASK, "speed": _RUN,
     "drive": LineRule(elsewhere="the keys of the Drive screen (F1) drive"),
     "messages": _on(_MESSAGES), "watch": _on(_MESSAGES), "ping": _on(_LINKS),
-    "send": LineRule(elsewhere="use `groundstation send` in a shell, over another link of the vehicle"),
+    "send": LineRule(elsewhere="use `mavhelm send` in a shell, over another link of the vehicle"),
     "command": _ASK, "request": LineRule(own=overrides.request_message), "rate": LineRule(own=overrides.set_rate),
     "param get": _RUN, "param set": _ASK, "param store": _ASK, "param reset": _ASK,
     "param save": _on(_PARAMS), "param load": _on(_PARAMS), "param diff": _on(_PARAMS),

@@ -101,4 +101,4 @@ class LineOutput:
 
 def here(text: str) -> str:
     """Return a text for a shell as one line for a screen: verbs are written behind a colon here."""
-    return " ".join(text.split()).replace("`groundstation ", "`:")
+    return " ".join(text.split()).replace("`mavhelm ", "`:")

@@ -1,3 +1,3 @@
-"""The shells that `groundstation completion` has a script for."""
+"""The shells that `mavhelm completion` has a script for."""
 
 SHELLS = ("bash", "zsh", "fish")

@@ -1,4 +1,4 @@
-"""`groundstation command`, `request` and `rate`: any MAV_CMD, one message, and how often a message comes."""
+"""`mavhelm command`, `request` and `rate`: any MAV_CMD, one message, and how often a message comes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation messages` and `watch`: which messages arrive, and the values in one of them."""
+"""`mavhelm messages` and `watch`: which messages arrive, and the values in one of them."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ class _Watcher:
 
     def _say_quiet(self) -> None:
         name = self._kind.msgname
-        self._output.note(f"no {name} arrives; `groundstation rate {name} 2` requests it, where the vehicle has it")
+        self._output.note(f"no {name} arrives; `mavhelm rate {name} 2` requests it, where the vehicle has it")
 
 
 def print_message(message: Message, output: Output) -> None:

@@ -1,4 +1,4 @@
-"""`groundstation ping`: round trips to a vehicle by TIMESYNC."""
+"""`mavhelm ping`: round trips to a vehicle by TIMESYNC."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation record`: writes what is heard on the links into a telemetry log.
+"""`mavhelm record`: writes what is heard on the links into a telemetry log.
 
 The verb collects frames, and its companion in the process of the user writes them, so that a slow disk delays no link.
 """

@@ -1,4 +1,4 @@
-"""`groundstation send`: send any message, once or at a rate. A demand begins and ends with neutral.
+"""`mavhelm send`: send any message, once or at a rate. A demand begins and ends with neutral.
 
 Neutral is also sent when the verb is interrupted by a signal. When the process is killed or stands still, its watchdog
 sends it (demand_guard.py), or the station in which the verb runs (station/verbs/running_verbs.py).
@@ -32,9 +32,7 @@ def check(options: argparse.Namespace) -> None:
     """Find the message and read its fields. Raises VerbError."""
     options.kind = find_message(options.name)
     if options.kind.id in SECRET:
-        raise VerbError(
-            ExitCode.USAGE, "every user can read the command line: use `groundstation sign setup` for a key"
-        )
+        raise VerbError(ExitCode.USAGE, "every user can read the command line: use `mavhelm sign setup` for a key")
     options.values = parse_fields(options.kind, options.fields)
     check_demand(options.kind, options.values, confirmed=options.yes)
     if (options.rate is None) != (options.seconds is None):

@@ -1,4 +1,4 @@
-"""`groundstation status`, `vehicles` and `links`: what was heard. Requests single messages, and changes nothing."""
+"""`mavhelm status`, `vehicles` and `links`: what was heard. Requests single messages, and changes nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation goto`, `home` and `speed`: the vehicle drives by itself, and goes on when the verb has ended."""
+"""`mavhelm goto`, `home` and `speed`: the vehicle drives by itself, and goes on when the verb has ended."""
 
 from __future__ import annotations
 
@@ -133,14 +133,14 @@ async def _finish(
         return ExitCode.REFUSED
     code = finish(session, report, output, done, mode=state.mode)
     if code is ExitCode.DONE:
-        output.note(f"{state.name} drives by itself{session.afterwards}; `groundstation stop` stops it")
+        output.note(f"{state.name} drives by itself{session.afterwards}; `mavhelm stop` stops it")
     return code
 
 
 def _need_armed(session: VerbSession) -> None:
     need_driven(session.vehicle)
     if not session.vehicle.armed:
-        raise VerbError(ExitCode.REFUSED, f"{session.vehicle.name} is disarmed; `groundstation arm` arms it")
+        raise VerbError(ExitCode.REFUSED, f"{session.vehicle.name} is disarmed; `mavhelm arm` arms it")
 
 
 def _returns(session: VerbSession) -> bool:

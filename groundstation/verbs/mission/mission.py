@@ -1,4 +1,4 @@
-"""`groundstation mission start`, `pause`, `jump` and `check`, and `fence on` and `off`."""
+"""`mavhelm mission start`, `pause`, `jump` and `check`, and `fence on` and `off`."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ async def start(session: VerbSession, options: argparse.Namespace, output: Outpu
     await session.need_only_vehicle(options.vehicle)
     state = session.vehicle
     if not state.armed:
-        raise VerbError(ExitCode.REFUSED, f"{state.name} is disarmed; `groundstation arm` arms it")
+        raise VerbError(ExitCode.REFUSED, f"{state.name} is disarmed; `mavhelm arm` arms it")
     if options.item is not None:
         report = await _set_current(session, options.item)
         if report.state is not RequestState.ACCEPTED:
@@ -49,8 +49,8 @@ async def start(session: VerbSession, options: argparse.Namespace, output: Outpu
         raise VerbError(ExitCode.REFUSED, f"{state.name}: accepted, but its heartbeat reports {state.mode}")
     code = finish(session, report, output, "drives its mission", mode=state.mode)
     if accepted:
-        keeps = "; `groundstation watch` next keeps it going" if session.afterwards else ""
-        output.note(f"{state.name} drives by itself{keeps}; `groundstation stop` stops it")
+        keeps = "; `mavhelm watch` next keeps it going" if session.afterwards else ""
+        output.note(f"{state.name} drives by itself{keeps}; `mavhelm stop` stops it")
     return code
 
 

@@ -1,4 +1,4 @@
-"""`groundstation mission`, `fence` and `rally`: show, get, put and clear a plan of a vehicle."""
+"""`mavhelm mission`, `fence` and `rally`: show, get, put and clear a plan of a vehicle."""
 
 from __future__ import annotations
 

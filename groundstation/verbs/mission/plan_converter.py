@@ -42,7 +42,7 @@ def read(path: str) -> bytes:
     for name, items in (("mission", plan.mission), ("fence", plan.fence), ("rally points", plan.rally)):
         if len(items) > MAX_ITEMS:
             text = f"{path}: {name} of {len(items)} items, this screen edits {MAX_ITEMS} at most"
-            raise VerbError(ExitCode.USAGE, f"{text}: use groundstation mission put")
+            raise VerbError(ExitCode.USAGE, f"{text}: use mavhelm mission put")
     home = None if plan.home is None else Place(plan.home.latitude, plan.home.longitude)
     altitude = plan.home.altitude if plan.home is not None else 0.0
     plans = (_for_screen(plan.mission), _for_screen(plan.fence), _for_screen(plan.rally))

@@ -1,4 +1,4 @@
-"""`groundstation ros1`: a vehicle as a node of ROS 1, which /command and /cmd_vel drive, and which publishes telemetry.
+"""`mavhelm ros1`: a vehicle as a node of ROS 1, which /command and /cmd_vel drive, and which publishes telemetry.
 
 The node is a process of the system's Python (groundstation/ros1/), which the companion of the verb starts in the
 environment of the user. Whatever ends - a publisher, the node, the master, this program - leaves the vehicle neutral:

@@ -1,4 +1,4 @@
-"""`groundstation ros2`: the vehicle as a node of ROS 2 over rmw_zenoh, without an installation of ROS.
+"""`mavhelm ros2`: the vehicle as a node of ROS 2 over rmw_zenoh, without an installation of ROS.
 
 Messages of /cmd_vel and /command drive by the rules of every driver (ros_driver.py), telemetry is published as standard
 messages, and parameters are those of the vehicle. A service that arms is there on request only. It runs until Ctrl-C.

@@ -26,7 +26,7 @@ ALONE_AFTER = 1.3
 """s for which the links are heard before a vehicle counts as the only one, and a script that claims to be an autopilot
 as the autopilot: a heartbeat interval and a delay."""
 
-SIGNS = "it signs its frames with a key that is not here, and may obey only that: `groundstation sign` has the keys"
+SIGNS = "it signs its frames with a key that is not here, and may obey only that: `mavhelm sign` has the keys"
 
 Tap = Callable[[Received, float], None]
 """Takes each message that arrives, and the time."""

@@ -27,7 +27,7 @@ def finish(session: VerbSession, report: RequestReport, output: Output, done: st
         why = session.explain_silence() if report.state is RequestState.NO_ANSWER else ""
         output.error(f"{name}: {report.text}{why}")
     if code is ExitCode.NOT_IN_CONTROL:
-        output.error(f"GCS {driver} is in control of {name}; `groundstation control request` asks for it")
+        output.error(f"GCS {driver} is in control of {name}; `mavhelm control request` asks for it")
     output.result(accepted, contact.state.system, **fields, detail=report.detail, text=report.reason)
     return code
 

@@ -1,4 +1,4 @@
-"""`groundstation calibrate`: gyros, level and pressure at rest; compass and sticks are in calibrate_by_hand.py."""
+"""`mavhelm calibrate`: gyros, level and pressure at rest; compass and sticks are in calibrate_by_hand.py."""
 
 from __future__ import annotations
 

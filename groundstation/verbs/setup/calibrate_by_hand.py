@@ -1,4 +1,4 @@
-"""`groundstation calibrate compass` and `sticks`: what needs hands on the vehicle or its transmitter."""
+"""`mavhelm calibrate compass` and `sticks`: what needs hands on the vehicle or its transmitter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation doctor`: why the vehicle cannot be driven, and what to do."""
+"""`mavhelm doctor`: why the vehicle cannot be driven, and what to do."""
 
 from __future__ import annotations
 

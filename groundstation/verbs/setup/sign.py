@@ -1,4 +1,4 @@
-"""`groundstation sign`: the keys of this user's ground stations. `sign setup`, which needs a vehicle: sign_setup.py.
+"""`mavhelm sign`: the keys of this user's ground stations. `sign setup`, which needs a vehicle: sign_setup.py.
 
 The role of a key counts at the vehicle only, so here it is neither asked for nor shown.
 """
@@ -50,10 +50,9 @@ async def new(_: None, options: argparse.Namespace, output: Output) -> int:
     key = _call(lambda: key_actions.make_key(path, options.name, ROLE))
     output.note(f"key {key.name} ({key.fingerprint}) is in {path}")
     if options.shown_as is None:
-        hint = (
-            f"`groundstation sign show {key.name} --words`, and on the vehicle `vehicle key install {key.name} --words`"
-        )
-        output.note(f"give it to the vehicle: {hint}; or `groundstation sign setup` over its serial or USB cable")
+        there = f"`mavhelm vehicle key install {key.name} --words`"
+        hint = f"`mavhelm sign show {key.name} --words`, and on the vehicle {there}"
+        output.note(f"give it to the vehicle: {hint}; or `mavhelm sign setup` over its serial or USB cable")
     return _print(key, options.shown_as, output)
 
 
@@ -69,7 +68,9 @@ async def install(_: None, options: argparse.Namespace, output: Output) -> int:
     """Add a key that the vehicle has."""
     path = station_key_file()
     key = _call(lambda: key_actions.install_key(path, options.name, ROLE, options.secret))
-    output.note(f"key {key.name} ({key.fingerprint}) is in {path}; `vehicle key list` must show the same fingerprint")
+    output.note(
+        f"key {key.name} ({key.fingerprint}) is in {path}; `mavhelm vehicle key list` must show the same fingerprint"
+    )
     return _print(key, None, output)
 
 
@@ -82,7 +83,7 @@ async def list_keys(_: None, options: argparse.Namespace, output: Output) -> int
     for key in ring.keys:
         output.record(name=key.name, fingerprint=key.fingerprint, signs=key.name == ring.sign_with)
     if not ring.keys:
-        output.note(f"there are no keys in {path}; `groundstation sign new NAME` makes one")
+        output.note(f"there are no keys in {path}; `mavhelm sign new NAME` makes one")
     return ExitCode.DONE
 
 
@@ -97,7 +98,8 @@ async def forget(_: None, options: argparse.Namespace, output: Output) -> int:
     """Remove a key here; the vehicle still has it."""
     key = _call(lambda: key_actions.remove_key(station_key_file(), options.name))
     output.note(
-        f"{key.name} ({key.fingerprint}) is forgotten here; on the vehicle: `vehicle key revoke {key.fingerprint}`"
+        f"{key.name} ({key.fingerprint}) is forgotten here; "
+        f"on the vehicle: `mavhelm vehicle key revoke {key.fingerprint}`"
     )
     return _print(key, None, output)
 

@@ -1,4 +1,4 @@
-"""`groundstation sign setup`: give a key to a vehicle with SETUP_SIGNING, over a serial or USB cable only.
+"""`mavhelm sign setup`: give a key to a vehicle with SETUP_SIGNING, over a serial or USB cable only.
 
 The message holds the key in clear text, so it is sent neither over a network, nor over a telemetry radio, nor through a
 station that runs. ArduPilot, PX4 and our own vehicle take it while they are disarmed.
@@ -75,7 +75,7 @@ def watch_signatures(options: argparse.Namespace, ids: tuple[int, int]) -> LogTa
 
 def _choose(ring: KeyRing, name: str | None) -> SigningKey:
     if not ring.keys:
-        raise VerbError(ExitCode.USAGE, "there are no keys; `groundstation sign new NAME` makes one")
+        raise VerbError(ExitCode.USAGE, "there are no keys; `mavhelm sign new NAME` makes one")
     return key_actions.pick_key(ring, name if name is not None else ring.sign_with)
 
 

@@ -1,4 +1,4 @@
-"""Command line of `bridge doctor`."""
+"""Command line of `mavhelm bridge doctor`."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ program has open is not taken from it: the answer tells which program, as far as
 Without endpoints it lists the serial ports and usual network ports of this machine.
 
 examples:
-  bridge doctor                                                 what is plugged in, what is taken by whom
-  bridge doctor serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550   as the bridge would run, for 5 s
-  bridge doctor udpin:0.0.0.0:14550 --for 30 --json
+  mavhelm bridge doctor                                                 what is plugged in, what is taken by whom
+  mavhelm bridge doctor serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550   as the bridge would run, for 5 s
+  mavhelm bridge doctor udpin:0.0.0.0:14550 --for 30 --json
 
 endpoints:
 {endpoints}
@@ -68,7 +68,7 @@ def _examine(options: argparse.Namespace) -> int:
     endpoints = parse_endpoints(options.endpoints)
     if not endpoints:
         return _finish(_print("", examine_machine(), options.json), options.json)
-    sys.stderr.write(f"bridge doctor: listening for {options.time:g} s, nothing is sent\n")
+    sys.stderr.write(f"mavhelm bridge doctor: listening for {options.time:g} s, nothing is sent\n")
     faults: list[dict[str, str]] = []
     for facts in asyncio.run(examine_endpoints(endpoints, options.time)):
         faults += _print(facts.endpoint.text, examine(facts), options.json)
@@ -105,7 +105,7 @@ def _seconds(text: str) -> float:
 def build_parser() -> CommandLineParser:
     """Return the parser of the command line."""
     parser = CommandLineParser(
-        prog="bridge doctor",
+        prog="mavhelm bridge doctor",
         description="Tells what arrives on endpoints, who is heard, and where their frames would go.",
         epilog=HELP.format(endpoints=endpoint_help()),
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -1,4 +1,4 @@
-"""What the rows of `bridge doctor` judge."""
+"""What the rows of `mavhelm bridge doctor` judge."""
 
 from __future__ import annotations
 

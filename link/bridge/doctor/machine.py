@@ -1,4 +1,4 @@
-"""The ports of this machine, for `bridge doctor` without endpoints: what is plugged in, and what is taken by whom."""
+"""The ports of this machine, for `mavhelm bridge doctor` without endpoints: what is there, and who has it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _serial(port: SerialPort) -> Finding:
         return warn(f"{text}: open in {port.holder}", "end that program before the bridge opens the port")
     if not port.allowed:
         return fault(f"{text}: not allowed", "sudo usermod -aG dialout $USER, then log in again")
-    return ok(f"{text}: free; examine it with: bridge doctor serial:{port.path}:{DEFAULT_BAUD}")
+    return ok(f"{text}: free; examine it with: mavhelm bridge doctor serial:{port.path}:{DEFAULT_BAUD}")
 
 
 def _socket(kind: Kind, number: int) -> Finding:

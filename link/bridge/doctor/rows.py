@@ -1,4 +1,4 @@
-"""Rows of `bridge doctor`: does an endpoint open, what arrives, who is heard, where it would go."""
+"""Rows of `mavhelm bridge doctor`: does an endpoint open, what arrives, who is heard, where it would go."""
 
 from __future__ import annotations
 

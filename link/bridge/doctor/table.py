@@ -1,4 +1,4 @@
-"""ROWS: what `bridge doctor` examines of each endpoint, in order. A new one is a function and a row here."""
+"""ROWS: what `mavhelm bridge doctor` examines of each endpoint, in order. A new one is a function and a row here."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""`bridge router` and `bridge fleet`: the router of a fleet, and the certificates of those who may connect."""
+"""`mavhelm bridge router` and `mavhelm bridge fleet`: the router of a fleet, and the certificates of its members."""

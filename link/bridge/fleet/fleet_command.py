@@ -1,4 +1,4 @@
-"""Command line of `bridge fleet`."""
+"""Command line of `mavhelm bridge fleet`."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from link.signing.role import ROLES
 
 HELP = """\
 examples:
-  bridge fleet new farm --host fleet.example.org      makes the folder farm: authority, router, fleet.toml
-  bridge fleet add vehicle rover1 --folder farm       makes farm/rover1.json5, to be copied to the rover
-  bridge fleet add operator alice --role drive --folder farm
-  bridge fleet renew alice --folder farm              a new certificate for alice, before the old one ends
-  bridge router farm/fleet.toml                       on the machine fleet.example.org
+  mavhelm bridge fleet new farm --host fleet.example.org      makes the folder farm: authority, router, fleet.toml
+  mavhelm bridge fleet add vehicle rover1 --folder farm       makes farm/rover1.json5, to be copied to the rover
+  mavhelm bridge fleet add operator alice --role drive --folder farm
+  mavhelm bridge fleet renew alice --folder farm              a new certificate for alice, before the old one ends
+  mavhelm bridge router farm/fleet.toml                       on the machine fleet.example.org
 
 roles: watch (see, and stop), drive (also arm, drive, change modes), setup (also parameters, plans, files).
 docs/fleet.md tells the whole way. exit codes: 0 done, 2 usage error.
@@ -47,9 +47,9 @@ def _new(options: argparse.Namespace) -> list[str]:
     path = new_fleet(folder, options.fleet, options.host, options.port)
     return [
         f"{path}: made, with the authority and the router's certificate beside it",
-        f"next: bridge fleet add vehicle rover1 --folder {folder}",
-        f"      bridge fleet add operator alice --role drive --folder {folder}",
-        f"      bridge router {path}",
+        f"next: mavhelm bridge fleet add vehicle rover1 --folder {folder}",
+        f"      mavhelm bridge fleet add operator alice --role drive --folder {folder}",
+        f"      mavhelm bridge router {path}",
     ]
 
 
@@ -59,7 +59,7 @@ def _add(options: argparse.Namespace) -> list[str]:
     own = add_member(folder / FILE, options.name, VEHICLE_ROLE if is_vehicle else options.role)
     fleet = read_fleet_file(folder / FILE).fleet
     end = f"zenoh:{own.name}/{fleet}"
-    program = f"vehicle --config rover.toml {end}/{options.name}" if is_vehicle else f"groundstation {end}"
+    program = f"mavhelm vehicle --config rover.toml {end}/{options.name}" if is_vehicle else f"mavhelm {end}"
     return [
         f"{own}: made; copy it to {options.name} and to nobody else, mode 0600",
         f"there: {program}",
@@ -78,7 +78,7 @@ def _renew(options: argparse.Namespace) -> list[str]:
 def build_parser() -> CommandLineParser:
     """Return the parser of the command line."""
     parser = CommandLineParser(
-        prog="bridge fleet",
+        prog="mavhelm bridge fleet",
         description="Makes the certificates of a fleet.",
         epilog=HELP,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -1,4 +1,4 @@
-"""fleet.toml: who belongs to a fleet, and what each operator may do. `bridge router` reads it at its start."""
+"""fleet.toml: who belongs to a fleet, and what each operator may do. `mavhelm bridge router` reads it at its start."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROUTER_NAME = "router"
 """Common name of its certificate; those of members end with a random number."""
 
 TEMPLATE = """\
-# Who belongs to the fleet {fleet}. `bridge router {file}` reads this at its start.
+# Who belongs to the fleet {fleet}. `mavhelm bridge router {file}` reads this at its start.
 # To withdraw a certificate, delete the lines of its owner and restart the router.
 fleet = "{fleet}"
 listen = ["tls/[::]:{port}"]

@@ -45,7 +45,7 @@ def new_fleet(folder: Path, fleet: str, hosts: Sequence[str], port: int = PORT) 
             raise FleetError(f"--host: {problem}")
     path = folder / FILE
     if path.exists():
-        raise FleetError(f"{path} exists already; add to it with `bridge fleet add`, or name another folder")
+        raise FleetError(f"{path} exists already; add to it with `mavhelm bridge fleet add`, or name another folder")
     authority = make_authority(fleet)
     router = make_member(ROUTER_NAME, authority, hosts)
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)

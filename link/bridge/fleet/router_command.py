@@ -1,4 +1,4 @@
-"""Command line of `bridge router`: runs a Zenoh router in this process, with certificates and roles from fleet.toml."""
+"""Command line of `mavhelm bridge router`: runs a Zenoh router, with certificates and roles from fleet.toml."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ ENOUGH_DESCRIPTORS = 4096
 """Below that a few strangers with 20 connections each fill them."""
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 HELP = """\
-FILE is made by `bridge fleet new`. Whoever it does not name is refused, whatever its certificate.
+FILE is made by `mavhelm bridge fleet new`. Whoever it does not name is refused, whatever its certificate.
 A restart takes a second; vehicles and ground stations reconnect by themselves, and rovers stop meanwhile.
 
 It asks its own port every 10 s, and ends when three probes in a row are not answered: let a supervisor start it again.
@@ -102,7 +102,7 @@ def _run(fleet: FleetFile, folder: Path, links: Sequence[str]) -> None:
 def _end_warnings(folder: Path) -> Iterator[str]:
     """Yield a line for each certificate of the router that ends soon."""
     for whose, file, remedy in (
-        ("the router", ROUTER, f"bridge fleet renew {ROUTER_NAME}, and restart it"),
+        ("the router", ROUTER, f"mavhelm bridge fleet renew {ROUTER_NAME}, and restart it"),
         ("the fleet's authority", AUTHORITY, "make the fleet anew (docs/fleet.md)"),
     ):
         if warning := warning_of(whose, (folder / file).read_bytes(), time.time(), remedy):
@@ -186,7 +186,7 @@ def _log_link(fleet: FleetFile) -> Any:
 def build_parser() -> CommandLineParser:
     """Return the parser of the command line."""
     parser = CommandLineParser(
-        prog="bridge router",
+        prog="mavhelm bridge router",
         description="Runs the router of a fleet: vehicles and ground stations meet there, each with its certificate.",
         epilog=HELP,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -1,4 +1,4 @@
-"""ROS 1 as Debian installs it, the simulated rover, and `groundstation ros1` between them: all real programs."""
+"""ROS 1 as Debian installs it, the simulated rover, and `mavhelm ros1` between them: all real programs."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ class CommandNode:
 
 
 class Rig:
-    """roscore, vehicle and `groundstation ros1 --arm`; nodes on request."""
+    """roscore, vehicle and `mavhelm ros1 --arm`; nodes on request."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self._stack = stack
@@ -124,7 +124,7 @@ class Rig:
         return core
 
     def start_station(self) -> Program:
-        """Start `groundstation ros1 --arm` and wait until it has armed."""
+        """Start `mavhelm ros1 --arm` and wait until it has armed."""
         words = ["ros1", "--arm", "-e", self.endpoint, "--station", "never", "--wait", "30"]
         station = Program([sys.executable, "-m", "groundstation", *words], self.env)
         self._stack.callback(station.kill)

@@ -1,4 +1,4 @@
-"""`groundstation config`, and what the config file does to the programs: exit codes, and nothing opened before."""
+"""`mavhelm config`, and what the config file does to the programs: exit codes, and nothing opened before."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def test_from_no_file_to_a_checked_one(home: Path, capsys: pytest.CaptureFixture
     assert run(capsys, "config", "path") == (0, f"{home}\n", "")
     code, out, error = run(capsys, "config", "check")
     assert (code, out) == (7, "")
-    assert "`groundstation config init` writes one" in error
+    assert "`mavhelm config init` writes one" in error
     assert run(capsys, "config", "init") == (0, f"{home}\n", "")
     assert run(capsys, "config", "check") == (0, f"{home}: no mistakes\n", "")
     home.write_text("# mine\n")
-    assert run(capsys, "config", "init") == (2, "", f"groundstation: {home} exists already, and is not changed\n")
+    assert run(capsys, "config", "init") == (2, "", f"mavhelm: {home} exists already, and is not changed\n")
     assert home.read_text() == "# mine\n"
 
 
@@ -41,16 +41,16 @@ def test_the_environment_names_another_file(
     monkeypatch.setenv("MAVHELM_CONFIG", str(tmp_path / "other.toml"))
     assert run(capsys, "config", "path") == (0, f"{tmp_path}/other.toml\n", "")
     assert run(capsys, "config", "check") == (
-        2, "", f"groundstation: {tmp_path}/other.toml: No such file or directory\n"
+        2, "", f"mavhelm: {tmp_path}/other.toml: No such file or directory\n"
     )  # fmt: skip
 
 
 def test_every_mistake_is_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "bad.toml").write_text(BAD)
     lines = (
-        f'groundstation: {tmp_path}/bad.toml:1: theme: "drak" is not one of dark, light, high-contrast, colour-blind, '
+        f'mavhelm: {tmp_path}/bad.toml:1: theme: "drak" is not one of dark, light, high-contrast, colour-blind, '
         "no-colour; did you mean dark?\n"
-        f"groundstation: {tmp_path}/bad.toml:2: speed: 7 is not a number from 0.1 to 1\n"
+        f"mavhelm: {tmp_path}/bad.toml:2: speed: 7 is not a number from 0.1 to 1\n"
     )
     assert run(capsys, "config", "check", f"{tmp_path}/bad.toml") == (2, "", lines)
     assert run(capsys, "config", "show", "--config", f"{tmp_path}/bad.toml") == (2, "", lines)

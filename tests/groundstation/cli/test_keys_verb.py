@@ -1,4 +1,4 @@
-"""`groundstation keys` in a real pseudo-terminal."""
+"""`mavhelm keys` in a real pseudo-terminal."""
 
 from __future__ import annotations
 

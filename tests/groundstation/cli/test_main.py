@@ -27,7 +27,7 @@ def error_line(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.count("\n") == 1
-    assert captured.err.startswith("groundstation: ")
+    assert captured.err.startswith("mavhelm: ")
     return captured.err
 
 
@@ -55,7 +55,7 @@ def in_terminal(
         (["--keys", "emacs"], "unknown key map 'emacs': choose standard, teleop"),
         (["--keys", "/nowhere/keys.toml"], "no such file: name one of your own"),
         (["udpin:127.0.0.1:14999"], "is not a terminal"),
-        (["walk"], "'walk' is not an endpoint such as udpin:127.0.0.1:14550 (groundstation --help lists them)"),
+        (["walk"], "'walk' is not an endpoint such as udpin:127.0.0.1:14550 (mavhelm --help lists them)"),
         (["help"], "'help' is not an endpoint: did you mean --help?"),
         (["sitl"], "'sitl' is not an endpoint: did you mean --sitl?"),
         (["--sitl", "udpin"], "'udpin' is not an endpoint such as udpin:127.0.0.1:14550"),
@@ -87,7 +87,7 @@ def test_wrong_options(capsys: pytest.CaptureFixture[str], arguments: list[str],
     assert caught.value.code == 2
     error = capsys.readouterr().err
     assert words in error
-    assert error.startswith("groundstation: ")
+    assert error.startswith("mavhelm: ")
     assert error.count("\n") == 1
 
 
@@ -97,7 +97,7 @@ def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
     assert caught.value.code == 0
     text = capsys.readouterr().out
     for word in (
-        "groundstation --sitl",
+        "mavhelm --sitl",
         "udpin:HOST:PORT",
         "teleop",
         "hold `r` for a second to arm",
@@ -112,14 +112,14 @@ def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--version"])
-    assert capsys.readouterr().out.startswith("groundstation 0.")
+    assert capsys.readouterr().out.startswith("mavhelm 0.")
 
 
 @pytest.mark.e2e
 def test_a_terminal_that_is_far_too_small() -> None:
     code, shown = in_terminal(["udpin:127.0.0.1:14999"], columns=30, rows=8)
     assert code == 2
-    assert shown == "groundstation: the terminal is 30x8: make it at least 40x10, better 80x24\n"
+    assert shown == "mavhelm: the terminal is 30x8: make it at least 40x10, better 80x24\n"
 
 
 @pytest.mark.e2e
@@ -137,14 +137,14 @@ def test_a_port_in_use_is_reported_before_the_screen_opens() -> None:
 def test_a_log_file_that_cannot_be_written() -> None:
     code, shown = in_terminal(["--log-file", "/nowhere/station.log"])
     assert code == 2
-    assert shown == "groundstation: log file /nowhere/station.log: No such file or directory\n"
+    assert shown == "mavhelm: log file /nowhere/station.log: No such file or directory\n"
 
 
 @pytest.mark.e2e
 def test_texts_of_parameters_that_cannot_be_read() -> None:
     code, shown = in_terminal(["--param-docs", "/nowhere/apm.pdef.xml"])
     assert code == 2
-    assert "groundstation: --param-docs /nowhere/apm.pdef.xml: No such file or directory" in shown
+    assert "mavhelm: --param-docs /nowhere/apm.pdef.xml: No such file or directory" in shown
 
 
 @pytest.mark.e2e
@@ -152,7 +152,7 @@ def test_a_pipe_for_a_log_file_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "station.log")
     code, shown = in_terminal(["--log-file", str(tmp_path / "station.log")])
     assert code == 2
-    assert shown == f"groundstation: log file {tmp_path}/station.log: a pipe; name a file\n"
+    assert shown == f"mavhelm: log file {tmp_path}/station.log: a pipe; name a file\n"
 
 
 def test_a_gamepad_without_its_packages_is_one_line(

@@ -1,4 +1,4 @@
-"""`groundstation --plain` beside verbs of another shell, as real programs: they drive, and its end stops the wheels."""
+"""`mavhelm --plain` beside verbs of another shell, as real programs: they drive, and its end stops the wheels."""
 
 from __future__ import annotations
 

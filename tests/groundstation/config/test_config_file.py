@@ -95,7 +95,7 @@ def test_a_dialect_beside_the_file_or_with_a_folder_is_a_path(tmp_path: Path) ->
         ('[endpoints]\n"a b" = "udpin:127.0.0.1:1"',
          "2: endpoints.a b: a name has letters, digits, - _ . only, and begins with a letter or digit"),
         ('[endpoints]\nparam = "udpin:127.0.0.1:1"',
-         "2: endpoints.param: `groundstation param` is a command; choose another name"),
+         "2: endpoints.param: `mavhelm param` is a command; choose another name"),
         ('[endpoints]\na = "udpin:127.0.0.1:0"',
          "2: endpoints.a: endpoint 'udpin:127.0.0.1:0': port '0' is not a number from 1 to 65535"),
         ('[endpoints]\na = ["udpin:0.0.0.0:1", "udpin:0.0.0.0:1"]',

@@ -1,4 +1,4 @@
-"""The file of `groundstation config init`: it runs unchanged, and every example in it is valid."""
+"""The file of `mavhelm config init`: it runs unchanged, and every example in it is valid."""
 
 from __future__ import annotations
 

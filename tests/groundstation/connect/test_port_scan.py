@@ -34,4 +34,4 @@ def test_a_port_that_a_station_of_ones_own_has_is_named_as_such() -> None:
     assert (ours.station, other.station) == (pid, 0)
     shown = ports_value((ours, other), (), 57600, 0)
     assert [row[2].text for row in ports_value((ours, other), (), 57600, None).rows] == ["in use: yours", "in use: x"]
-    assert f"a station of yours ({pid}) has it open: groundstation attach" in [note.text for note in shown.notes]
+    assert f"a station of yours ({pid}) has it open: mavhelm attach" in [note.text for note in shown.notes]

@@ -46,7 +46,7 @@ def test_the_named_key_signs_and_a_missing_name_is_told(keys: Path) -> None:
 
 
 def test_signing_that_is_required_without_a_key_is_told(keys: Path) -> None:
-    with pytest.raises(SigningError, match="`groundstation sign new NAME` makes one"):
+    with pytest.raises(SigningError, match="`mavhelm sign new NAME` makes one"):
         open_signing(0.0, required=True)
 
 

@@ -1,4 +1,4 @@
-"""The real `groundstation`, whose reader of gamepads has virtual ones plugged in. Run as `python -m`."""
+"""The real `mavhelm`, whose reader of gamepads has virtual ones plugged in. Run as `python -m`."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def test_what_a_screen_shows_or_draws_of_another_vehicle() -> None:
 def test_a_verb_gets_what_all_vehicles_send() -> None:
     flotilla = Flotilla(3)
     flotilla.run(3.0)
-    verb = verb_of("groundstation watch")
+    verb = verb_of("mavhelm watch")
     flotilla.station.verbs.join(verb, flotilla.now)
     assert flotilla.near.core.interesting_systems is None  # type: ignore[attr-defined]
     flotilla.station.verbs.leave(verb, flotilla.now)

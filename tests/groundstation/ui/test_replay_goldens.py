@@ -76,7 +76,7 @@ async def test_without_a_log_the_logs_here_are_listed(tmp_path: Path) -> None:
         await screen.show(snapshot())
         assert "drive.tlog" in screen.text
         assert "flight.bin" not in screen.text
-        assert "groundstation replay FILE" in screen.text
+        assert "mavhelm replay FILE" in screen.text
         assert "REPLAY" not in screen.text
 
 

@@ -1,4 +1,4 @@
-"""Asks shells what they propose, with the script of `groundstation completion`."""
+"""Asks shells what they propose, with the script of `mavhelm completion`."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def complete(words: str, folder: Path) -> set[str]:
 
 
 class InteractiveShell:
-    """A shell in a pty, as a person uses it, whose `groundstation` is a stand-in that only notes its arguments."""
+    """A shell in a pty, as a person uses it, whose `mavhelm` is a stand-in that only notes its arguments."""
 
     def __init__(self, shell: str, folder: Path, names: bytes | None = None) -> None:
         """`folder`: where it begins. `names`: a hostile answer to `--names`; None: our program answers."""
@@ -72,7 +72,7 @@ class InteractiveShell:
             stderr=screen,
         )
         os.close(screen)
-        self.type(f"source {script}; groundstation ready\n")
+        self.type(f"source {script}; mavhelm ready\n")
 
     def __enter__(self) -> Self:
         return self
@@ -106,5 +106,5 @@ class InteractiveShell:
 
 
 def _environment(first: Path = PROGRAM.parent) -> dict[str, str]:
-    """Return ours, with the `groundstation` of the folder `first`."""
+    """Return ours, with the `mavhelm` of the folder `first`."""
     return os.environ | {"PATH": f"{first}:{os.environ['PATH']}", "TERM": "xterm"}

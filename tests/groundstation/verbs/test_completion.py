@@ -1,4 +1,4 @@
-"""`groundstation completion`: the scripts, run by the shells that are installed."""
+"""`mavhelm completion`: the scripts, run by the shells that are installed."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from tests.groundstation.verbs.shell import HELPS, InteractiveShell, complete, s
 @pytest.mark.parametrize(
     ("words", "some"),
     [
-        ("groundstation ''", {"arm", "watch", "completion"}),
-        ("groundstation es", {"estop"}),
-        ("groundstation param ''", {"get", "set", "save", "load", "diff"}),
-        ("groundstation param save --c", {"--changed", "--config"}),
-        ("groundstation param save --format ''", {"mavproxy", "qgc", "mp"}),
-        ("groundstation arm ''", {"--wait", "--timeout"}),
-        ("groundstation arm --station o", {"only"}),
-        ("groundstation mode H", {"HOLD"}),
-        ("groundstation watch VFR", {"VFR_HUD"}),
-        ("groundstation command DO_SET_HO", {"DO_SET_HOME"}),
-        ("groundstation estop --cl", {"--clear"}),
-        ("groundstation config ''", {"check", "show", "init", "path"}),
-        ("groundstation calibrate gy", {"gyro"}),
+        ("mavhelm ''", {"arm", "watch", "completion"}),
+        ("mavhelm es", {"estop"}),
+        ("mavhelm param ''", {"get", "set", "save", "load", "diff"}),
+        ("mavhelm param save --c", {"--changed", "--config"}),
+        ("mavhelm param save --format ''", {"mavproxy", "qgc", "mp"}),
+        ("mavhelm arm ''", {"--wait", "--timeout"}),
+        ("mavhelm arm --station o", {"only"}),
+        ("mavhelm mode H", {"HOLD"}),
+        ("mavhelm watch VFR", {"VFR_HUD"}),
+        ("mavhelm command DO_SET_HO", {"DO_SET_HOME"}),
+        ("mavhelm estop --cl", {"--clear"}),
+        ("mavhelm config ''", {"check", "show", "init", "path"}),
+        ("mavhelm calibrate gy", {"gyro"}),
     ],
 )
 def test_bash_proposes(words: str, some: set[str], tmp_path: Path) -> None:
@@ -54,7 +54,7 @@ def test_a_person_types_and_presses_tab(shell: str, tmp_path: Path) -> None:
         "export --mcap my": ["export", "--mcap", "my plan.plan"],
     }
     with InteractiveShell(shell, tmp_path) as typed:
-        assert [typed.tab(f"groundstation {line}") for line in expected] == list(expected.values())
+        assert [typed.tab(f"mavhelm {line}") for line in expected] == list(expected.values())
 
 
 def test_every_proposed_option_exists(capsys: pytest.CaptureFixture[str]) -> None:

@@ -33,7 +33,7 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 class Run:
-    """Runs `groundstation words` as an operator."""
+    """Runs `mavhelm words` as an operator."""
 
     def __init__(self, fleet: Path, capsys: Capture) -> None:
         self._fleet, self._capsys = fleet, capsys

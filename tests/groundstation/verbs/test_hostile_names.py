@@ -38,7 +38,7 @@ def test_no_hostile_name_gets_into_a_command_line(shell: str, line: str, tmp_pat
     names = [*HOSTILE, *(f"Q{each}" for each in HOSTILE if not plain_names([f"Q{each}"])), "Q_PLAIN"]
     with InteractiveShell(shell, tmp_path, "\n".join(names).encode()) as typed:
         for prefix in ("Q", "Q_", ""):
-            assert typed.tab(f"groundstation {line} {prefix}") == [*line.split(), "Q_PLAIN"]
+            assert typed.tab(f"mavhelm {line} {prefix}") == [*line.split(), "Q_PLAIN"]
     assert not list(tmp_path.iterdir())
 
 
@@ -51,8 +51,8 @@ def test_a_hostile_file_name_arrives_as_one_argument(shell: str, tmp_path: Path)
     with InteractiveShell(shell, tmp_path) as typed:
         for number, name in enumerate(FILES):
             folder = tmp_path / f"{number}"
-            typed.type(f"cd {folder}; groundstation ready\n")
-            words = typed.tab("groundstation mission put ")
+            typed.type(f"cd {folder}; mavhelm ready\n")
+            words = typed.tab("mavhelm mission put ")
             assert words[:2] == ["mission", "put"]
             assert words[2:] in _proposals(shell, name), (name, words)
             assert os.listdir(folder) == [name]
@@ -97,8 +97,8 @@ def test_a_vehicle_with_hostile_names_runs_nothing_at_tab(shell: str, station: i
 
         wait_until(heard, "the station has heard no parameter")
     with InteractiveShell(shell, tmp_path) as typed:
-        assert typed.tab("groundstation param get ") == ["param", "get", "SPEED_MAX"]
-        assert typed.tab("groundstation status -v ") == ["status", "-v", "7"]
+        assert typed.tab("mavhelm param get ") == ["param", "get", "SPEED_MAX"]
+        assert typed.tab("mavhelm status -v ") == ["status", "-v", "7"]
     assert not list(tmp_path.iterdir())
 
 

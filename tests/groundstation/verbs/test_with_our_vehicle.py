@@ -28,7 +28,7 @@ LOG = random.Random(7).randbytes(20_000)
 
 
 class Verb:
-    """Runs `groundstation words -e vehicle -v 1`."""
+    """Runs `mavhelm words -e vehicle -v 1`."""
 
     def __init__(self, capsys: Capture, endpoint: str) -> None:
         self._capsys = capsys

@@ -39,7 +39,7 @@ class VerbRun:
 
 
 def run_verb(capsys: pytest.CaptureFixture[str], *arguments: str) -> VerbRun:
-    """Run `groundstation arguments`."""
+    """Run `mavhelm arguments`."""
     capsys.readouterr()
     try:
         code = main(arguments)

@@ -168,7 +168,7 @@ def test_the_terminal_becomes_that_of_the_program() -> None:
             drawn += data
     os.close(ours)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-    assert drawn.startswith(b"groundstation 0.")
+    assert drawn.startswith(b"mavhelm 0.")
 
 
 def _in_terminal(terminal: int) -> int:

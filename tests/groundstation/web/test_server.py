@@ -105,7 +105,7 @@ async def test_who_is_let_in(headers: dict[str, str], status: int) -> None:
             found, text = await server.get(page, sent)
             assert found == status, page
             assert status == 200 or text in {
-                "no valid token: open the address that `groundstation serve --web` has printed\n",
+                "no valid token: open the address that `mavhelm serve --web` has printed\n",
                 f"wrong Host: open http://127.0.0.1:{server.port}\n",
                 "wrong Origin: only this server's own page may open it\n",
             }
@@ -447,7 +447,7 @@ async def test_the_program_serves_groundstation_in_tabs(
         aiohttp.ClientSession(headers=headers) as browser,
         browser.ws_connect(f"{base}/ws") as tab,
     ):
-        await read_until(tab, "groundstation 0.")
+        await read_until(tab, "mavhelm 0.")
         for each in loggers:
             for _ in range(30):
                 each.warning("rubbish")
@@ -485,7 +485,7 @@ async def test_without_a_token_the_program_does_not_serve(
     ("arguments", "code", "text"),
     [
         (["--help"], 0, r"usage: groundstation.web.server .*the socket that listens"),
-        (["--help"], 0, r"\brest\b.*arguments of `groundstation` for a tab"),
+        (["--help"], 0, r"\brest\b.*arguments of `mavhelm` for a tab"),
         ([], 2, "the following arguments are required: --fd"),
         (["--fd", "x"], 2, "argument --fd: invalid int value: 'x'"),
     ],

@@ -235,5 +235,5 @@ async def test_the_screen_is_a_groundstation() -> None:
     shown = Shown(*screen_command(["--version"]))
     async with asyncio.timeout(PATIENCE):
         await shown.showing
-    assert shown.drawn.startswith("groundstation 0.")
+    assert shown.drawn.startswith("mavhelm 0.")
     await shown.close()

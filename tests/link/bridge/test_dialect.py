@@ -40,4 +40,4 @@ def test_a_file_with_a_mistake_is_a_usage_error(capsys: pytest.CaptureFixture[st
     with pytest.raises(SystemExit) as caught:
         main(["udpin:127.0.0.1:1", "udpin:127.0.0.1:2", "--dialect", "nowhere.xml"])
     assert caught.value.code == 2
-    assert capsys.readouterr().err == "bridge: nowhere.xml: no such file: name the XML file of the dialect\n"
+    assert capsys.readouterr().err == "mavhelm bridge: nowhere.xml: no such file: name the XML file of the dialect\n"

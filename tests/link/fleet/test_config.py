@@ -26,7 +26,7 @@ ROUTER = "tls/fleet.example.org:7447"
 
 
 def write(folder: Path, **content: Any) -> str:
-    """Write a file as `bridge fleet add` does; return its path."""
+    """Write a file as `mavhelm bridge fleet add` does; return its path."""
     whose = {"fleet": "farm", "name": "alice", "role": "drive"} | content.pop("whose", {})
     content = {
         "connect": {"endpoints": [content.pop("router", ROUTER)]},

@@ -73,7 +73,7 @@ async def test_a_member_is_told_in_its_log(tmp_path: Path, caplog: pytest.LogCap
         warned = re.findall(
             r"the certificate of alice ends on .* in (?:29|30) days: `(.*)` makes a new file", caplog.text
         )
-        assert warned == (["bridge fleet renew alice"] if certificate_of_the_file else [])
+        assert warned == (["mavhelm bridge fleet renew alice"] if certificate_of_the_file else [])
 
 
 def test_a_router_is_told_of_its_own_and_of_the_authority(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ def test_a_module_runs_beside_a_package_of_the_same_name(tmp_path: Path, monkeyp
         process = start_module("groundstation", ["--version"], output=output)
         assert end_process(process, 60.0) == 0
         output.seek(0)
-        assert output.read().startswith(b"groundstation 0.")
+        assert output.read().startswith(b"mavhelm 0.")
 
 
 @pytest.mark.e2e

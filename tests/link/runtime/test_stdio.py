@@ -69,7 +69,7 @@ def test_a_mistake_is_a_mistake_also_where_nobody_is_told(
 def test_a_full_disk_behind_the_output_is_one_line(tmp_path: Path) -> None:
     done = run(["-m", "vehicle", "schema"], tmp_path, ">/dev/full")
     assert done.returncode == 1
-    assert done.stderr == b"vehicle schema: No space left on device\n"
+    assert done.stderr == b"mavhelm vehicle schema: No space left on device\n"
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_a_reader_that_goes_is_no_error(words: list[str], tmp_path: Path) -> Non
 
 def test_help_on_a_full_disk_is_one_line(tmp_path: Path) -> None:
     done = run(["-m", "groundstation", "--version"], tmp_path, ">/dev/full")
-    assert (done.returncode, done.stderr) == (1, b"groundstation: output: No space left on device\n")
+    assert (done.returncode, done.stderr) == (1, b"mavhelm: output: No space left on device\n")
 
 
 def test_another_pipe_that_breaks_is_not_hidden() -> None:

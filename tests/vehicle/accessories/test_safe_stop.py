@@ -115,10 +115,10 @@ def test_after_a_kill_safe_stop_makes_accessories_safe(tmp_path: Path) -> None:
         assert rig.safe, ended.stderr
         assert rig.chip.pulse(0) == pytest.approx(1.5e-3, abs=5e-6)
         assert ended.stderr.splitlines()[1:] == [
-            f"vehicle safe-stop: {MOTORS}:Pca9685: motors neutral and without power",
-            "vehicle safe-stop: relay 0: off",
-            "vehicle safe-stop: relay 1: off",
-            "vehicle safe-stop: servo 9: no pulses",
+            f"mavhelm vehicle safe-stop: {MOTORS}:Pca9685: motors neutral and without power",
+            "mavhelm vehicle safe-stop: relay 0: off",
+            "mavhelm vehicle safe-stop: relay 1: off",
+            "mavhelm vehicle safe-stop: servo 9: no pulses",
         ]
 
 
@@ -170,12 +170,14 @@ def test_a_mistake_in_accessories_does_not_keep_motors_turning(tmp_path: Path) -
     file = tmp_path / "rover.toml"
     file.write_text('accessories = 3\n[motors]\ndriver = "simulated"\n')
     code, _, error = said_by("safe-stop", "--config", str(file))
-    assert (code, error) == (0, "vehicle safe-stop: simulated: motors neutral and without power\n")
+    assert (code, error) == (0, "mavhelm vehicle safe-stop: simulated: motors neutral and without power\n")
     file.write_text('[motors]\ndriver = "simulated"\n[accessories]\nrelays = [{ driver = "simulated" }]\n')
     code, _, error = said_by("safe-stop", "--config", str(file))
     assert code == 0
-    assert error.splitlines()[0] == "vehicle safe-stop: simulated: motors neutral and without power"
-    assert error.splitlines()[1].startswith("vehicle safe-stop: accessories.relays[0]: may still have its last value: ")
+    assert error.splitlines()[0] == "mavhelm vehicle safe-stop: simulated: motors neutral and without power"
+    assert error.splitlines()[1].startswith(
+        "mavhelm vehicle safe-stop: accessories.relays[0]: may still have its last value: "
+    )
 
 
 def test_it_needs_neither_the_loop_nor_the_dialect(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`vehicle check`: one line for each item, nothing moves, and the code says where the fault is."""
+"""`mavhelm vehicle check`: one line for each item, nothing moves, and the code says where the fault is."""
 
 from __future__ import annotations
 
@@ -199,7 +199,7 @@ def test_gpsd_is_asked(tmp_path: Path, report: bytes, says: str) -> None:
 def test_without_a_file_it_says_how_to_get_one(tmp_path: Path) -> None:
     code, out, _ = said_by("check", str(tmp_path / "rover.toml"))
     assert code == 2
-    assert "`vehicle init" in out
+    assert "`mavhelm vehicle init" in out
 
 
 def test_it_reckons_with_the_parameters_that_the_vehicle_keeps(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""docs/dialect.md is what `vehicle dialect` prints, and leaves nothing out."""
+"""docs/dialect.md is what `mavhelm vehicle dialect` prints, and leaves nothing out."""
 
 from __future__ import annotations
 

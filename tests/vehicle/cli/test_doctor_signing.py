@@ -1,4 +1,4 @@
-"""The row `signing` of `vehicle doctor`: keys, open links, and what to do."""
+"""The row `signing` of `mavhelm vehicle doctor`: keys, open links, and what to do."""
 
 from __future__ import annotations
 

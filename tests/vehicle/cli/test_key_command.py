@@ -1,4 +1,4 @@
-"""`vehicle key`: keys are made, shown on request only, entered, listed and revoked."""
+"""`mavhelm vehicle key`: keys are made, shown on request only, entered, listed and revoked."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vehicle.cli.main import main
 
 
 class Shell:
-    """Runs `vehicle key` with a state folder."""
+    """Runs `mavhelm vehicle key` with a state folder."""
 
     def __init__(self, capsys: pytest.CaptureFixture[str], state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.state = state

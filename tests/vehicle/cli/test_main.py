@@ -118,7 +118,8 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         main(["--config", str(file)])
     assert ended.value.code == 2
     assert capsys.readouterr().err == (
-        f"vehicle: {file}: motors.prot: unknown key; did you mean port? (and 2 more; see `vehicle check`)\n"
+        f"mavhelm vehicle: {file}: motors.prot: unknown key; did you mean port? "
+        "(and 2 more; see `mavhelm vehicle check`)\n"
     )
 
 
@@ -160,13 +161,13 @@ def test_a_mistake_is_one_line_and_code_2(capsys: pytest.CaptureFixture[str], wo
     assert ended.value.code == 2
     assert out == ""
     assert says in err
-    assert err.startswith("vehicle: ")
+    assert err.startswith("mavhelm vehicle: ")
     assert err.count("\n") == 1
 
 
 def test_no_words_teach(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
-    assert "vehicle --sim" in capsys.readouterr().err
+    assert "mavhelm vehicle --sim" in capsys.readouterr().err
 
 
 def test_help_teaches_with_examples(capsys: pytest.CaptureFixture[str]) -> None:
@@ -182,7 +183,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["--version"])
     assert ended.value.code == 0
-    assert capsys.readouterr().out.startswith("vehicle (mavhelm)")
+    assert capsys.readouterr().out.startswith("mavhelm vehicle ")
 
 
 def test_help_does_not_import_the_daemon() -> None:

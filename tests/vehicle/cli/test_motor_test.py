@@ -168,7 +168,9 @@ def test_without_a_yes_nothing_turns(line: OnPty, tmp_path: Path) -> None:
         command(line, tmp_path, "left"), stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
     )
     assert ended.returncode == 2
-    assert ended.stderr == "vehicle motor-test: a wheel will turn; lift the wheels off the ground and add --yes\n"
+    assert (
+        ended.stderr == "mavhelm vehicle motor-test: a wheel will turn; lift the wheels off the ground and add --yes\n"
+    )
     assert line.controller.outputs == [0.0, 0.0]
     assert line.tail == b""
 
@@ -197,7 +199,7 @@ def test_ctrl_c_stops_it(line: OnPty, tmp_path: Path, number: signal.Signals) ->
     line.until(lambda: line.controller.outputs[1] > 0.1)
     process.send_signal(number)
     _, told = process.communicate(timeout=PATIENCE)
-    assert (process.returncode, told) == (0, f"vehicle motor-test: stopped by {number.name}, motors neutral\n")
+    assert (process.returncode, told) == (0, f"mavhelm vehicle motor-test: stopped by {number.name}, motors neutral\n")
     assert line.controller.outputs == [0.0, 0.0]
 
 
@@ -230,7 +232,7 @@ def test_without_knowing_what_is_kept_nothing_turns(line: OnPty, tmp_path: Path)
     words = ["--config", str(file_for(line, tmp_path)), "right", "--yes"]
     code, _, error = said_by("motor-test", *words)
     damaged = "parameter file damaged; start the vehicle and set a parameter from a ground station to repair it"
-    assert (code, error) == (2, f"vehicle motor-test: {tmp_path}: {damaged}\n")
+    assert (code, error) == (2, f"mavhelm vehicle motor-test: {tmp_path}: {damaged}\n")
     code, _, _ = said_by("motor-test", *words, "--time", "0.1", "--state", str(tmp_path / "elsewhere"))
     assert code == 0
 
@@ -243,7 +245,7 @@ def test_while_a_vehicle_runs_it_is_refused(line: OnPty, tmp_path: Path) -> None
         process.send_signal(signal.SIGSTOP)  # so that it holds them however long the second takes to start
         second = subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE)
         assert second.returncode == 1
-        assert second.stderr.startswith("vehicle motor-test: the motors are in use by another vehicle")
+        assert second.stderr.startswith("mavhelm vehicle motor-test: the motors are in use by another vehicle")
     finally:
         process.kill()
         process.wait(PATIENCE)
@@ -264,5 +266,5 @@ def test_a_mistake_is_one_line(tmp_path: Path, words: str, says: str) -> None:
     file.write_text(f'state = "{tmp_path}"\n[motors]\ndriver = "simulated"\n')
     code, out, error = said_by("motor-test", "--config", str(file), *words.split())
     assert (code, out, error.count("\n")) == (2, "", 1)
-    assert error.startswith("vehicle motor-test: ")
+    assert error.startswith("mavhelm vehicle motor-test: ")
     assert says in error

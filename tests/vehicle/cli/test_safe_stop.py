@@ -162,7 +162,7 @@ def test_after_a_kill_in_a_motor_test_safe_stop_ends_it(tmp_path: Path) -> None:
     [
         ("[motors\n", "rover.toml: Expected ']'"),
         (None, "rover.toml: No such file or directory; stopping only the motors that the vehicle used"),
-        ('[motors]\ndriver = "simulated"\n', "vehicle safe-stop: simulated: motors neutral and without power"),
+        ('[motors]\ndriver = "simulated"\n', "mavhelm vehicle safe-stop: simulated: motors neutral and without power"),
     ],
     ids=["broken", "gone", "other motors"],
 )
@@ -175,7 +175,7 @@ def test_a_file_changed_during_the_drive_keeps_nothing_turning(tmp_path: Path, n
         code, said = safe_stop(file)
         assert code == 0
         assert says in said
-        assert "vehicle safe-stop: roboclaw: motors neutral and without power\n" in said
+        assert "mavhelm vehicle safe-stop: roboclaw: motors neutral and without power\n" in said
         assert not rig.turning()
 
 
@@ -254,7 +254,7 @@ def test_a_motor_that_cannot_be_stopped_is_named_with_code_0(tmp_path: Path) -> 
     assert code == 0
     first, last = error.splitlines()
     assert "/dev/nowhere" in first
-    assert last == "vehicle safe-stop: roboclaw: motors may still turn, cut their power"
+    assert last == "mavhelm vehicle safe-stop: roboclaw: motors may still turn, cut their power"
 
 
 @pytest.mark.parametrize("text", ["", "[motors]\n", "motors = 1\n", "[motors\n", "\udcff"])
@@ -271,7 +271,7 @@ def test_no_file_is_a_mistake(tmp_path: Path) -> None:
     code, _, error = said_by("safe-stop", "--config", str(tmp_path / "none"))
     what_to_do = "nothing is stopped: cut the power of motors that turn, and fix the file"
     assert code == 2
-    assert error == f"vehicle safe-stop: {tmp_path / 'none'}: No such file or directory; {what_to_do}\n"
+    assert error == f"mavhelm vehicle safe-stop: {tmp_path / 'none'}: No such file or directory; {what_to_do}\n"
 
 
 def test_it_needs_neither_the_loop_nor_the_dialect(tmp_path: Path) -> None:

@@ -46,8 +46,8 @@ def service(place: UnitOptions) -> dict[str, str]:
 def test_it_is_watched_and_restarted_and_its_end_stops_motors(place: UnitOptions) -> None:
     said = service(place)
     assert said["Type"] == "notify"
-    assert said["ExecStart"] == f"{PYTHON} -m vehicle --config {place.config}"
-    assert said["ExecStopPost"] == f"{PYTHON} -m vehicle safe-stop --config {place.config}"
+    assert said["ExecStart"] == f"{PYTHON} -m mavhelm vehicle --config {place.config}"
+    assert said["ExecStopPost"] == f"{PYTHON} -m mavhelm vehicle safe-stop --config {place.config}"
     assert (said["WatchdogSec"], said["WatchdogSignal"]) == ("1", "SIGKILL")
     assert (said["Restart"], said["RestartSec"]) == ("always", "0.5")
     assert said["StateDirectory"] == "mavhelm"
@@ -71,7 +71,7 @@ def test_a_path_with_odd_characters_is_one_word() -> None:
 
 def test_the_command_in_its_comment_is_quoted_for_a_shell() -> None:
     unit = build_unit(UnitOptions(Path("/etc/$(touch x) 50%.toml")))
-    assert "#   vehicle systemd-unit --config '/etc/$(touch x) 50%.toml' | sudo tee" in unit
+    assert "#   mavhelm vehicle systemd-unit --config '/etc/$(touch x) 50%.toml' | sudo tee" in unit
 
 
 @pytest.mark.parametrize("name", ["a\nUser=root", "a\rb", "a\x1b[2J"])

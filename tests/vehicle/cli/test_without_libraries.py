@@ -46,7 +46,7 @@ def run(laptop: dict[str, str], *words: str) -> tuple[int, str]:
 
 def test_template_and_schema_are_the_same(laptop: dict[str, str], tmp_path: Path) -> None:
     file = tmp_path / "rover.toml"
-    assert run(laptop, "init", str(file)) == (0, f"wrote {file}; edit it, then run: vehicle check {file}\n")
+    assert run(laptop, "init", str(file)) == (0, f"wrote {file}; edit it, then run: mavhelm vehicle check {file}\n")
     assert file.read_text() == build_template()
     assert run(laptop, "schema") == (0, build_schema())
 

@@ -141,12 +141,12 @@ def test_several_mistakes_are_all_found() -> None:
     assert [each.split(": ")[1] for each in found] == [
         "endpoints[0]", "lgo", "motors.driver", "params.MAN_TIMEOUT", "params.X"
     ]  # fmt: skip
-    assert str(RoverConfigError(*found)) == f"{found[0]} (and 4 more; see `vehicle check`)"
+    assert str(RoverConfigError(*found)) == f"{found[0]} (and 4 more; see `mavhelm vehicle check`)"
 
 
 def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
     with pytest.raises(
-        RoverConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes a template"
+        RoverConfigError, match=r"No such file or directory; `mavhelm vehicle init .*rover.toml` writes a template"
     ):
         load(tmp_path / "rover.toml")
     with pytest.raises(RoverConfigError, match=r"aaa: File name too long$"):

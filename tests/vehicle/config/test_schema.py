@@ -32,7 +32,9 @@ def test_the_schema_knows_every_key_with_its_help() -> None:
 
 def test_the_shipped_schema_is_the_codes() -> None:
     shipped = Path(vehicle.__file__).with_name("config") / "rover.schema.json"
-    assert shipped.read_text() == build_schema(), "run: .venv/bin/vehicle schema > vehicle/config/rover.schema.json"
+    assert shipped.read_text() == build_schema(), (
+        "run: .venv/bin/mavhelm vehicle schema > vehicle/config/rover.schema.json"
+    )
 
 
 def test_every_reference_in_the_schema_leads_somewhere() -> None:

@@ -89,11 +89,11 @@ def test_what_goes_around_a_driver_is_in_it() -> None:
 
 def test_init_writes_it_once(tmp_path: Path) -> None:
     file = tmp_path / "rover.toml"
-    assert said_by("init", str(file)) == (0, f"wrote {file}; edit it, then run: vehicle check {file}\n", "")
+    assert said_by("init", str(file)) == (0, f"wrote {file}; edit it, then run: mavhelm vehicle check {file}\n", "")
     assert file.read_text() == build_template()
     file.write_text("mine")
     code, _, error = said_by("init", str(file))
-    assert (code, error) == (2, f"vehicle init: {file} exists already; choose another name, or remove it\n")
+    assert (code, error) == (2, f"mavhelm vehicle init: {file} exists already; choose another name, or remove it\n")
     assert file.read_text() == "mine"
     code, _, error = said_by("init", str(tmp_path / "no" / "folder"))
     assert (code, error.count("\n")) == (2, 1)

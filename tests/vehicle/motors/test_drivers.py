@@ -55,7 +55,7 @@ def test_a_driver_of_your_own_gets_its_settings() -> None:
     assert open_motors(f"{__name__}:OwnMotors", {"count": 3}).count == 3
     with pytest.raises(MotorSettingsError, match="motor settings: count: Expected `int`, got `str`"):
         open_motors(f"{__name__}:OwnMotors", {"count": "three"})
-    with pytest.raises(MotorSettingsError, match=r"needs settings, at least count: .* `vehicle init` writes"):
+    with pytest.raises(MotorSettingsError, match=r"needs settings, at least count: .* `mavhelm vehicle init` writes"):
         open_motors(f"{__name__}:OwnMotors")
 
 

@@ -62,7 +62,7 @@ def test_what_it_says_to_do_closes_the_network(tmp_path: Path) -> None:
     place = "udpin:0.0.0.0:14550"
     keys = VehicleKeys(tmp_path / FILE)
     try:
-        advice = f"make a key with `vehicle key new NAME --state {tmp_path}`"
+        advice = f"make a key with `mavhelm vehicle key new NAME --state {tmp_path}`"
         assert f"nobody may drive: {advice}" in str(guards(SigningSettings(), place, keys).warning)
         allowed = guards(SigningSettings(allow_unsigned=True), place, keys)
         assert str(allowed.warning).endswith(f"to close it, {advice} and remove allow_unsigned")

@@ -79,7 +79,7 @@ def write_config(folder: Path, endpoint: str, motors: str) -> Path:
 
 @contextlib.contextmanager
 def rover(config: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
-    """Run `vehicle --config FILE` until the end of the test."""
+    """Run `mavhelm vehicle --config FILE` until the end of the test."""
     with (config.parent / "vehicle.err").open("a") as errors:
         process = subprocess.Popen(
             [sys.executable, "-m", "vehicle", "--config", str(config), *words], stderr=errors, text=True
@@ -93,7 +93,7 @@ def rover(config: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def safe_stop(config: Path) -> str:
-    """Run `vehicle safe-stop`; return what it prints."""
+    """Run `mavhelm vehicle safe-stop`; return what it prints."""
     command = [sys.executable, "-m", "vehicle", "safe-stop", "--config", str(config)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""The unit that `vehicle systemd-unit` prints, under systemd of the virtual machine, with motors at real pins."""
+"""The unit that `mavhelm vehicle systemd-unit` prints, under systemd of the virtual machine, with motors at pins."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.vm.inside.header import GPIO, ahead, drive, silent, write_config
 
 UNIT = "rover.service"
 UNITS = Path("/etc/systemd/system")
-SAFE_STOP = "vehicle safe-stop: article-car: motors neutral"
+SAFE_STOP = "mavhelm vehicle safe-stop: article-car: motors neutral"
 DROP_IN = """\
 [Service]
 {watchdog}

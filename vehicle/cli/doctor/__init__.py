@@ -1,4 +1,4 @@
-"""`vehicle doctor`: all that the vehicle needs on its computer, a row each. Nothing moves.
+"""`mavhelm vehicle doctor`: all that the vehicle needs on its computer, a row each. Nothing moves.
 
 To add or change:
 - what `vehicle doctor` examines: a function in `vehicle/cli/doctor/`; its row in `table.py`, `ROWS`; what it judges:

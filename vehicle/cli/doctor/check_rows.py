@@ -1,4 +1,4 @@
-"""Rows of `vehicle doctor` that judge what `vehicle check` finds: file, motors, accessories, sensors, links."""
+"""Rows of `mavhelm vehicle doctor` that judge what `vehicle check` finds: file, motors, accessories, sensors, links."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ def config(facts: VehicleDoctorFacts) -> Finding:
     if failed and failed[0].item == "parameters":
         return warn(*_split(failed[0].detail))
     if failed:
-        more = f" (+{len(failed) - 1} more: vehicle check {facts.path})" if len(failed) > 1 else ""
+        more = f" (+{len(failed) - 1} more: mavhelm vehicle check {facts.path})" if len(failed) > 1 else ""
         evidence, advice = _split(failed[0].detail)
-        return fault(f"{evidence}{more}", advice or f"correct it, then: vehicle doctor {facts.path}")
+        return fault(f"{evidence}{more}", advice or f"correct it, then: mavhelm vehicle doctor {facts.path}")
     counts = "; ".join(each.detail for each in facts.select("parameters"))
     return ok(f"{facts.path}; parameters: {counts}")
 

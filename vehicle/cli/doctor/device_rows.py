@@ -1,4 +1,4 @@
-"""Rows of `vehicle doctor` about the device files that the configuration needs: permissions, serial ports, pins."""
+"""Rows of `mavhelm vehicle doctor` about the device files of the configuration: permissions, serial ports, pins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""DoctorFacts: what the rows of `vehicle doctor` judge."""
+"""DoctorFacts: what the rows of `mavhelm vehicle doctor` judge."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class VehicleDoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     """The configuration file."""
     user: str
     checks: tuple[CheckResult, ...] = ()
-    """As `vehicle check` prints them."""
+    """As `mavhelm vehicle check` prints them."""
     pins: tuple[str, ...] = ()
     """Pins in use, e.g. "GPIO 5"."""
     simulated_pins: bool = False

@@ -1,4 +1,4 @@
-"""Reads the facts for `vehicle doctor` from the file, the kernel and systemd."""
+"""Reads the facts for `mavhelm vehicle doctor` from the file, the kernel and systemd."""
 
 from __future__ import annotations
 

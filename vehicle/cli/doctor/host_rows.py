@@ -1,4 +1,4 @@
-"""Rows of `vehicle doctor` about the computer: service, power, clock, disk."""
+"""Rows of `mavhelm vehicle doctor` about the computer: service, power, clock, disk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The row `signing` of `vehicle doctor`: who may send commands over a network."""
+"""The row `signing` of `mavhelm vehicle doctor`: who may send commands over a network."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from link.runtime.diagnosis import Finding, fault, fault_of, ok, warn
 from vehicle.cli.doctor.check_rows import AFTER_CONFIG
 from vehicle.cli.doctor.facts import VehicleDoctorFacts
 
-NEW_KEY = "vehicle key new NAME, then install it at the ground station (docs/security.md)"
+NEW_KEY = "mavhelm vehicle key new NAME, then install it at the ground station (docs/security.md)"
 SHOWN = "write each name under [signing] private as `ip link` shows it, and restart after the tunnel has come up"
 CLOSE = "remove allow_unsigned; each ground station then needs a key (docs/security.md)"
 

@@ -1,4 +1,4 @@
-"""ROWS: all that `vehicle doctor` examines, in order. A new one is a function and a row here."""
+"""ROWS: all that `mavhelm vehicle doctor` examines, in order. A new one is a function and a row here."""
 
 from __future__ import annotations
 

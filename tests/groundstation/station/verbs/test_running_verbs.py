@@ -28,7 +28,7 @@ class Ashore:
         self.began = self.cockpit.now
         self.seat = SeatLog()
         self.heard, self.refusals = self.seat.heard, self.seat.refusals
-        self.verb = self.add("groundstation send", takes_part=takes_part)
+        self.verb = self.add("mavhelm send", takes_part=takes_part)
         self.alive = True
 
     def add(self, name: str, *, takes_part: bool = True, follows: bool = False) -> Verb:
@@ -138,10 +138,10 @@ def test_a_thawed_verb_is_found_out_by_its_first_packet() -> None:
 
 def test_of_two_verbs_the_first_drives() -> None:
     ashore = Ashore()
-    other = ashore.add("groundstation drive (pid 2)")
+    other = ashore.add("mavhelm drive (pid 2)")
     ashore.run(0.2, FULL)
     ashore.send(FULL, verb=other)
-    assert ashore.refusals == ["the groundstation send drives"]
+    assert ashore.refusals == ["the mavhelm send drives"]
     ashore.run(0.2, FULL)
     assert ashore.cockpit.demands()[-1][1] == 1000
 
@@ -183,7 +183,7 @@ def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:
 def test_arming_by_verb_is_control_of_a_vehicle_that_tells_none() -> None:
     cockpit = Cockpit(FakeArduPilot())
     cockpit.run(1.5)
-    verb = verb_of("groundstation arm", takes_part=True)
+    verb = verb_of("mavhelm arm", takes_part=True)
     cockpit.station.verbs.join(verb, cockpit.now)
     command = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
     cockpit.station.verbs.handle(verb, command, cockpit.now)
@@ -195,7 +195,7 @@ def test_arming_by_verb_is_control_of_a_vehicle_that_tells_none() -> None:
 def test_a_verb_that_comes_knows_at_once_what_was_heard() -> None:
     ashore = Ashore()
     ashore.heard.clear()
-    ashore.add("groundstation status")
+    ashore.add("mavhelm status")
     kinds = [type(each.message) for each in ashore.heard]
     assert kinds[0] is m.Heartbeat, "the verb would take nothing that comes before it"
     assert len(kinds) > 1
@@ -208,7 +208,7 @@ def test_the_key_of_setup_signing_reaches_no_verb() -> None:
     key = ashore.heard[-1]._replace(message=m.SetupSigning(255, 190, [7] * 32, 1))
     ashore.heard.clear()
     ashore.verbs.receive(key, ashore.cockpit.now)
-    ashore.add("groundstation status")
+    ashore.add("mavhelm status")
     heard = [each.message for each in ashore.heard if isinstance(each.message, m.SetupSigning)]
     assert len(heard) >= 1
     assert not any(byte for message in heard for byte in message.secret_key)
@@ -231,7 +231,7 @@ def test_verb_that_follows_keeps_the_session_of_the_former_verb() -> None:
     ashore = Ashore()
     assert not ashore.verbs.may_follow(ashore.cockpit.now)  # the last driver was a screen
     ashore.run(0.5)
-    watch = ashore.add("groundstation watch", takes_part=False, follows=ashore.verbs.may_follow(ashore.cockpit.now))
+    watch = ashore.add("mavhelm watch", takes_part=False, follows=ashore.verbs.may_follow(ashore.cockpit.now))
     assert ashore.passed(BEAT, PROOF, verb=watch) == [0, 0]  # the verb before still runs
     ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     assert ashore.passed(BEAT, PROOF, verb=watch) == [1, 1]
@@ -243,14 +243,14 @@ def test_what_follows_begins_soon_and_a_verb_that_looks_is_none() -> None:
     ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     assert ashore.verbs.may_follow(ashore.cockpit.now + KEEP - STEP)
     assert not ashore.verbs.may_follow(ashore.cockpit.now + KEEP + STEP)
-    assert ashore.passed(BEAT, PROOF, verb=ashore.add("groundstation status", takes_part=False)) == [0, 0]
+    assert ashore.passed(BEAT, PROOF, verb=ashore.add("mavhelm status", takes_part=False)) == [0, 0]
 
 
 def test_a_screen_that_drove_since_then_leaves_nothing_to_follow() -> None:
     """Else the vehicle of a screen that was killed would drive on for as long as a verb looks."""
     ashore = Ashore()
     ashore.run(0.5)
-    watch = ashore.add("groundstation watch", takes_part=False, follows=True)
+    watch = ashore.add("mavhelm watch", takes_part=False, follows=True)
     ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     ashore.cockpit.leasing = True
     ashore.cockpit.run(0.5)

@@ -141,7 +141,7 @@ def test_a_file_that_no_packet_holds_is_refused() -> None:
     client.load(Param(f"PARAMETER_{number:05}", 0.1, 9, number) for number in range(8000))
     found = view(drive, ParamExportRequest(1, "qgc"), ParamExport)
     assert (found.text, found.count) == ("", 0)
-    assert "groundstation param save" in found.problem
+    assert "mavhelm param save" in found.problem
 
 
 def test_kept_rows_are_made_anew_for_each_thing_that_changes() -> None:

@@ -17,7 +17,7 @@ def welcome(value: WelcomeValue) -> str:
 def test_a_vehicle_is_told_the_addresses_of_this_machine() -> None:
     shown = welcome(VALUE)
     assert "this machine         192.168.4.20  10.0.0.7  10.8.0.1\n" in shown.replace(" \n", "\n")
-    assert "vehicle --config rover.toml udpout:192.168.4.20:14550" in shown
+    assert "mavhelm vehicle --config rover.toml udpout:192.168.4.20:14550" in shown
     assert "send to 192.168.4.20:14550" in shown
 
 

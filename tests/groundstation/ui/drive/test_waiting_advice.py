@@ -35,30 +35,30 @@ def described(name: str = "udpin:0.0.0.0:14550", **changes: Any) -> tuple[bool, 
     [
         (
             "udpin:127.0.0.1:24999",
-            ["vehicle --sim udpout:127.0.0.1:24999", "groundstation udpin:0.0.0.0:24999"],
+            ["mavhelm vehicle --sim udpout:127.0.0.1:24999", "mavhelm udpin:0.0.0.0:24999"],
         ),
-        ("udpin:localhost:1", ["vehicle --sim udpout:localhost:1", "groundstation udpin:0.0.0.0:1"]),
+        ("udpin:localhost:1", ["mavhelm vehicle --sim udpout:localhost:1", "mavhelm udpin:0.0.0.0:1"]),
         (
             "udpin:0.0.0.0:24999",
             [
-                "vehicle --config rover.toml udpout:192.168.1.5:24999",
-                "vehicle --config rover.toml udpout:10.0.0.2:24999",
-                "vehicle --sim udpout:192.168.1.5:24999",
+                "mavhelm vehicle --config rover.toml udpout:192.168.1.5:24999",
+                "mavhelm vehicle --config rover.toml udpout:10.0.0.2:24999",
+                "mavhelm vehicle --sim udpout:192.168.1.5:24999",
             ],
         ),
         (
             "tcpin:10.0.0.2:5760",
-            ["vehicle --config rover.toml tcpout:10.0.0.2:5760", "vehicle --sim tcpout:10.0.0.2:5760"],
+            ["mavhelm vehicle --config rover.toml tcpout:10.0.0.2:5760", "mavhelm vehicle --sim tcpout:10.0.0.2:5760"],
         ),
-        ("udpout:127.0.0.1:24999", ["vehicle --sim udpin:127.0.0.1:24999"]),
-        ("udpout:[::1]:24999", ["vehicle --sim udpin:[::1]:24999"]),
-        ("udpout:rover.local:24999", ["vehicle --config rover.toml udpin:0.0.0.0:24999"]),
-        ("tcpout:rover.local:5760", ["vehicle --config rover.toml tcpin:0.0.0.0:5760"]),
+        ("udpout:127.0.0.1:24999", ["mavhelm vehicle --sim udpin:127.0.0.1:24999"]),
+        ("udpout:[::1]:24999", ["mavhelm vehicle --sim udpin:[::1]:24999"]),
+        ("udpout:rover.local:24999", ["mavhelm vehicle --config rover.toml udpin:0.0.0.0:24999"]),
+        ("tcpout:rover.local:5760", ["mavhelm vehicle --config rover.toml tcpin:0.0.0.0:5760"]),
         ("serial:/dev/ttyUSB0:57600", []),
-        ("zenoh:alice.json5/farm", ["vehicle --config rover.toml zenoh:rover1.json5/farm/rover1"]),
+        ("zenoh:alice.json5/farm", ["mavhelm vehicle --config rover.toml zenoh:rover1.json5/farm/rover1"]),
         (
             "zenoh:tcp/10.0.0.2:7447/farm/rover9",
-            ["vehicle --config rover.toml zenoh:tcp/10.0.0.2:7447/farm/rover9"],
+            ["mavhelm vehicle --config rover.toml zenoh:tcp/10.0.0.2:7447/farm/rover9"],
         ),
     ],
 )
@@ -126,7 +126,7 @@ async def test_the_page_shows_problem_traffic_and_wraps_long_lines() -> None:
         text = " ".join(screen.text.replace("│", " ").split())
         assert "700 frames received from system 2, 3, 254, no HEARTBEAT of a vehicle, 31 bad checksums" in text
         assert "tcpout:10.0.0.9:5760: not connected (Connection refused); trying again" in text
-        assert "vehicle --config rover.toml udpout:192.168.1.5:24999" in text
+        assert "mavhelm vehicle --config rover.toml udpout:192.168.1.5:24999" in text
         assert "0 bytes" not in text
         assert "ENTER starts a simulated rover" in text
         await screen.show(waiting(endpoints=("tcpout:10.0.0.9:5760",)))

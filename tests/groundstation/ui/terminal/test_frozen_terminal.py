@@ -87,7 +87,7 @@ def needs(program: str, package: str) -> pytest.MarkDecorator:
 
 
 class Inside:
-    """`groundstation` in a terminal of another program, which tmux shows."""
+    """`mavhelm` in a terminal of another program, which tmux shows."""
 
     def __init__(self, folder: Path, *arguments: str) -> None:
         self.errors, self.code = folder / "errors", folder / "code"
@@ -182,7 +182,7 @@ def test_latch_is_refused_at_the_start(
     code, said = inside.ended()
     assert code == 2
     assert said == (
-        f"groundstation: --style latch drives on when the terminal freezes, which {name} hides: "
+        f"mavhelm: --style latch drives on when the terminal freezes, which {name} hides: "
         "style hold only, or plain ssh\n"
     )
 

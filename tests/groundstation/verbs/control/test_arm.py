@@ -1,4 +1,4 @@
-"""`groundstation arm` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+"""`mavhelm arm` with vehicles as ArduPilot and PX4 behave, on real sockets."""
 
 from __future__ import annotations
 

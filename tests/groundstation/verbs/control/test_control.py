@@ -1,4 +1,4 @@
-"""`groundstation control` with a vehicle that does not manage control, as ArduPilot behaves, on real sockets."""
+"""`mavhelm control` with a vehicle that does not manage control, as ArduPilot behaves, on real sockets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation drive` with vehicles as ArduPilot and PX4 behave; with ours: test_with_our_vehicle.py."""
+"""`mavhelm drive` with vehicles as ArduPilot and PX4 behave; with ours: test_with_our_vehicle.py."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_it_needs_an_armed_vehicle_that_takes_demands() -> None:
         vehicle.armed = True
         itself = drive(vehicle, *words)
         assert itself.code == ExitCode.REFUSED
-        assert "drives itself (AUTO_MISSION); `groundstation stop` stops it" in itself.err
+        assert "drives itself (AUTO_MISSION); `mavhelm stop` stops it" in itself.err
         assert vehicle.of("MANUAL_CONTROL") == []
 
 

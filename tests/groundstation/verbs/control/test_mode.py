@@ -1,4 +1,4 @@
-"""`groundstation modes` and `mode` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+"""`mavhelm modes` and `mode` with vehicles as ArduPilot and PX4 behave, on real sockets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation reboot` with a vehicle as ArduPilot behaves: progress, the vehicle's own words, silence."""
+"""`mavhelm reboot` with a vehicle as ArduPilot behaves: progress, the vehicle's own words, silence."""
 
 from __future__ import annotations
 

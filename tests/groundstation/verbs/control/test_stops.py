@@ -1,4 +1,4 @@
-"""`groundstation disarm`, `stop` and `estop` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+"""`mavhelm disarm`, `stop` and `estop` with vehicles as ArduPilot and PX4 behave, on real sockets."""
 
 from __future__ import annotations
 

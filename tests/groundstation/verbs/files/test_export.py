@@ -1,4 +1,4 @@
-"""`groundstation export`: its arguments, what it prints, its exit codes; no link is opened and no vehicle needed."""
+"""`mavhelm export`: its arguments, what it prints, its exit codes; no link is opened and no vehicle needed."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def test_several_outputs_at_once(folder: Path, capsys: pytest.CaptureFixture[str
     outputs = ("--mcap", "f.mcap", "--csv", "tables", "--gpx", "f.gpx", "--kml", "f.kml", "--jsonl", "f.jsonl")
     run = export(capsys, "f.tlog", *outputs, "--tlog", "part.tlog", "--from", "+0.5", "--to", "0:01")
     assert (run.code, run.out) == (ExitCode.DONE, "")
-    assert "groundstation: 35 messages in part.tlog\n" in run.err
-    assert "groundstation: 5 points in f.gpx\n" in run.err
+    assert "mavhelm: 35 messages in part.tlog\n" in run.err
+    assert "mavhelm: 5 points in f.gpx\n" in run.err
     assert {each.name for each in folder.iterdir()} == {
         "f.tlog", "f.mcap", "tables", "f.gpx", "f.kml", "f.jsonl", "part.tlog",
     }  # fmt: skip
@@ -114,7 +114,7 @@ def test_a_dialect_names_all_of_them(folder: Path) -> None:
     """In a process of its own: a dialect stays until its process ends."""
     command = [sys.executable, "-m", "groundstation", "export", str(ARDUROVER), "--mcap", "f.mcap"]
     ended = subprocess.run([*command, "--dialect", "ardupilotmega.xml"], capture_output=True, text=True, timeout=50)
-    assert (ended.returncode, ended.stderr) == (0, "groundstation: 2590 messages in f.mcap\n")
+    assert (ended.returncode, ended.stderr) == (0, "mavhelm: 2590 messages in f.mcap\n")
 
 
 def test_without_the_extra_one_line_says_which(folder: Path) -> None:
@@ -123,4 +123,4 @@ def test_without_the_extra_one_line_says_which(folder: Path) -> None:
     command = [sys.executable, "-c", code, "export", "f.tlog", "--mcap", "f.mcap"]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=50)
     expected = f"MCAP needs the package mcap, which is not installed: {install_command('bags')}"
-    assert (ended.returncode, ended.stderr) == (2, f"groundstation: {expected}\n")
+    assert (ended.returncode, ended.stderr) == (2, f"mavhelm: {expected}\n")

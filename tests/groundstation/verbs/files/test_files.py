@@ -1,4 +1,4 @@
-"""`groundstation ftp` and `log` with a vehicle as ArduPilot behaves, on real sockets."""
+"""`mavhelm ftp` and `log` with a vehicle as ArduPilot behaves, on real sockets."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def test_a_vehicle_without_files_and_logs(capsys: Capture, here: Path) -> None:
 
 def test_all_logs_are_erased_only_with_yes(capsys: Capture, vehicle: ForeignVehicle) -> None:
     refused = verb(capsys, vehicle, "log", "erase")
-    assert (refused.code, refused.err) == (2, "groundstation: this erases ALL logs of the vehicle; --yes does it\n")
+    assert (refused.code, refused.err) == (2, "mavhelm: this erases ALL logs of the vehicle; --yes does it\n")
     assert len(vehicle.logs) == 2
     assert verb(capsys, vehicle, "log", "erase", "--yes").code == 0
     assert vehicle.logs == []

@@ -1,4 +1,4 @@
-"""`groundstation param` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+"""`mavhelm param` with vehicles as ArduPilot and PX4 behave, on real sockets."""
 
 from __future__ import annotations
 
@@ -313,7 +313,7 @@ def test_no_vehicle_and_the_wrong_vehicle(capsys: Capture, vehicle: ForeignVehic
     waits, started = Waits(), time.monotonic()
     none = run_verb(capsys, "param", "get", "-e", "udpout:127.0.0.1:9", "--wait", "0.3")
     assert none.code == ExitCode.NO_VEHICLE
-    lacks = "groundstation: no vehicle on udpout:127.0.0.1:9 within 0.3 s: "
+    lacks = "mavhelm: no vehicle on udpout:127.0.0.1:9 within 0.3 s: "
     assert none.err.startswith((f"{lacks}refused: nothing listens there", f"{lacks}no answer; a vehicle must "))
     assert time.monotonic() - started < 5 + waits.total()
     other = run_verb(capsys, "param", "get", "-e", vehicle.endpoint, "-v", "7", "--wait", "2")
@@ -364,7 +364,7 @@ def test_files_that_cannot_be_read_or_written(capsys: Capture, vehicle: ForeignV
 def test_store_and_reset_are_commands_and_reset_wants_yes(capsys: Capture, vehicle: ForeignVehicle) -> None:
     stored, each = param(capsys, vehicle, "store"), ": ArduPilot stores each parameter when it is set"
     why = each if vehicle.autopilot == ARDUPILOT else ""
-    assert (stored.code, stored.err) == (0, f"groundstation: {_name(vehicle)} has stored its parameters{why}\n")
+    assert (stored.code, stored.err) == (0, f"mavhelm: {_name(vehicle)} has stored its parameters{why}\n")
     refused = param(capsys, vehicle, "reset")
     assert refused.code == ExitCode.USAGE
     assert refused.err.endswith("this resets ALL parameters of the vehicle; --yes does it\n")

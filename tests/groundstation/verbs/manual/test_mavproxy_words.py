@@ -13,14 +13,14 @@ from groundstation.verbs.manual.mavproxy_words import ACTIONS, WORDS
 from groundstation.verbs.table import VERBS
 
 SAID = [
-    ("wp list", "use `groundstation mission show`"),
-    ("wp", "use `groundstation mission`"),
-    ("arm throttle", "use `groundstation arm`"),
-    ("param fetch", "use `groundstation param get`"),
-    ("fence load fence.txt", "use `groundstation fence put FILE`"),
+    ("wp list", "use `mavhelm mission show`"),
+    ("wp", "use `mavhelm mission`"),
+    ("arm throttle", "use `mavhelm arm`"),
+    ("param fetch", "use `mavhelm param get`"),
+    ("fence load fence.txt", "use `mavhelm fence put FILE`"),
     ("rc 3 1600", "refused: a vehicle may hold an override"),
     ("module load console", "there are no modules"),
-    ("statsu", "'statsu' is neither a verb nor an endpoint: did you mean `groundstation status`?"),
+    ("statsu", "'statsu' is neither a verb nor an endpoint: did you mean `mavhelm status`?"),
     ("nonsense", "'nonsense' is not an endpoint such as"),
 ]
 
@@ -35,7 +35,7 @@ def test_one_line_names_what_to_write(capsys: pytest.CaptureFixture[str], words:
 
 def test_every_verb_that_is_proposed_exists_and_none_is_hidden() -> None:
     for hint in [*WORDS.values(), *ACTIONS.values()]:
-        for verb, action in re.findall(r"`groundstation ([a-z]+)(?: ([a-z]+))?", hint):
+        for verb, action in re.findall(r"`mavhelm ([a-z]+)(?: ([a-z]+))?", hint):
             assert verb in VERB_HELP | LOCAL_HELP, hint
             assert not action or ONLY in VERBS[verb] or action in VERBS[verb], hint
     assert not set(WORDS) & (VERB_HELP | LOCAL_HELP).keys()

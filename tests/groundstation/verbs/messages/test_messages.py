@@ -1,4 +1,4 @@
-"""`groundstation messages`, `watch`, `request`, `rate`, `command` and `ping` with a foreign vehicle on real sockets."""
+"""`mavhelm messages`, `watch`, `request`, `rate`, `command` and `ping` with a foreign vehicle on real sockets."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_watch_says_that_nothing_comes(capsys: Capture) -> None:
     with foreign_vehicle() as vehicle:
         quiet = verb(capsys, vehicle, "watch", "ATTITUDE.roll", "--until", ">0", "--timeout", "2.2")
         assert quiet.code == ExitCode.DIFFERS
-        assert "`groundstation rate ATTITUDE 2` requests it" in quiet.err
+        assert "`mavhelm rate ATTITUDE 2` requests it" in quiet.err
 
 
 def test_request_prints_a_message(capsys: Capture) -> None:

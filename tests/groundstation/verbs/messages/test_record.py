@@ -1,4 +1,4 @@
-"""`groundstation record`: what is in the file, when it ends, and a file that cannot be written."""
+"""`mavhelm record`: what is in the file, when it ends, and a file that cannot be written."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_full_disk_is_one_line_and_a_code(capsys: Capture) -> None:
     with foreign_vehicle() as vehicle:
         ended = run_verb(capsys, "record", "/dev/full", "--yes", "-e", vehicle.endpoint)
     assert ended.code == ExitCode.PARTLY
-    assert ended.err.splitlines()[1:] == ["groundstation: /dev/full: No space left on device; nothing was recorded"]
+    assert ended.err.splitlines()[1:] == ["mavhelm: /dev/full: No space left on device; nothing was recorded"]
 
 
 @pytest.mark.parametrize("name", ["nowhere/out.tlog", "."])

@@ -1,4 +1,4 @@
-"""`groundstation send`: what arrives, and that no demand is left when the process is interrupted, killed or stopped."""
+"""`mavhelm send`: what arrives, and that no demand is left when the process is interrupted, killed or stopped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation status`, `vehicles` and `links` with vehicles as ArduPilot behaves, on real sockets."""
+"""`mavhelm status`, `vehicles` and `links` with vehicles as ArduPilot behaves, on real sockets."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ def test_plain_prints_changes_in_place_of_a_screen(capsys: Capture) -> None:
         assert shown.startswith("mode HOLD, state disarmed, standby, control --, pre-arm "), line
         assert shown.endswith("failsafe none, link up"), line
         wrong = run_verb(capsys, "status", "--changes", "-e", vehicle.endpoint)
-        assert (wrong.code, wrong.err) == (2, "groundstation: --changes and --for belong to status --watch\n")
+        assert (wrong.code, wrong.err) == (2, "mavhelm: --changes and --for belong to status --watch\n")
 
 
 def test_vehicles_lists_every_vehicle_on_all_links(capsys: Capture) -> None:

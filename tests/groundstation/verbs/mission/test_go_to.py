@@ -1,4 +1,4 @@
-"""`groundstation goto`, `home` and `speed` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+"""`mavhelm goto`, `home` and `speed` with vehicles as ArduPilot and PX4 behave, on real sockets."""
 
 from __future__ import annotations
 

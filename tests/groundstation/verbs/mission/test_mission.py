@@ -1,4 +1,4 @@
-"""`groundstation mission start`, `pause`, `jump`, `check` and `fence on`, with vehicles as ArduPilot and PX4 behave."""
+"""`mavhelm mission start`, `pause`, `jump`, `check` and `fence on`, with vehicles as ArduPilot and PX4 behave."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_start_and_pause_are_changes_of_mode(capsys: Capture, autopilot: int) ->
         vehicle.mode = 1 << 16 if autopilot == PX4 else 0
         disarmed = run(capsys, vehicle, "mission", "start")
         assert disarmed.code == ExitCode.REFUSED
-        assert "is disarmed; `groundstation arm` arms it" in disarmed.err
+        assert "is disarmed; `mavhelm arm` arms it" in disarmed.err
         vehicle.armed = True
         started = run(capsys, vehicle, "mission", "start", "--json")
         assert (started.code, vehicle.mode) == (0, AUTO[autopilot]), started.err

@@ -1,4 +1,4 @@
-"""`groundstation mission`, `fence` and `rally` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+"""`mavhelm mission`, `fence` and `rally` with vehicles as ArduPilot and PX4 behave, on real sockets."""
 
 from __future__ import annotations
 

@@ -92,9 +92,9 @@ def test_a_file_that_is_not_there_is_one_line(
     async def use(shells: Shells) -> None:
         (here / "kept").write_bytes(b"kept")
         assert (await shells.run("param", "load", "none.param")).code == ExitCode.USAGE
-        assert capsys.readouterr().err == "groundstation: none.param: No such file or directory\n"
+        assert capsys.readouterr().err == "mavhelm: none.param: No such file or directory\n"
         assert (await shells.run("ftp", "get", "/logs/1.bin", "kept")).code == ExitCode.USAGE
-        assert capsys.readouterr().err == "groundstation: kept: exists already; --yes overwrites it\n"
+        assert capsys.readouterr().err == "mavhelm: kept: exists already; --yes overwrites it\n"
         assert (here / "kept").read_bytes() == b"kept"
 
     with_station(vehicle, use)

@@ -221,7 +221,7 @@ def test_a_dialect_that_the_station_lacks_is_refused(capsys: pytest.CaptureFixtu
         ended = await shells.run("modes", "--dialect", "my.xml", dialect="of another file")
         assert ended.code == ExitCode.USAGE
         assert capsys.readouterr().err == (
-            "groundstation: my.xml: the station does not know this dialect: "
+            "mavhelm: my.xml: the station does not know this dialect: "
             "start the station with the same --dialect, or take --station never\n"
         )
 

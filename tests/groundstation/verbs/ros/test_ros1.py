@@ -1,4 +1,4 @@
-"""`groundstation ros1` with a stand-in for the node; with ROS 1 and our vehicle: tests/e2e/test_ros1.py."""
+"""`mavhelm ros1` with a stand-in for the node; with ROS 1 and our vehicle: tests/e2e/test_ros1.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation ros2`: its arguments and what it needs. With a router and a vehicle: tests/e2e/test_ros2.py."""
+"""`mavhelm ros2`: its arguments and what it needs. With a router and a vehicle: tests/e2e/test_ros2.py."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_mistakes(capsys: Capture, words: list[str], error: str) -> None:
 def test_a_domain_of_the_environment_that_is_none(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(DOMAIN_VARIABLE, "many")
     wrong = run_verb(capsys, "ros2")
-    assert (wrong.code, wrong.err) == (2, "groundstation: ROS_DOMAIN_ID: 'many' is not a domain from 0 to 232\n")
+    assert (wrong.code, wrong.err) == (2, "mavhelm: ROS_DOMAIN_ID: 'many' is not a domain from 0 to 232\n")
 
 
 @pytest.mark.parametrize("package", ["zenoh", "rosbags", "xxhash", "numpy"])

@@ -58,5 +58,5 @@ def test_a_damaged_file_of_endpoints_is_one_note(
     recent.path.write_text("{")
     lines = [run_verb(capsys, "modes", "--wait", "0.05").err.splitlines() for _ in range(2)]
     assert "was damaged and is now recent.json.damaged" in lines[0][0]
-    assert [line[-1].split(" on ")[0] for line in lines] == ["groundstation: no vehicle"] * 2
+    assert [line[-1].split(" on ")[0] for line in lines] == ["mavhelm: no vehicle"] * 2
     assert len(lines[1]) == 1

@@ -24,11 +24,11 @@ Capture = pytest.CaptureFixture[str]
 
 
 def said(capsys: Capture, *endpoints: str, wait: float = 0.5, verb: str = "status") -> str:
-    """Return what `groundstation VERB` says that hears no vehicle."""
+    """Return what `mavhelm VERB` says that hears no vehicle."""
     run = run_verb(capsys, verb, *(word for each in endpoints for word in ("-e", each)), "--wait", str(wait))
     assert run.code == ExitCode.NO_VEHICLE
     [line] = run.err.splitlines()
-    return line.removeprefix("groundstation: ")
+    return line.removeprefix("mavhelm: ")
 
 
 @contextmanager

@@ -60,7 +60,7 @@ def verb(capsys: Capture, vehicle: Vehicle) -> Iterator[Run]:
 
 
 class Run:
-    """Runs `groundstation words` without an endpoint."""
+    """Runs `mavhelm words` without an endpoint."""
 
     def __init__(self, capsys: Capture) -> None:
         self._capsys = capsys
@@ -104,7 +104,7 @@ def test_what_the_station_hears_can_be_recorded(verb: Run, tmp_path: Path) -> No
 def test_a_full_disk_of_the_shell_ends_a_recording(verb: Run) -> None:
     ended = verb("record", "/dev/full", "--yes", "--station", "only")
     assert ended.code == ExitCode.PARTLY
-    assert ended.err.splitlines()[1:] == ["groundstation: /dev/full: No space left on device; nothing was recorded"]
+    assert ended.err.splitlines()[1:] == ["mavhelm: /dev/full: No space left on device; nothing was recorded"]
 
 
 def test_a_node_of_ros_drives_until_its_shell_is_killed(verb: Run, vehicle: Vehicle, tmp_path: Path) -> None:
@@ -219,9 +219,9 @@ def test_driving_screen_keeps_out_demands_of_verbs_but_not_stops(verb: Run, vehi
 def test_a_shell_completes_names_of_the_station(verb: Run, vehicle: Vehicle, tmp_path: Path) -> None:
     assert verb("param", "set", "WP_RADIUS", "1").code == 0  # the station hears the value
     assert verb("mode", "HOLD").code == 0
-    assert complete("groundstation param get WP_RAD", tmp_path) == {"WP_RADIUS"}
-    assert complete("groundstation status -v ''", tmp_path) == {"1"}
-    modes = complete("groundstation mode ''", tmp_path)
+    assert complete("mavhelm param get WP_RAD", tmp_path) == {"WP_RADIUS"}
+    assert complete("mavhelm status -v ''", tmp_path) == {"1"}
+    modes = complete("mavhelm mode ''", tmp_path)
     assert {"HOLD", "RTL"} <= modes
     assert "STABILIZED" not in modes  # of PX4, which a script without a station proposes
 

@@ -1,4 +1,4 @@
-"""`groundstation doctor`, `motor` and `calibrate` on real sockets, with their exit codes."""
+"""`mavhelm doctor`, `motor` and `calibrate` on real sockets, with their exit codes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`groundstation sign`: keys here, and a key for a vehicle over a cable."""
+"""`mavhelm sign`: keys here, and a key for a vehicle over a cable."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_keys_are_made_listed_chosen_and_forgotten(capsys: Capture) -> None:
     )
     listed = run_verb(capsys, "sign", "list", "--json").records
     assert listed[1] == {"name": "boat", "fingerprint": prints[1], "signs": True}
-    assert f"vehicle key revoke {prints[0]}" in run_verb(capsys, "sign", "forget", "rover").err
+    assert f"mavhelm vehicle key revoke {prints[0]}" in run_verb(capsys, "sign", "forget", "rover").err
     assert [key.name for key in load_keys(station_key_file()).keys] == ["boat"]
 
 
@@ -83,7 +83,7 @@ def test_a_passphrase_is_entered_as_in_mavproxy(capsys: Capture, monkeypatch: py
         (("setup", "-e", "udpin:127.0.0.1:14550"), "serial or USB cable only"),
         (("setup", "-e", "tcpout:127.0.0.1:5760"), "serial or USB cable only"),
         (("setup", "-e", "serial:/dev/ttyS99:57600", "--station", "only"), "does not go through a station"),
-        (("setup", "-e", "serial:/dev/ttyS99:57600"), "there are no keys; `groundstation sign new NAME` makes one"),
+        (("setup", "-e", "serial:/dev/ttyS99:57600"), "there are no keys; `mavhelm sign new NAME` makes one"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_line(capsys: Capture, words: tuple[str, ...], expected: str) -> None:
@@ -108,7 +108,7 @@ def assert_keys_are_added_by_a_holder_only(capsys: Capture, cable: SerialCable, 
     save_keys(station_key_file(), KeyRing().add(new_key("stranger", Role.SET_UP)))
     refused = run_until_answered(capsys, "sign", "setup", "--unsigned", "-e", cable.two)
     assert refused.code == ExitCode.REFUSED
-    assert "use 'vehicle key install'" in refused.err
+    assert "use 'mavhelm vehicle key install'" in refused.err
     save_keys(station_key_file(), mine)
 
 

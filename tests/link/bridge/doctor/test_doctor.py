@@ -1,4 +1,4 @@
-"""`bridge doctor` over real sockets and terminal lines: who is heard, who has a port, and no byte sent."""
+"""`mavhelm bridge doctor` over real sockets and terminal lines: who is heard, who has a port, and no byte sent."""
 
 from __future__ import annotations
 

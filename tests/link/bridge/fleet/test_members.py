@@ -192,9 +192,9 @@ def test_the_commands_say_what_to_do_next(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(["new", "farm", "--host", "10.0.0.1"]) == 0
-    assert "bridge router farm/fleet.toml" in capsys.readouterr().out
+    assert "mavhelm bridge router farm/fleet.toml" in capsys.readouterr().out
     assert run(["add", "operator", "bob", "--role", "watch", "--folder", "farm"]) == 0
-    assert "there: groundstation zenoh:bob.json5/farm" in capsys.readouterr().out
+    assert "there: mavhelm zenoh:bob.json5/farm" in capsys.readouterr().out
     for wrong, told in (
         (["new", "farm", "--host", "10.0.0.1"], "exists already"),
         (["new", "barn", "--host", "a/b"], "--host: 'tls/a/b:7447' is not an address"),

@@ -1,4 +1,4 @@
-"""What `bridge router` says of those who connect."""
+"""What `mavhelm bridge router` says of those who connect."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`vehicle doctor` on this computer: real files, sockets, terminal lines and locks; what runs, and what stops it."""
+"""`mavhelm vehicle doctor` on this computer: real files, sockets, terminal lines and locks; what runs and stops it."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_mistake_in_file_stops_it_but_the_computer_is_examined(tmp_path: Path) -
     assert code == 7
     assert "config" in summary["faults"]
     assert "endpont: unknown key" in rows["config"]["evidence"]
-    assert "(+1 more: vehicle check" in rows["config"]["evidence"]
+    assert "(+1 more: mavhelm vehicle check" in rows["config"]["evidence"]
     assert rows["motors"]["health"] == "unknown"
     assert rows["clock"]["evidence"] != rows["motors"]["evidence"]
 
@@ -64,7 +64,7 @@ def test_text_shows_what_to_do_below_a_fault(tmp_path: Path) -> None:
     first, second, *_ = out.splitlines()
     assert code == 7
     assert first.startswith("X  config       ")
-    assert second == f"                -> `vehicle init {tmp_path}/none.toml` writes a template"
+    assert second == f"                -> `mavhelm vehicle init {tmp_path}/none.toml` writes a template"
 
 
 def test_a_port_in_use_stops_it_unless_the_vehicle_runs(line: OnPty, tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ def test_a_plan_that_is_too_long_names_what_to_use(capsysbinary: pytest.CaptureF
     (tmp_path / "a.plan").write_text(json.dumps({"fileType": "Plan", "mission": {"items": [simple] * 10_000}}))
     code, errors = run(capsysbinary, "read", str(tmp_path / "a.plan"))
     assert code == 2
-    assert "mission of 10000 items, this screen edits 3000 at most: use groundstation mission put" in errors
+    assert "mission of 10000 items, this screen edits 3000 at most: use mavhelm mission put" in errors
 
 
 def test_geojson_has_the_mission_the_fence_and_the_rally_points(tmp_path: Path) -> None:
