@@ -29,7 +29,7 @@ MANY = ("--all", "--group")
 
 _BASH = """\
 # completion of mavhelm for bash: eval "$(mavhelm completion bash)"
-_groundstation() {
+_mavhelm() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local verb=${COMP_WORDS[1]} action=${COMP_WORDS[2]} at=$COMP_CWORD
     local known="" options="--help" usual="" names="" word
@@ -55,14 +55,14 @@ _groundstation() {
         COMPREPLY=(./*)
     fi
 }
-complete -o default -F _groundstation mavhelm
+complete -o default -F _mavhelm mavhelm groundstation
 """
 """Where it proposes nothing, bash proposes files (-o default). It never expands a name: `compgen -W` would run what
 is in it, so that words are compared letter by letter. If a file begins with - or ~, all get ./ before them."""
 _ZSH = """\
 # completion of mavhelm for zsh: eval "$(mavhelm completion zsh)"
 (( $+functions[compdef] )) || { autoload -U +X compinit && compinit }
-_groundstation() {
+_mavhelm() {
     local current=$words[CURRENT] previous=$words[CURRENT-1] verb=$words[2] action=$words[3] at=$((CURRENT - 1))
     local known="" options="--help" usual="" names="" word
     local -a proposed=() found=() dashed=()
@@ -84,26 +84,27 @@ _groundstation() {
         _default
     fi
 }
-compdef _groundstation mavhelm
+compdef _mavhelm mavhelm groundstation
 """
 
 
 _FISH = """\
 # completion of mavhelm for fish: mavhelm completion fish | source
-function __groundstation_dashed # whether a file here would look like an option
+function __mavhelm_dashed # whether a file here would look like an option
     set -l token (commandline -ct)
     set -l found ./-*
     set -q found[1]; and not string match -q '*/*' -- "$token"
 end
-function __groundstation_files
+function __mavhelm_files
     set -l token (commandline -ct)
     complete -C "'' $token" | string match -v -- '-*'
 end
 complete -c mavhelm -f
+complete -c groundstation -w mavhelm
 """
 _FISH_FILES = (
-    ("; and not __groundstation_dashed", " -r -F"),
-    ("; and __groundstation_dashed", " -x -a '(__groundstation_files)'"),
+    ("; and not __mavhelm_dashed", " -r -F"),
+    ("; and __mavhelm_dashed", " -x -a '(__mavhelm_files)'"),
 )
 """Conditions, and how files are proposed: without those that begin with -, which fish would propose as they are."""
 

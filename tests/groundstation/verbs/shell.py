@@ -19,11 +19,11 @@ from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
 from groundstation.verbs.completion import build_script
 from tests.waits import PATIENCE
 
-PROGRAM = Path(sys.executable).parent / "groundstation"
+PROGRAM = Path(sys.executable).parent / "mavhelm"
 HELPS = {**VERB_HELP, **LOCAL_HELP}
 ASK = """
 COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
-_groundstation; printf '%s\\n' "${{COMPREPLY[@]}}"
+_mavhelm; printf '%s\\n' "${{COMPREPLY[@]}}"
 """
 COMMANDS = {"bash": ("bash", "--norc", "-i"), "zsh": ("zsh", "-f", "-i"), "fish": ("fish", "--no-config", "-i")}
 STAND_IN = """#!/bin/sh
@@ -100,7 +100,7 @@ class InteractiveShell:
     def _write_stand_in(self, names: bytes | None) -> None:
         (self._work / "names").write_bytes(names or b"")
         answer = f"cat {self._work / 'names'}" if names is not None else f'"{PROGRAM}" "$@"'
-        program = self._work / "groundstation"
+        program = self._work / "mavhelm"
         program.write_text(STAND_IN.format(names=f"{answer}; exit", arguments=self._arguments))
         program.chmod(0o755)
 

@@ -82,7 +82,9 @@ def test_a_router_is_told_of_its_own_and_of_the_authority(tmp_path: Path) -> Non
     for name in (ROUTER, AUTHORITY):
         (farm / name).write_bytes(certificate(tmp_path, 30))
     router, authority = _end_warnings(farm)
-    assert re.match(r"the certificate of the router ends on .* days: bridge fleet renew router, and restart", router)
+    assert re.match(
+        r"the certificate of the router ends on .* days: mavhelm bridge fleet renew router, and restart", router
+    )
     assert re.match(r"the certificate of the fleet's authority ends on .* days: make the fleet anew", authority)
 
 

@@ -1,0 +1,58 @@
+"""`mavhelm`: its first word chooses the program, and only that program is imported."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
+from mavhelm.__main__ import PROGRAMS
+
+COUNTED = (
+    "import sys; from mavhelm.__main__ import main\ntry: main({words})\nfinally: print(*sys.modules, file=sys.stderr)"
+)
+
+
+def imported(*words: str) -> set[str]:
+    """Return the modules that a start has imported."""
+    code = COUNTED.format(words=list(words))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(done.stderr.splitlines()[-1].split())
+
+
+def test_each_program_is_in_the_help_and_no_verb_has_its_name() -> None:
+    assert PROGRAMS.keys() == PROGRAM_HELP.keys()
+    assert not PROGRAMS.keys() & (VERB_HELP | LOCAL_HELP).keys()
+
+
+@pytest.mark.parametrize(
+    ("words", "usage"),
+    [
+        (["--version"], "mavhelm 0"),
+        (["status", "--help"], "usage: mavhelm status "),
+        (["vehicle", "--version"], "mavhelm vehicle 0"),
+        (["vehicle", "check", "--help"], "usage: mavhelm vehicle check "),
+        (["bridge", "--help"], "usage: mavhelm bridge "),
+        (["bridge", "doctor", "--help"], "usage: mavhelm bridge doctor "),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_the_first_word_chooses_the_program(words: list[str], usage: str) -> None:
+    done = subprocess.run([sys.executable, "-m", "mavhelm", *words], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith(usage)
+
+
+@pytest.mark.parametrize(
+    ("words", "absent"),
+    [
+        (["vehicle", "--help"], ("groundstation", "textual", "link.bridge")),
+        (["bridge", "--help"], ("groundstation", "textual", "vehicle")),
+        (["--version"], ("vehicle", "link.bridge")),
+    ],
+    ids=["vehicle", "bridge", "station"],
+)
+def test_a_start_imports_no_other_program(words: list[str], absent: tuple[str, ...]) -> None:
+    found = imported(*words)
+    assert [name for name in absent if name in found] == []
