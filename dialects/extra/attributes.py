@@ -6,7 +6,7 @@ import difflib
 import re
 from collections.abc import Mapping
 
-from dialects.extra.definitions import TYPES, EnumEntry, Field, FilePosition
+from dialects.extra.definitions import TYPES, Entry, Field, FilePosition
 from dialects.extra.errors import DialectError
 
 Attributes = Mapping[str, str]
@@ -64,12 +64,12 @@ def read_field(attributes: Attributes, place: FilePosition) -> Field:
     )  # fmt: skip
 
 
-def read_entry(attributes: Attributes, highest: int, place: FilePosition) -> EnumEntry:
+def read_entry(attributes: Attributes, highest: int, place: FilePosition) -> Entry:
     """Return an entry of an enum; without a value it gets the one above the `highest`."""
     name = read_name(attributes, "entry", place)
     if "value" not in attributes:
-        return EnumEntry(name, highest + 1, True, place)
-    return EnumEntry(name, _read_value(attributes["value"], name, place), False, place)
+        return Entry(name, highest + 1, True, place)
+    return Entry(name, _read_value(attributes["value"], name, place), False, place)
 
 
 def _read_type(text: str, name: str, place: FilePosition) -> tuple[str, int]:

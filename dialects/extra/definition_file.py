@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from dialects.extra.attributes import Attributes, read_entry, read_field, read_id, read_name
-from dialects.extra.definitions import DefinitionFile, EnumDefinition, EnumEntry, ExtraDefinition, Field, FilePosition
+from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, ExtraDefinition, Field, FilePosition
 from dialects.extra.errors import DialectError
 from dialects.printable import printable
 
@@ -66,7 +66,7 @@ class _Parser:
         self._fields: list[Field] = []
         self._base_fields: int | None = None
         """Number of fields before the extensions, once those begin."""
-        self._entries: list[EnumEntry] = []
+        self._entries: list[Entry] = []
         self._highest = 0
         """Highest value of those entries, at least 0."""
         self._xml = expat.ParserCreate()

@@ -97,7 +97,7 @@ class ExtraDefinition(msgspec.Struct, frozen=True):
                 yield bytes([each.length])
 
 
-class EnumEntry(msgspec.Struct, frozen=True):
+class Entry(msgspec.Struct, frozen=True):
     """One value of an enum."""
 
     name: str
@@ -112,7 +112,7 @@ class EnumDefinition(msgspec.Struct, frozen=True):
 
     name: str
     bitmask: bool
-    entries: tuple[EnumEntry, ...]
+    entries: tuple[Entry, ...]
     place: FilePosition
 
 

@@ -11,7 +11,7 @@ import pymavlink
 from msgspec.structs import replace
 
 from dialects.extra.definition_file import read_definitions
-from dialects.extra.definitions import DefinitionFile, EnumDefinition, EnumEntry, ExtraDefinition, FilePosition
+from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, ExtraDefinition, FilePosition
 from dialects.extra.errors import DialectError
 from dialects.printable import printable
 
@@ -141,8 +141,8 @@ def _extend(enum: EnumDefinition, more: EnumDefinition) -> EnumDefinition:
 
 
 def _names(enum: EnumDefinition) -> dict[int, str]:
-    values: dict[int, EnumEntry] = {}
-    names: dict[str, EnumEntry] = {}
+    values: dict[int, Entry] = {}
+    names: dict[str, Entry] = {}
     for entry in enum.entries:
         twin = values.setdefault(entry.value, entry)
         if twin is not entry:

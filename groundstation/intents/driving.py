@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from groundstation.intents.base import Intent
+from groundstation.intents.vehicle_intent import Commands, Vehicle, VehicleIntent
 
 PAD = "gamepad"
 """What the held keys name while the gamepad drives."""
@@ -62,11 +63,16 @@ class EmergencyStop(Intent, frozen=True):
     valid_when_late = open_to_all = True
 
 
-class ClearEmergencyStop(Intent, frozen=True):
+class ClearEmergencyStop(VehicleIntent, frozen=True):
     """Release the emergency stop; arming is a separate step."""
 
+    confirmed = "release of the emergency stop"
     held: float = 0.0
     """s for which the key was held; refused below HOLD_TIME."""
+
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Send the release."""
+        commands.clear_emergency_stop(vehicle, now)
 
 
 class StepLimits(Intent, frozen=True):

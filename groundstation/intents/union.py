@@ -20,11 +20,13 @@ from groundstation.intents import (  # noqa: F401 - defines the classes
 )
 from groundstation.intents.base import Intent
 from groundstation.intents.services import ServiceIntent
+from groundstation.intents.vehicle_intent import VehicleIntent
 
 if TYPE_CHECKING:
     AnyIntent: TypeAlias = Intent
 else:
     # msgspec decodes a union of tagged structs, not their base class.
-    _KINDS = [*Intent.__subclasses__(), *ServiceIntent.__subclasses__()]
-    AnyIntent = Union[tuple(each for each in _KINDS if each is not ServiceIntent)]  # noqa: UP007
+    _BASES = (ServiceIntent, VehicleIntent)
+    _KINDS = [kind for base in (Intent, *_BASES) for kind in base.__subclasses__() if kind not in _BASES]
+    AnyIntent = Union[tuple(_KINDS)]  # noqa: UP007
 """Any of the intents."""

@@ -3,25 +3,40 @@
 from __future__ import annotations
 
 from groundstation.intents.base import Intent
+from groundstation.intents.vehicle_intent import Commands, Vehicle, VehicleIntent
 
 
-class Arm(Intent, frozen=True):
+class Arm(VehicleIntent, frozen=True):
     """Arm the vehicle, after changing to MANUAL if it is in HOLD."""
 
+    confirmed = "arming"
     held: float = 0.0
     """s for which the key was held; refused below HOLD_TIME."""
 
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Begin to arm."""
+        commands.arm(vehicle, now)
 
-class Disarm(Intent, frozen=True):
+
+class Disarm(VehicleIntent, frozen=True):
     """Disarm the vehicle."""
 
     valid_when_late = open_to_all = True
 
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Begin to disarm."""
+        commands.disarm(vehicle, now)
 
-class SetMode(Intent, frozen=True):
+
+class SetMode(VehicleIntent, frozen=True):
     """Change the mode; `mode` is a name of dialects.modes.Mode."""
 
+    neutral = False
     mode: str
+
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Request the mode."""
+        commands.set_mode(vehicle, self.mode, now)
 
 
 class RequestControl(Intent, frozen=True):

@@ -1,7 +1,7 @@
 """Carries out the operator's intents: one table row for each kind of intent.
 
-A new intent is a class in groundstation/intents and a row here: in VEHICLE_COMMANDS if it is a command to the
-selected vehicle, in SERVICE_CALLS (service_calls.py) if it is a request to one of its services, else in HANDLERS.
+A new intent is a class in groundstation/intents. A command to the selected vehicle (VehicleIntent) needs no more; a
+request to one of its services has a row in SERVICE_CALLS (service_calls.py), every other intent one in HANDLERS.
 """
 
 from __future__ import annotations
@@ -11,15 +11,12 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-import msgspec
-
 from dialects.enums import Severity
 from dialects.mode_tables import HOLD
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import (
     HOLD_TIME,
     STOP_KEY,
-    ClearEmergencyStop,
     DriveKeyDown,
     DriveKeyUp,
     DrivePad,
@@ -34,18 +31,15 @@ from groundstation.intents.services import CancelRequest, ServiceIntent
 from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import (
-    Arm,
-    Disarm,
     GiveControl,
     KeepControl,
     ReleaseControl,
     RequestControl,
     SelectNextVehicle,
     SelectVehicle,
-    SetMode,
 )
+from groundstation.intents.vehicle_intent import VehicleIntent
 from groundstation.station.core_parts import CoreParts
-from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.permission import Permission
 from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.vehicles.state.vehicle_state import VehicleState
@@ -61,17 +55,6 @@ Handle = Callable[[Any, float], None]
 Rows = Mapping[type[Intent], Handle]
 
 
-class VehicleCommand(msgspec.Struct, frozen=True):
-    """How an intent becomes a command to the selected vehicle."""
-
-    send: Callable[[Commander, VehicleState, Any, float], None]
-    """Called with the commander, the vehicle, the intent and the time."""
-    neutral: bool = True
-    """Go neutral first; keys that are held must be pressed again."""
-    confirmed: str = ""
-    """Name of what needs a held key: the intent's `held` must be HOLD_TIME and the screen must allow keys."""
-
-
 class IntentHandler:
     """Applies intents: one table says who carries out which. Parts beside the core add their rows."""
 
@@ -83,7 +66,7 @@ class IntentHandler:
         self._permission = Permission("starting", "starting")
         """Before the intent that is being carried out."""
         rows: dict[type[Intent], Handle] = {kind: partial(do, self) for kind, do in HANDLERS.items()}
-        rows |= {kind: partial(self._send_command, command) for kind, command in VEHICLE_COMMANDS.items()}
+        rows |= dict.fromkeys(VehicleIntent.__subclasses__(), self._send_command)
         self._table = {kind: [handle] for kind, handle in rows.items()}
         self._last: dict[type[Intent], Handle] = {}
 
@@ -123,16 +106,16 @@ class IntentHandler:
         if handle is not None:
             handle(intent, now)
 
-    def _send_command(self, command: VehicleCommand, intent: AnyIntent, now: float) -> None:
+    def _send_command(self, intent: VehicleIntent, now: float) -> None:
         vehicle = self._selected_vehicle(now)
         if vehicle is None:
             return
-        if command.neutral:
+        if intent.neutral:
             self._operator.sticks.block(now)
-        if command.confirmed and (reason := self._unconfirmed_reason(intent)):
-            self._log.add(now, "station", f"{command.confirmed} refused: {reason}", Severity.WARNING)
+        if intent.confirmed and (reason := self._unconfirmed_reason(intent)):
+            self._log.add(now, "station", f"{intent.confirmed} refused: {reason}", Severity.WARNING)
             return
-        command.send(self._commander, vehicle, intent, now)
+        intent.send(self._commander, vehicle, now)
 
     def _selected_vehicle(self, now: float) -> VehicleState | None:
         if self._fleet.selected is None:
@@ -240,22 +223,6 @@ class IntentHandler:
         self._shutdown.begin(now, disarm=intent.disarm)
 
 
-def _set_mode(commander: Commander, vehicle: VehicleState, intent: SetMode, now: float) -> None:
-    commander.set_mode(vehicle, intent.mode, now)
-
-
-VEHICLE_COMMANDS: dict[type[Intent], VehicleCommand] = {
-    Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now), confirmed="arming"),
-    Disarm: VehicleCommand(lambda commander, vehicle, _, now: commander.disarm(vehicle, now)),
-    ClearEmergencyStop: VehicleCommand(
-        lambda commander, vehicle, _, now: commander.clear_emergency_stop(vehicle, now),
-        confirmed="release of the emergency stop",
-    ),
-    SetMode: VehicleCommand(_set_mode, neutral=False),
-}
-"""Intent -> command to the selected vehicle. Neutral comes first where the command stops the vehicle, and before
-arming, which must not start with a key held."""
-
 HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     DriveKeyDown: IntentHandler._press,
     DriveKeyUp: IntentHandler._release,
@@ -279,5 +246,5 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     Quit: IntentHandler._quit,
     **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),
 }
-"""Intent -> method, for all that are not commands to a vehicle. Those of the screens are added by screen_feed.py, those
-of the shell (AddLink, StartSimulator, RunLine, the rest of CloseLink) by the station's process."""
+"""Intent -> method, for all that are not commands to the selected vehicle. Those of the screens are added by
+screen_feed.py. The station's process adds those of the shell: AddLink, StartSimulator, RunLine and more."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from link.services.ftp.files import Content, Entry, FileTree, Folder, GeneratedFolder, MemoryFolder, Query
+from link.services.ftp.files import Content, DirectoryEntry, FileTree, Folder, GeneratedFolder, MemoryFolder, Query
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
 from link.services.ftp.server import FtpServer
 from link.services.pacing import BulkPacer
@@ -113,10 +113,12 @@ def error(packet: FtpPacket) -> FtpError:
     return FtpError(number)
 
 
-def as_entries(data: bytes) -> list[Entry]:
+def as_entries(data: bytes) -> list[DirectoryEntry]:
     """The lines of a listing."""
     lines = [line.decode() for line in data.split(b"\0") if line]
     return [
-        Entry(line[1:], None) if line[0] == "D" else Entry(line[1:].split("\t")[0], int(line.split("\t")[1]))
+        DirectoryEntry(line[1:], None)
+        if line[0] == "D"
+        else DirectoryEntry(line[1:].split("\t")[0], int(line.split("\t")[1]))
         for line in lines
     ]

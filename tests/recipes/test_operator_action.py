@@ -1,4 +1,4 @@
-"""Recipe: an action of the operator, in three files: its intent, its row in ACTIONS, and its handler."""
+"""Recipe: an action of the operator, in two files: its intent, which sends its command, and its row in ACTIONS."""
 
 from __future__ import annotations
 
@@ -8,17 +8,19 @@ from tests.recipes.tree import Tree
 
 pytestmark = pytest.mark.e2e
 
-INTENT = '''class SoundHorn(Intent, frozen=True):
+INTENT = '''class SoundHorn(VehicleIntent, frozen=True):
     """Switch relay 0 on: the horn."""
+
+    neutral = False
+
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Send the command."""
+        commands.send(vehicle, "horn", "DO_SET_RELAY", 0, 1, now=now)
 
 
 '''
 
 ROW = '    OperatorAction("vehicle.horn", "Horn", "Sound the horn", "vehicle", SoundHorn(), ("h",)),'
-
-HANDLER = """    SoundHorn: VehicleCommand(
-        lambda commander, vehicle, _, now: commander.send(vehicle, "horn", Command.DO_SET_RELAY, 0, 1, now=now)
-    ),"""
 
 PRESS_IT = """
 import asyncio
@@ -53,11 +55,6 @@ assert Command.DO_SET_RELAY in sent, sent
 def test_an_action_of_the_operator(tree: Tree) -> None:
     tree.insert_before("groundstation/intents/vehicle.py", "class SelectVehicle(Intent", INTENT)
     tree.insert_before("groundstation/actions.py", 'OperatorAction("app.simulator"', ROW)
-    tree.insert_after(
-        "groundstation/station/intent_handler.py", "VEHICLE_COMMANDS: dict[type[Intent], VehicleCommand] = {", HANDLER
-    )
-    tree.replace("groundstation/station/intent_handler.py", "import Severity", "import Command, Severity")
-    tree.replace("groundstation/station/intent_handler.py", "    SetMode,\n)", "    SetMode,\n    SoundHorn,\n)")
     tree.replace("groundstation/actions.py", "    SetMode,\n)", "    SetMode,\n    SoundHorn,\n)")
     tree.check_recipe("an action of the operator")
     tree.run_script(PRESS_IT)

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from link.runtime.worker import Worker
-from link.services.ftp.files import Content, Entry, NotReadyError, Query, ReadOnlyFolder
+from link.services.ftp.files import Content, DirectoryEntry, NotReadyError, Query, ReadOnlyFolder
 from link.services.ftp.protocol import FtpError
 
 PIECE = 256 * 1024
@@ -50,9 +50,9 @@ class DiskFolder(ReadOnlyFolder):
         self._pending: set[tuple[str, str]] = set()
         self._results: dict[tuple[str, str], tuple[float, Any]] = {}
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[DirectoryEntry]:
         """Return the files by name; empty if the folder cannot be read. Raises NotReadyError."""
-        entries: list[Entry] = self._request(("list", ""), self._scan)
+        entries: list[DirectoryEntry] = self._request(("list", ""), self._scan)
         return entries
 
     def open(self, name: str, query: Query) -> Content | None:
@@ -106,14 +106,14 @@ class DiskFolder(ReadOnlyFolder):
             self._pending.discard(key)
             self._results[key] = (time.monotonic(), result)
 
-    def _scan(self) -> list[Entry]:
+    def _scan(self) -> list[DirectoryEntry]:
         try:
             with os.scandir(self._path) as listing:
                 names = sorted(each.name for each in listing if self._serves(each.name))
         except OSError:
             return []
         found = ((name, self._find(name)) for name in names[-MAX_ENTRIES:])
-        return [Entry(name, content.size) for name, content in found if content is not None]
+        return [DirectoryEntry(name, content.size) for name, content in found if content is not None]
 
     def _find(self, name: str) -> Content | None:
         try:

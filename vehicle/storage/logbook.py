@@ -13,7 +13,7 @@ from typing import Protocol
 from dialects import messages as m
 from dialects.enums import Severity
 from link.core import RECORDER, Outgoing, Received
-from link.services.ftp.files import Content, Entry, Folder, MemoryFolder, Query, ReadOnlyFolder
+from link.services.ftp.files import Content, DirectoryEntry, Folder, MemoryFolder, Query, ReadOnlyFolder
 from link.services.ftp.protocol import FtpError
 from link.services.param.values import REAL32
 from link.signing.role import Role
@@ -181,7 +181,7 @@ class _Logs(ReadOnlyFolder):
         self._removal_denial_reason = removal_denial_reason
         self._on_removed = on_removed
 
-    def entries(self) -> Sequence[Entry]:
+    def entries(self) -> Sequence[DirectoryEntry]:
         return self._logs.entries()
 
     def open(self, name: str, query: Query) -> Content | None:

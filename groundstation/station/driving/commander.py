@@ -73,10 +73,11 @@ class Commander:
 
     # ---- commands of the operator ----
 
-    def send(self, vehicle: VehicleState, label: str, command: Command, *params: float, now: float) -> None:
-        """Send a command; `label` names it in the log and in refusals."""
-        self._results.set_label(vehicle.system, command, label)
-        self._send(vehicle, now, command, *params)
+    def send(self, vehicle: VehicleState, label: str, command: str, *params: float, now: float) -> None:
+        """Send the command of this name; `label` names it in the log and in refusals."""
+        number = Command[command]
+        self._results.set_label(vehicle.system, number, label)
+        self._send(vehicle, now, number, *params)
 
     def arm(self, vehicle: VehicleState, now: float) -> None:
         """Send neutral demands, change from HOLD to MANUAL, then arm; refused for a kind that keys do not drive."""
@@ -103,7 +104,7 @@ class Commander:
         Our own vehicle gives it to the `station` that has asked for it; with 0 to any that has.
         """
         self._claims.remove(vehicle.system)
-        self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL, 0, 0, 0, station, now=now)
+        self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL.name, 0, 0, 0, station, now=now)
 
     def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
         """Change the mode to the one of this name (dialects/kinds.py); refused if its kind has no such mode.

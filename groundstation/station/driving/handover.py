@@ -206,5 +206,5 @@ class Handover:
 
     def _send_request(self, vehicle: VehicleState, now: float) -> None:
         """Request control; others must ask us for it later, so that they cannot take it in the middle of a drive."""
-        command = Command.REQUEST_OPERATOR_CONTROL
+        command = Command.REQUEST_OPERATOR_CONTROL.name
         self._commander.send(vehicle, "request control", command, REQUEST, 0, ANSWER_WITHIN, now=now)

@@ -6,7 +6,7 @@ import msgspec
 
 from groundstation.vehicles.requests.file_requests import FileRequests
 from groundstation.vehicles.requests.requests import RequestReport
-from link.services.ftp.files import Entry
+from link.services.ftp.files import DirectoryEntry
 
 MAX_FOLDERS = 64
 """Folders that are kept; the oldest goes first."""
@@ -18,7 +18,7 @@ MAX_ENTRIES = 1000
 class ListedFolder(msgspec.Struct, frozen=True):
     """One folder."""
 
-    entries: tuple[Entry, ...] = ()
+    entries: tuple[DirectoryEntry, ...] = ()
     """Folders first, by name."""
     problem: str = ""
     """Why it could not be listed."""

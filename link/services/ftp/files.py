@@ -17,7 +17,7 @@ Query = Mapping[str, str]
 """The part of a path behind `?`."""
 
 
-class Entry(NamedTuple):
+class DirectoryEntry(NamedTuple):
     """A line of a listing."""
 
     name: str
@@ -47,7 +47,7 @@ class Folder(Protocol):
     NotReadyError.
     """
 
-    def entries(self) -> Sequence[Entry]:
+    def entries(self) -> Sequence[DirectoryEntry]:
         """Return the files, in a stable order."""
 
     def open(self, name: str, query: Query) -> Content | None:
@@ -100,10 +100,10 @@ class GeneratedFolder(ReadOnlyFolder):
     def __init__(self, makers: Mapping[str, Callable[[Query], bytes | None]]) -> None:
         self._makers = makers
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[DirectoryEntry]:
         """Return the files with their sizes without a query."""
         made = ((name, make({})) for name, make in self._makers.items())
-        return [Entry(name, len(data)) for name, data in made if data is not None]
+        return [DirectoryEntry(name, len(data)) for name, data in made if data is not None]
 
     def open(self, name: str, query: Query) -> Content | None:
         """Generate the file; None also for an invalid query."""
@@ -122,9 +122,9 @@ class MemoryFolder(msgspec.Struct):
     """Gets the data that was written, or None for a removed file, to save it."""
     capacity: int = 64
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[DirectoryEntry]:
         """Return the files by name."""
-        return [Entry(name, len(self.files[name])) for name in sorted(self.files)]
+        return [DirectoryEntry(name, len(self.files[name])) for name in sorted(self.files)]
 
     def open(self, name: str, query: Query) -> Content | None:
         """Open the file as it is now: a later store does not change what is open."""
@@ -191,9 +191,9 @@ class FileTree:
                 return Location(self._folders[folder], name, _query(query))
         return None
 
-    def listing(self, folder: Folder) -> list[Entry]:
+    def listing(self, folder: Folder) -> list[DirectoryEntry]:
         """Return the entries of a folder; in the root the other folders come first."""
-        folders = [Entry(name, None) for name in sorted(self._folders)] if folder is self._root else []
+        folders = [DirectoryEntry(name, None) for name in sorted(self._folders)] if folder is self._root else []
         return folders + list(folder.entries())
 
 

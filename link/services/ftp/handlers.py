@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import msgspec
 
-from link.services.ftp.files import BytesContent, Content, Entry, FileTree, Location, NotReadyError
+from link.services.ftp.files import BytesContent, Content, DirectoryEntry, FileTree, Location, NotReadyError
 from link.services.ftp.protocol import MAX_DATA, FtpError, FtpOpcode, FtpPacket, crc32
 from link.services.ftp.sessions import FtpClientId, FtpSession, FtpSessions
 
@@ -179,7 +179,7 @@ class FtpHandlers:
         return FtpError.NOT_FOUND if content is None else (place, content)
 
 
-def _line(entry: Entry) -> bytes:
+def _line(entry: DirectoryEntry) -> bytes:
     """Return a line of a listing: F, name, tab, size; or D, name."""
     text = f"D{entry.name}" if entry.size is None else f"F{entry.name}\t{entry.size}"
     return text.encode("ascii", "replace") + b"\0"

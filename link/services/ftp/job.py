@@ -8,7 +8,7 @@ from typing import Protocol
 import msgspec
 
 from link.core import Outgoing
-from link.services.ftp.files import Entry
+from link.services.ftp.files import DirectoryEntry
 from link.services.ftp.protocol import MAX_DATA, SEQUENCE_MASK, FtpError, FtpOpcode, FtpPacket, ftp_error_text
 
 REPEAT_AFTER = 0.7
@@ -37,7 +37,7 @@ class FtpOutcome(msgspec.Struct, frozen=True):
     done: bool
     data: bytes = b""
     """Of a download; of one that failed, what arrived without a gap from the start, with which it can be resumed."""
-    entries: tuple[Entry, ...] = ()
+    entries: tuple[DirectoryEntry, ...] = ()
     error: int | None = None
     """MAV_FTP_ERR of the vehicle; None after success or without a reply."""
     problem: str = ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from dialects.printable import printable
-from link.services.ftp.files import Entry
+from link.services.ftp.files import DirectoryEntry
 from link.services.ftp.job import TRIES, Exchange, FtpLine, FtpOperation, FtpOutcome, error_of, failure
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket
 
@@ -23,7 +23,7 @@ class ListFolderRequest:
     raw: bytes
     outcome: FtpOutcome | None = None
     _exchange: Exchange = field(init=False)
-    _entries: list[Entry] = field(default_factory=list)
+    _entries: list[DirectoryEntry] = field(default_factory=list)
     _offset: int = 0
 
     def __post_init__(self) -> None:
@@ -109,12 +109,12 @@ class SingleRequest:
 _OPCODES = {FtpOperation.REMOVE: FtpOpcode.REMOVE, FtpOperation.CHECKSUM: FtpOpcode.CRC}
 
 
-def parse_entry(line: bytes) -> Entry | None:
+def parse_entry(line: bytes) -> DirectoryEntry | None:
     """Parse a line of a listing; None if it is neither file nor folder. Names are made printable."""
     name, _, size = line[1:].decode("utf-8", "replace").partition("\t")
     match line[:1]:
         case b"D":
-            return Entry(printable(name), None)
+            return DirectoryEntry(printable(name), None)
         case b"F" if size.isdecimal() and size.isascii():
-            return Entry(printable(name), int(size))
+            return DirectoryEntry(printable(name), int(size))
     return None

@@ -17,7 +17,7 @@ import msgspec
 
 from dialects import messages as m
 from link.core import Outgoing, Peer, Received
-from link.services.ftp.files import Content, Entry, Folder, NotReadyError
+from link.services.ftp.files import Content, DirectoryEntry, Folder, NotReadyError
 from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 
 DATA_SIZE = 90
@@ -41,7 +41,7 @@ class _DataRequest(NamedTuple):
 class _LogClient(msgspec.Struct):
     """Transfers to one peer."""
 
-    logs: list[Entry] | None = None
+    logs: list[DirectoryEntry] | None = None
     """The last list that was sent; None before the first request."""
     list_from: int | None = None
     """First entry of the requested list; `list_to` is the last."""
@@ -117,7 +117,7 @@ class LogServer:
             while client.requests and (data := self._next_data(client)) and self._pacer.consume(peer, DATA_FRAME, now):
                 yield self._sent(client, data)
 
-    def _entries(self) -> list[Entry]:
+    def _entries(self) -> list[DirectoryEntry]:
         return [entry for entry in self._logs.entries() if entry.size is not None][:MAX_LOGS]
 
     def _client(self, peer: Peer) -> _LogClient | None:

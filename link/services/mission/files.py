@@ -12,7 +12,7 @@ import struct
 from collections.abc import Callable, Sequence
 
 from dialects.enums import MissionResult, MissionType
-from link.services.ftp.files import BytesContent, Content, Entry, NotReadyError, Query
+from link.services.ftp.files import BytesContent, Content, DirectoryEntry, NotReadyError, Query
 from link.services.ftp.protocol import FtpError
 from link.services.mission.commit import PlanChange
 from link.services.mission.items import Items, MissionItem, coordinate_scale, to_int32
@@ -110,9 +110,9 @@ class PlanFolder:
         """Return whether `name` is that of a plan."""
         return name in FILE_TYPES
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[DirectoryEntry]:
         """Return one file per plan, also for an empty one."""
-        return [Entry(name, len(encode_plan(self._server.plan(kind)))) for name, kind in FILE_TYPES.items()]
+        return [DirectoryEntry(name, len(encode_plan(self._server.plan(kind)))) for name, kind in FILE_TYPES.items()]
 
     def open(self, name: str, query: Query) -> Content | None:
         """Return the plan as it is now."""

@@ -12,7 +12,7 @@ from groundstation.actions import ACTIONS
 from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, SetStyle, StepLimits, Stop
 from groundstation.intents.session import Quit, ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, SelectVehicle
-from groundstation.station.intent_handler import VEHICLE_COMMANDS
+from groundstation.intents.vehicle_intent import VehicleIntent
 from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit, driving_cockpit
 
 
@@ -113,4 +113,5 @@ def test_each_intent_that_held_key_confirms_is_refused_by_table() -> None:
     for action in ACTIONS.values():
         if action.confirm:
             assert action.intent in {Arm(held=0.0), ClearEmergencyStop(held=0.0)}
-            assert VEHICLE_COMMANDS[type(action.intent)].confirmed
+            assert isinstance(action.intent, VehicleIntent)
+            assert action.intent.confirmed

@@ -12,7 +12,7 @@ from typing import TypeVar
 import pytest
 
 from link.core import Outgoing
-from link.services.ftp.files import Content, Entry, FileTree, GeneratedFolder, NotReadyError
+from link.services.ftp.files import Content, DirectoryEntry, FileTree, GeneratedFolder, NotReadyError
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
 from link.services.ftp.server import FtpServer
 from link.services.pacing import BulkPacer
@@ -70,7 +70,7 @@ def whole(content: Content) -> bytes:
 def test_files_are_listed_and_read(folder: DiskFolder) -> None:
     with pytest.raises(NotReadyError):
         folder.entries()
-    assert soon(folder.entries) == [Entry("1.tlog", len(DATA)), Entry("2.tlog", 0)]
+    assert soon(folder.entries) == [DirectoryEntry("1.tlog", len(DATA)), DirectoryEntry("2.tlog", 0)]
     content, empty = opened(folder, "1.tlog"), opened(folder, "2.tlog")
     assert content is not None
     assert empty is not None
@@ -100,7 +100,7 @@ def test_a_file_that_goes_while_it_is_read_ends(folder: DiskFolder, tmp_path: Pa
     assert here(content, 0, 10) == DATA[:10]
     (tmp_path / "logs/1.tlog").unlink()
     assert here(content, 2 * PIECE, 10) == b""
-    assert soon(folder.entries) == [Entry("2.tlog", 0)]
+    assert soon(folder.entries) == [DirectoryEntry("2.tlog", 0)]
 
 
 @pytest.mark.parametrize("name", ["link.tlog.tlog", "pipe.tlog", "folder.tlog", "gone.tlog"])
@@ -145,7 +145,7 @@ def test_only_what_may_go_is_removed(folder: DiskFolder, tmp_path: Path) -> None
     assert soon(lambda: folder.remove("1.tlog")) is None
     assert soon(lambda: folder.remove("1.tlog")) is FtpError.NOT_FOUND
     assert soon(lambda: folder.remove("2.tlog")) is FtpError.PROTECTED
-    assert soon(folder.entries) == [Entry("2.tlog", 0)]
+    assert soon(folder.entries) == [DirectoryEntry("2.tlog", 0)]
     assert not folder.writable("1.tlog")
     assert folder.store("3.tlog", b"") is FtpError.PROTECTED
 
@@ -153,7 +153,7 @@ def test_only_what_may_go_is_removed(folder: DiskFolder, tmp_path: Path) -> None
 def test_all_at_once_but_for_what_must_stay(folder: DiskFolder, tmp_path: Path) -> None:
     (tmp_path / "logs/notes.txt").write_text("mine")
     folder.clear()
-    assert soon(folder.entries) == [Entry("2.tlog", 0)]
+    assert soon(folder.entries) == [DirectoryEntry("2.tlog", 0)]
     assert (tmp_path / "logs/notes.txt").exists()
 
 

@@ -1,0 +1,49 @@
+"""VehicleIntent: an intent that is a command to the selected vehicle, and sends it itself.
+
+The station (station/intent_handler.py) checks that there is a vehicle, that the screen may confirm, and goes neutral
+first; then it calls `send`. So a new command of the operator is a class here or in vehicle.py, and its row in ACTIONS.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar, Protocol, TypeVar
+
+from groundstation.intents.base import Intent
+
+Vehicle = TypeVar("Vehicle")
+VehicleOf = TypeVar("VehicleOf", contravariant=True)
+
+
+class Commands(Protocol[VehicleOf]):
+    """Commands to a vehicle: station/driving/commander.py. `now` is the monotonic time, s."""
+
+    def send(self, vehicle: VehicleOf, label: str, command: str, *params: float, now: float) -> None:
+        """Send the MAV_CMD of this name, with up to 7 parameters; `label` names it in the log and in refusals.
+
+        A name, because the process of the screen does not load the dialect (dialects/enums.py, Command).
+        """
+
+    def arm(self, vehicle: VehicleOf, now: float) -> None:
+        """Send neutral demands, change from HOLD to MANUAL, then arm."""
+
+    def disarm(self, vehicle: VehicleOf, now: float) -> None:
+        """Disarm, and repeat until the heartbeat agrees."""
+
+    def set_mode(self, vehicle: VehicleOf, name: str, now: float) -> None:
+        """Change the mode to the one with this name."""
+
+    def clear_emergency_stop(self, vehicle: VehicleOf, now: float) -> None:
+        """Release the emergency stop."""
+
+
+class VehicleIntent(Intent, frozen=True):
+    """Base class of the commands to the selected vehicle."""
+
+    neutral: ClassVar[bool] = True
+    """Go neutral first: held keys must be pressed again. It is so for what stops the vehicle, and before arming."""
+    confirmed: ClassVar[str] = ""
+    """Name of what needs a held key: `held` must be at least HOLD_TIME, and the screen must allow keys."""
+
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Send the command."""
+        raise NotImplementedError
