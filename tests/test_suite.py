@@ -33,7 +33,7 @@ def test_a_few_rows_of_a_long_table_are_in_the_short_suite(request: pytest.Fixtu
     rows = [item for item in request.session.items if "::test_a_row_names_a_folder" in item.nodeid]
     assert len(rows) > 50
     assert len(suite.thinned(rows)) == suite.ROWS
-    assert suite.thinned(rows[:2]) == rows[:2]
+    assert suite.thinned(rows[:1]) == rows[:1]
 
 
 @pytest.mark.parametrize(
