@@ -22,7 +22,7 @@ from vehicle.cli import options, subcommands
 from vehicle.params import PARAMETERS
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("dialects", "link", "vehicle", "groundstation", "mavhelm")
+PACKAGES = ("dialects", "link", "vehicle", "groundstation")
 DOCS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
 ROOMS = sorted(
     path
@@ -31,7 +31,7 @@ ROOMS = sorted(
     if "To add or change:" in path.read_text()
 )
 """Rooms whose docstring says where things are added."""
-FOLDERS = ("dialects", "link", "vehicle", "groundstation", "mavhelm", "tests", "docs", ".ci")
+FOLDERS = ("dialects", "link", "vehicle", "groundstation", "tests", "docs", ".ci")
 
 
 def path_of(doc: Path) -> str:

@@ -24,7 +24,7 @@ from vehicle.cli.options import GROUND_STATION
 from vehicle.runtime.log import DaemonLog
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("dialects", "link", "vehicle", "groundstation", "mavhelm")
+PACKAGES = ("dialects", "link", "vehicle", "groundstation")
 FORBIDDEN_MODULES = frozenset({"pickle", "cPickle", "marshal", "shelve", "dill", "yaml", "telnetlib", "xmlrpc"})
 FORBIDDEN_CALLS = frozenset({"eval", "exec", "compile", "__import__", "os.system", "os.popen", "tempfile.mktemp"})
 """They turn data into code, or into a command of a shell."""

@@ -35,13 +35,13 @@ def test_a_wheel_has_the_dialect_with_its_byte_code(tmp_path: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     assert "dialects/rover.py" in names
     assert any(name.startswith("dialects/__pycache__/rover.cpython-") for name in names)
-    assert {"dialects", "link", "vehicle", "groundstation", "mavhelm"} == {
+    assert {"dialects", "link", "vehicle", "groundstation"} == {
         name.split("/")[0] for name in names if "dist-info" not in name
     }
     plan = "groundstation/ui/map/plan/mission_commands.json"
     for data in ("dialects/rover.xml", "dialects/additions.xml", "groundstation/ui/drive/screen.tcss", plan):
         assert data in names
-    packages = ("dialects", "link", "vehicle", "groundstation", "mavhelm")
+    packages = ("dialects", "link", "vehicle", "groundstation")
     assert {f"{package}/py.typed" for package in packages} <= set(names)
     assert not any(name.startswith("tests/") for name in names)
 

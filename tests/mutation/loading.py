@@ -13,7 +13,7 @@ from types import CodeType, FunctionType, ModuleType
 
 from tests.mutation.mutants import Mutant
 
-FRESH = ("vehicle", "link", "groundstation", "mavhelm", "tests.")
+FRESH = ("vehicle", "link", "groundstation", "tests.")
 """Prefixes of the modules that are imported anew with a changed module, because they may import it."""
 
 Functions = Mapping[tuple[str, str], list[FunctionType]]

@@ -12,7 +12,7 @@ from pathlib import Path
 from tests.ports import free_port
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("dialects", "link", "vehicle", "groundstation", "mavhelm", "tests")
+PACKAGES = ("dialects", "link", "vehicle", "groundstation", "tests")
 LEFT_OUT = shutil.ignore_patterns("mutation", "benchmarks", "*-pytest-*", "*.pyc.*")
 """Also the byte code of tests, and that which another program is writing just now."""
 RUN_TIMEOUT = 60.0

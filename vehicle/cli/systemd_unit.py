@@ -153,7 +153,7 @@ def build_unit(options: UnitOptions) -> str:
     groups = f"SupplementaryGroups={' '.join(options.groups)}\n" if options.groups else ""
     pwm = options.driver == PWM
     return TEMPLATE.format(
-        vehicle=f"{_quote(options.python)} -m mavhelm vehicle",
+        vehicle=f"{_quote(options.python)} -m link.program vehicle",
         config=_quote(options.config),
         typed=shlex.quote(str(options.config)),
         user=f"User={options.user}" if options.user else "DynamicUser=yes",

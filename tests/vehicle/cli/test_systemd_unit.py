@@ -46,8 +46,8 @@ def service(place: UnitOptions) -> dict[str, str]:
 def test_it_is_watched_and_restarted_and_its_end_stops_motors(place: UnitOptions) -> None:
     said = service(place)
     assert said["Type"] == "notify"
-    assert said["ExecStart"] == f"{PYTHON} -m mavhelm vehicle --config {place.config}"
-    assert said["ExecStopPost"] == f"{PYTHON} -m mavhelm vehicle safe-stop --config {place.config}"
+    assert said["ExecStart"] == f"{PYTHON} -m link.program vehicle --config {place.config}"
+    assert said["ExecStopPost"] == f"{PYTHON} -m link.program vehicle safe-stop --config {place.config}"
     assert (said["WatchdogSec"], said["WatchdogSignal"]) == ("1", "SIGKILL")
     assert (said["Restart"], said["RestartSec"]) == ("always", "0.5")
     assert said["StateDirectory"] == "mavhelm"

@@ -1,4 +1,7 @@
-"""Entry point of `mavhelm` and of `python -m mavhelm`: chooses the program by the first word."""
+"""Entry point of `mavhelm`: its first word chooses the program, which is imported alone.
+
+So `mavhelm vehicle` starts as fast as `vehicle`. The programs are named, not imported: this package knows neither end.
+"""
 
 from __future__ import annotations
 

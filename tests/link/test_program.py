@@ -8,11 +8,9 @@ import sys
 import pytest
 
 from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
-from mavhelm.__main__ import PROGRAMS
+from link.program import PROGRAMS
 
-COUNTED = (
-    "import sys; from mavhelm.__main__ import main\ntry: main({words})\nfinally: print(*sys.modules, file=sys.stderr)"
-)
+COUNTED = "import sys; from link.program import main\ntry: main({words})\nfinally: print(*sys.modules, file=sys.stderr)"
 
 
 def imported(*words: str) -> set[str]:
@@ -40,7 +38,7 @@ def test_each_program_is_in_the_help_and_no_verb_has_its_name() -> None:
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
 def test_the_first_word_chooses_the_program(words: list[str], usage: str) -> None:
-    done = subprocess.run([sys.executable, "-m", "mavhelm", *words], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-m", "link.program", *words], capture_output=True, text=True, check=True)
     assert done.stdout.startswith(usage)
 
 
