@@ -24,6 +24,8 @@ PATIENCE = 60.0
 """s until a test gives up on what must come. Nothing may be asserted by it: it only ends a test that has failed."""
 POLL = 0.01
 """s between two looks."""
+SHORT_POLL = 0.001
+"""The least s between two looks in a loop that runs the program, too."""
 SECOND = 1e-9
 """The kernel counts ns here (/proc/PID/task/TID/schedstat, the second number)."""
 
@@ -57,11 +59,13 @@ async def until(condition: Callable[[], Value], within: float = PATIENCE) -> Val
 
     The delays of this process are added to `within`, as by `wait_until`.
     """
-    patience = Patience(within)
+    patience, began = Patience(within), time.monotonic()
     while not (value := condition()):
         if patience.ended:
             raise TimeoutError(f"not within {within:g} s")
-        await asyncio.sleep(0.001)
+        looked = time.monotonic() - began
+        await asyncio.sleep(max(SHORT_POLL, 2 * looked))  # a condition that draws a screen takes 10 ms
+        began = time.monotonic()
     return value
 
 

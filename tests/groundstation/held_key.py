@@ -14,6 +14,9 @@ DELAY = 0.4
 GAP = 0.033
 """s between repeats: 30 a second, as most systems send."""
 
+DRAWN = 0.1
+"""s after which an app draws anew: above its MIN_FRAME_TIME, below its WITHOUT_SNAPSHOT."""
+
 HELD = HOLD_TIME + 1.0
 """s for which a key is held that confirms an action."""
 
@@ -43,6 +46,10 @@ class HeldTime:
         """Return the time, s."""
         return self._clock() + self._offset if self._stands_at is None else self._stands_at
 
+    def skip(self, seconds: float) -> None:
+        """Let so much time pass at once; none while it stands still."""
+        self._offset += seconds
+
     async def hold(
         self, press: Callable[[], Awaitable[object]], seconds: float = HELD, ended: Callable[[], object] = lambda: False
     ) -> None:
@@ -58,6 +65,7 @@ class HeldTime:
     @contextmanager
     def stand(self) -> Iterator[None]:
         """Let the time stand still: what is shown for a second after a key stays until the screen is drawn."""
+        self.skip(DRAWN)
         self._stands_at = self()
         try:
             yield

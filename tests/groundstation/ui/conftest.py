@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from textual.screen import Screen
 
 from groundstation.config.settings import ThemeName
 from groundstation.ui.look.colours import use_theme
-from tests.groundstation.ui import parsed_css
+from tests.groundstation.ui import matched_css, parsed_css, settling
 from tests.groundstation.ui.programs import Program
 
 
@@ -28,10 +29,24 @@ def _utc(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _css_parsed_once() -> Iterator[None]:
+def _less_of_textual() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         parsed_css.share(patch)
+        matched_css.share(patch)
+        settling.share(patch)
         yield
+
+
+@pytest.fixture
+def stock_pilot(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Textual's own pauses and painting: beside a station of its own, in real time."""
+    settling.restore(monkeypatch)
+
+
+@pytest.fixture
+def painted_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Paint whenever Textual does, also for an app without a terminal."""
+    monkeypatch.setattr(Screen, "_compositor_refresh", settling.paint)
 
 
 @pytest.fixture

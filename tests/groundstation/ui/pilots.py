@@ -15,7 +15,7 @@ from textual.pilot import Pilot
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
-from groundstation.ui.app.app import ConsoleApp
+from groundstation.ui.app.app import MIN_FRAME_TIME, ConsoleApp
 from groundstation.ui.app.help import HelpScreen
 from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.keys.key_gate import STARTING
@@ -24,6 +24,7 @@ from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import HeldTime
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
+from tests.groundstation.ui.settling import paint_changes, painted_when_seen
 from tests.waits import until
 
 
@@ -40,12 +41,14 @@ class Console:
     async def show(self, picture: Snapshot) -> None:
         """Let the station offer a picture and wait until it is on the screen."""
         self.offered += 1
+        self.clock.skip(MIN_FRAME_TIME)  # else the app shows it with its next tick only
         self.station.offer(msgspec.structs.replace(picture, number=self.offered))
         await until(lambda: self.app.drive.snapshot.number == self.offered)
         await self.pilot.pause()
 
     async def press(self, *keys: str) -> None:
         """Press keys one after the other."""
+        self.clock.skip(MIN_FRAME_TIME)
         await self.pilot.press(*keys)
         await self.pilot.pause()
 
@@ -84,11 +87,16 @@ async def console(
     station, held_time = Recorder(), HeldTime(clock)
     app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, look=look, clock=held_time)
     try:
-        async with app.run_test(size=size) as pilot:
-            await until(lambda: app.gate.closure != STARTING)
-            made = Console(app, station, pilot, held_time)
-            await made.show(snapshot() if picture is None else picture)
-            yield made
+        with painted_when_seen(app):
+            async with app.run_test(size=size) as pilot:
+                app._tick()  # else the first one comes within 0.1 s
+                await until(lambda: app.gate.closure != STARTING)
+                made = Console(app, station, pilot, held_time)
+                await made.show(snapshot() if picture is None else picture)
+                app._tick()  # it requests the views of its screen
+                await pilot.pause()
+                yield made
+                paint_changes(app.screen)
     finally:
         station.close()
 

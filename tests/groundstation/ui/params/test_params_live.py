@@ -21,6 +21,8 @@ from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.ui import frames
 from tests.waits import until
 
+pytestmark = pytest.mark.usefixtures("stock_pilot")
+
 DOCS = {
     "parameters": [
         {"name": "FS_ACTION", "shortDesc": "Failsafe Action", "values": [{"value": 1, "description": "RTL"}]},

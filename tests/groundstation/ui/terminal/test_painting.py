@@ -20,6 +20,7 @@ from groundstation.ui.terminal.painting import LineCompositor, find_background
 from groundstation.ui.widgets.instrument import Instrument
 from tests.groundstation.ui.pilots import Console, console
 
+pytestmark = pytest.mark.usefixtures("painted_at_once")
 TRIES = 40
 
 
