@@ -28,6 +28,7 @@ from groundstation.verbs.client.station_choice import AUTO, StationLink, find_st
 from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
@@ -42,12 +43,13 @@ if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
     from groundstation.verbs.session.core import OwnCore
     from groundstation.verbs.session.demand_guard import DemandGuard
-    from groundstation.verbs.session.running import VerbLinks
     from link.link_signing import LinkSigning
     from link.runner import Runner
 
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
+
+demand_guard = LazyModule("session.demand_guard")
 
 STOP_WAIT = 30.0
 """s for which a stop is sent to a vehicle that is not heard: a radio link may be cut for some seconds."""
@@ -176,17 +178,21 @@ async def _run_here(
 ) -> int:
     """Run the action in this process, with links of its own."""
     from groundstation.verbs.performing import build_session, perform  # a verb that a station runs does without
-    from groundstation.verbs.session.identity import choose_identity
-    from groundstation.verbs.session.running import VerbLinks, run_over
+    from groundstation.verbs.session.core import OwnCore
+    from groundstation.verbs.session.kept_session import choose_identity
+    from groundstation.verbs.session.running import run_over
 
-    ids, kept = choose_identity(action, options)
+    ids, kept = choose_identity(action, options.system, time.monotonic())
     tap = action.tap(options, ids)
     signing = None if getattr(options, "unsigned", False) else _open_signing()
-    guard = _start_guard(ids, signing) if action.guarded(options) else None  # before the links are open
-    links = VerbLinks(endpoints, ids, kept.number, signing, tap, guard)
-    session = build_session(
-        action, options, output, endpoints, lambda: _own_core(links, options.vehicle), (ids, kept.number)
-    )
+    guard: DemandGuard | None = None
+    if action.guarded(options):  # before the links are open
+        guard = demand_guard.DemandGuard(ids, signing.signing if signing else None)
+
+    def build_core() -> OwnCore:
+        return OwnCore(ids, options.vehicle, kept.number, endpoints, asyncio.get_running_loop().time())
+
+    session = build_session(action, options, output, endpoints, build_core, (ids, kept.number))
 
     def found(name: str) -> None:
         if options.endpoints:
@@ -201,19 +207,13 @@ async def _run_here(
 
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
-            return await run_over(links, session.core, script)
+            return await run_over(endpoints, session.core, script, ids=ids, signing=signing, log_tap=tap, guard=guard)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
     finally:
         kept.end(time.monotonic())
         if guard is not None:
             guard.close()
-
-
-def _own_core(links: VerbLinks, wanted: int | str | None) -> OwnCore:
-    from groundstation.verbs.session.core import OwnCore
-
-    return OwnCore(links.ids, wanted, links.session, links.endpoints, asyncio.get_running_loop().time())
 
 
 def _companion_of(action: VerbAction, options: argparse.Namespace, output: Output) -> RunCompanion | None:
@@ -252,12 +252,6 @@ def _open_signing() -> LinkSigning | None:
         return open_signing(time.monotonic())
     except SigningError as error:
         raise VerbError(ExitCode.USAGE, str(error)) from None
-
-
-def _start_guard(ids: tuple[int, int], signing: LinkSigning | None) -> DemandGuard:
-    from groundstation.verbs.session.demand_guard import DemandGuard
-
-    return DemandGuard(ids, signing.signing if signing else None)
 
 
 def _cancel_on_signals(caught: list[int]) -> None:

@@ -16,10 +16,10 @@ import msgspec
 from groundstation.config.groups import VehicleGroup
 from groundstation.formats.errors import FileFormatError
 from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES
+from groundstation.verbs.collected_output import CollectedOutput
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, worst_code
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.common.tables import format_table
-from groundstation.verbs.many_output import VehicleOutput
 from groundstation.verbs.session.core import ALONE_AFTER
 from groundstation.verbs.session.session import VerbSession
 
@@ -109,10 +109,10 @@ class ManyVehicles:
 
     def _add_missing(self) -> None:
         for system in self._missing:
-            self._add(VehicleResult(system, f"Vehicle {system}", ExitCode.NO_VEHICLE), VehicleOutput())
+            self._add(VehicleResult(system, f"Vehicle {system}", ExitCode.NO_VEHICLE), CollectedOutput())
 
     async def _run_one(self, session: VerbSession) -> None:
-        output, state = VehicleOutput(), session.vehicle
+        output, state = CollectedOutput(), session.vehicle
         options = copy(self._options)
         options.vehicle = state.system
         try:
@@ -135,7 +135,7 @@ class ManyVehicles:
             await session.show_neutral()
         return await self._action.run(session, options, output)
 
-    def _add(self, result: VehicleResult, output: VehicleOutput) -> None:
+    def _add(self, result: VehicleResult, output: CollectedOutput) -> None:
         self._results.append(result)
         self._output.count(self._output.verb, len(self._results), len(self._begun))
         self._output.result(

@@ -59,7 +59,7 @@ async def perform(
     if group is not None:
         return await _perform_for_group(session, action, options, output, group)
     if action.finds:
-        await session.find_vehicle(options.wait, options.vehicle, session.where)
+        await session.find_vehicle(options.wait, options.vehicle)
     if action.takes_part:
         await session.prove_session()
     if action.shows_neutral:
@@ -79,7 +79,7 @@ async def _perform_for_group(
         systems = group.listed or ((0,) if options.all else ())
         sending = asyncio.ensure_future(stops.stop_unheard(session, output.verb, systems))
     try:
-        await session.find_vehicle(options.wait, None, session.where)
+        await session.find_vehicle(options.wait, None)
         code: int = await multi_vehicle.ManyVehicles(session, action, options, group, output).run()
         return code
     finally:

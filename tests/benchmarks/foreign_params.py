@@ -8,8 +8,9 @@ from statistics import median
 
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.session.core import OwnCore
-from groundstation.verbs.session.running import VerbLinks, run_over
+from groundstation.verbs.session.running import run_over
 from groundstation.verbs.session.session import VerbSession
+from link.runner import Runner
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Table, brief
 from tests.fakes.params import many_params
 from tests.fakes.services import foreign_vehicle
@@ -47,11 +48,16 @@ def _fetch(*, files: bool) -> float:
 
         async def fetch() -> int:
             core = OwnCore((254, 190), 1, 1, now=asyncio.get_running_loop().time())
-            links = VerbLinks([vehicle.endpoint], (254, 190), 1)
-            return await run_over(links, core, lambda runner: script(VerbSession(core, runner.flush, _ignore)))
+            session = VerbSession(core, lambda: None, _ignore)
+
+            async def begin(runner: Runner) -> int:
+                session.flush = runner.flush
+                return await script(session)
+
+            return await run_over([vehicle.endpoint], core, begin, ids=core.ids)
 
         async def script(session: VerbSession) -> int:
-            await session.find_vehicle(20.0, 1, vehicle.endpoint)
+            await session.find_vehicle(20.0, 1)
             await session.request(session.services.modes.list_modes)
             began = time.monotonic()
             report = await session.request(session.services.params.fetch)

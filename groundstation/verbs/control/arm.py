@@ -21,8 +21,7 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.control.stop_jobs import refusal_words
 from groundstation.verbs.control.stops import run_job
-from groundstation.verbs.session.kinds import need_driven
-from groundstation.verbs.session.reports import finish
+from groundstation.verbs.session.reports import finish, need_driven
 from groundstation.verbs.session.session import VerbSession
 from link.services.command.client import CommandClient, CommandOutcome
 

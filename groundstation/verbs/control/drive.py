@@ -40,8 +40,7 @@ from groundstation.verbs.control.driving import (
 from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, parse_script
 from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
 from groundstation.verbs.control.stops import run_job
-from groundstation.verbs.session.kinds import need_driven
-from groundstation.verbs.session.reports import finish
+from groundstation.verbs.session.reports import finish, need_driven
 from groundstation.verbs.session.session import VerbSession
 
 LOOK_PERIOD = 0.01

@@ -15,7 +15,7 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.control.control import ask_for_control
 from groundstation.verbs.control.stop_jobs import StopTimes, disarm_job
 from groundstation.verbs.control.stops import run_job
-from groundstation.verbs.session.kinds import need_driven
+from groundstation.verbs.session.reports import need_driven
 from groundstation.verbs.session.session import TOLD_WITHIN, VerbSession
 
 DISARM_WITHIN = 10.0

@@ -159,7 +159,7 @@ async def estop(session: VerbSession, options: argparse.Namespace, output: Outpu
     """Stop the motors and lock them, or release the lock with --clear."""
     if not options.clear:
         return await _emergency_stop(session, options, output)
-    await session.find_vehicle(options.wait, options.vehicle, session.where)
+    await session.find_vehicle(options.wait, options.vehicle)
     await session.need_only_vehicle(options.vehicle)
     await session.prove_session()
     commands = session.services.commands

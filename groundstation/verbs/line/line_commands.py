@@ -14,10 +14,11 @@ from groundstation.station.driving.blind_stops import EVERYBODY
 from groundstation.station.station import Station
 from groundstation.vehicles.demand.stop_commands import STOP_VERBS
 from groundstation.vehicles.fleet import Contact
+from groundstation.verbs.collected_output import CollectedOutput
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.parser import ParsedLine, parse_line
-from groundstation.verbs.line.session import LineOutput, LineSession, here
+from groundstation.verbs.line.session import LineSession, here
 from groundstation.verbs.line.words import complete
 from groundstation.verbs.table import VERBS
 from groundstation.views.line import ASKS, DONE, FAILED, RUNNING, LineRequest, LineView
@@ -98,7 +99,7 @@ class LineCommands:
         return contact
 
     async def _perform(self, intent: RunLine, parsed: ParsedLine, contact: Contact) -> None:
-        session, output = LineSession(self._station, contact, self._flush), LineOutput()
+        session, output = LineSession(self._station, contact, self._flush), CollectedOutput(here)
         session.seat.join()
         run: Any = parsed.rule.own or parsed.action.run
         try:
@@ -133,7 +134,7 @@ class LineCommands:
         self._views = deque([*kept, LineView(intent.request, state, note, "")], maxlen=KEPT)
 
 
-def _summary(name: str, output: LineOutput, told: list[str]) -> str:
+def _summary(name: str, output: CollectedOutput, told: list[str]) -> str:
     """Return what a verb without notes has done."""
     if len(output.lines) == 1:
         return output.lines[0]

@@ -10,10 +10,10 @@ from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.handover import ANSWER_WITHIN
 from groundstation.vehicles.demand.stop_commands import StopKind
-from groundstation.vehicles.requests.requests import RequestState
-from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
+from groundstation.verbs.collected_output import CollectedOutput
+from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.control.stop_jobs import StopEvidence, find_hold_doubt
-from groundstation.verbs.line.session import LineOutput, LineSession
+from groundstation.verbs.line.session import LineSession
 
 STOPPED_WITHIN = 5.0
 """s for the heartbeat to report a stop, which the station repeats; after that the line says what it reports."""
@@ -40,7 +40,7 @@ async def _wait_disarmed(session: LineSession) -> tuple[bool, str]:
     return await _wait_stopped(session, session.vehicle.senders.find_doubt)
 
 
-async def disarm(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+async def disarm(session: LineSession, options: argparse.Namespace, output: CollectedOutput) -> int:
     """Disarm."""
     session.stop(StopKind.DISARM, Stop(), Disarm())
     done, doubt = await _wait_disarmed(session)
@@ -48,7 +48,7 @@ async def disarm(session: LineSession, options: argparse.Namespace, output: Line
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 
 
-async def stop(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+async def stop(session: LineSession, options: argparse.Namespace, output: CollectedOutput) -> int:
     """Stop the sticks, and change to HOLD."""
     state = session.vehicle
     session.stop(StopKind.HOLD, Stop(), SetMode(mode=HOLD))
@@ -57,7 +57,7 @@ async def stop(session: LineSession, options: argparse.Namespace, output: LineOu
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 
 
-async def emergency_stop(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+async def emergency_stop(session: LineSession, options: argparse.Namespace, output: CollectedOutput) -> int:
     """Stop the motors and lock them."""
     if options.clear:
         raise VerbError(ExitCode.USAGE, "estop --clear is the key t, held for 1 s on Drive, so that no text does it")
@@ -67,7 +67,7 @@ async def emergency_stop(session: LineSession, options: argparse.Namespace, outp
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 
 
-async def show_control(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+async def show_control(session: LineSession, options: argparse.Namespace, output: CollectedOutput) -> int:
     """Say who is in control."""
     state, driver = session.vehicle, session.vehicle.driver
     who = "this ground station" if session.contact.in_control else f"GCS {driver}" if driver else "nobody"
@@ -75,7 +75,7 @@ async def show_control(session: LineSession, options: argparse.Namespace, output
     return ExitCode.DONE
 
 
-async def request_control(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+async def request_control(session: LineSession, options: argparse.Namespace, output: CollectedOutput) -> int:
     """Take control, or ask the driver for it."""
     _need_selected(session)
     if options.takeover:
@@ -93,31 +93,10 @@ async def request_control(session: LineSession, options: argparse.Namespace, out
     return ExitCode.DONE
 
 
-async def release_control(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
+async def release_control(session: LineSession, options: argparse.Namespace, output: CollectedOutput) -> int:
     """Release control."""
     _need_selected(session)
     session.do(ReleaseControl())
     await session.wait_for(lambda: not session.contact.in_control, STOPPED_WITHIN)
     output.note(f"{session.vehicle.name}: control released")
     return ExitCode.DONE
-
-
-async def request_message(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
-    """Request one message; the Messages screen shows it."""
-    kind, messages = options.kind, session.services.messages
-    report = await session.request(
-        lambda number, now: messages.request_once(number, session.vehicle.component, kind.id, kind.msgname, now)
-    )
-    done = report.state is RequestState.ACCEPTED
-    output.note(f"{session.vehicle.name}: {report.text}{'; Messages (F3) shows it' if done else ''}")
-    return code_of(report)
-
-
-async def set_rate(session: LineSession, options: argparse.Namespace, output: LineOutput) -> int:
-    """Set how often a message comes; 0: never."""
-    kind, messages, hz = options.kind, session.services.messages, options.rate or -1.0
-    report = await session.request(
-        lambda number, now: messages.set_rate(number, session.vehicle.component, kind.id, kind.msgname, hz, now)
-    )
-    output.note(f"{session.vehicle.name}: {report.text}")
-    return code_of(report)

@@ -13,10 +13,11 @@ from typing import Any
 import msgspec
 
 from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.verbs.collected_output import CollectedOutput
 from groundstation.verbs.line import overrides
-from groundstation.verbs.line.session import LineOutput, LineSession
+from groundstation.verbs.line.session import LineSession
 
-Own = Callable[[LineSession, argparse.Namespace, LineOutput], Awaitable[int]]
+Own = Callable[[LineSession, argparse.Namespace, CollectedOutput], Awaitable[int]]
 
 
 class LineRule(msgspec.Struct, frozen=True):
@@ -59,7 +60,7 @@ LINE_RULES: Mapping[str, LineRule] = {
     "drive": LineRule(elsewhere="the keys of the Drive screen (F1) drive"),
     "messages": _on(_MESSAGES), "watch": _on(_MESSAGES), "ping": _on(_LINKS),
     "send": LineRule(elsewhere="use `mavhelm send` in a shell, over another link of the vehicle"),
-    "command": _ASK, "request": LineRule(own=overrides.request_message), "rate": LineRule(own=overrides.set_rate),
+    "command": _ASK, "request": _RUN, "rate": _RUN,
     "param get": _RUN, "param set": _ASK, "param store": _ASK, "param reset": _ASK,
     "param save": _on(_PARAMS), "param load": _on(_PARAMS), "param diff": _on(_PARAMS),
     **{f"{plan} {action}": _RUN for plan in ("mission", "fence", "rally") for action in ("show",)},

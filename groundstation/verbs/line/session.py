@@ -9,6 +9,7 @@ from groundstation.station.operator_core import OperatorCore
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestReport
+from groundstation.verbs.collected_output import one_line
 from groundstation.verbs.session.contact import VehicleContact
 from groundstation.verbs.session.session import Interrupted, RequestStart, VerbSession
 from groundstation.verbs.session.station_core import StationCore, StationSeat
@@ -63,42 +64,6 @@ class LineSession(VerbSession):
         return report
 
 
-class LineOutput:
-    """Collects what a verb prints. It has the methods of Output."""
-
-    as_json = False
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        """Data."""
-        self.notes: list[str] = []
-        """What an operator should know, and errors."""
-
-    def line(self, text: str) -> None:
-        """Handle a line of data."""
-        self.lines.append(text)
-
-    def record(self, **fields: object) -> None:
-        """Ignore what is for --json."""
-
-    def result(self, ok: bool, vehicle: int | None, **fields: object) -> None:
-        """Ignore what is for --json."""
-
-    def flush(self) -> None:
-        """Do nothing."""
-
-    def note(self, text: str) -> None:
-        """Keep a note for the user."""
-        self.notes.append(here(text))
-
-    def error(self, text: str) -> None:
-        """Keep an error."""
-        self.note(text)
-
-    def progress(self, report: RequestReport) -> None:
-        """Ignore progress: screens show it."""
-
-
 def here(text: str) -> str:
     """Return a text for a shell as one line for a screen: verbs are written behind a colon here."""
-    return " ".join(text.split()).replace("`mavhelm ", "`:")
+    return one_line(text).replace("`mavhelm ", "`:")

@@ -9,7 +9,7 @@ import argparse
 import asyncio
 import os
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -81,16 +81,17 @@ class FrameCollector:
 
     def __init__(self, ids: tuple[int, int]) -> None:
         self.ids = ids
-        self.hand_over: Callable[[], None] = lambda: None
-        """Called when there is enough for a packet."""
+        self.companion: Channel | None = None
+        """Gets the frames, once the verb has begun."""
         self.log_tap = LogTap(self._add, system=ids[0], component=ids[1], unsent=False)
         self._frames: list[tuple[float, Sequence[bytes]]] = []
         self._size = 0
 
-    def pop(self) -> list[tuple[float, Sequence[bytes]]]:
-        """Return times and frames since the last call."""
-        frames, self._frames, self._size = self._frames, [], 0
-        return frames
+    def hand_over(self) -> None:
+        """Send times and frames since the last call."""
+        if self._frames and self.companion is not None:
+            self.companion.send(self._frames)
+            self._frames, self._size = [], 0
 
     def _add(self, now: float, frames: Sequence[bytes]) -> None:
         self._frames.append((now, frames))
@@ -114,20 +115,15 @@ def collect(options: argparse.Namespace, ids: tuple[int, int]) -> LogTap:
 async def record(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Record until the time is over or a signal comes; the companion says what is in the file."""
     frames: FrameCollector = options.frames
-
-    def hand_over() -> None:
-        if batch := frames.pop():
-            session.companion.send(batch)
-
     session.companion.send(frames.ids)
-    frames.hand_over = hand_over
+    frames.companion = session.companion
     output.note(f"recording to {options.file}{'' if options.seconds else ' until Ctrl-C'}")
     try:
         while options.seconds is None or session.now - session.began < options.seconds:
             await _receive_soon(session.companion)  # only its end comes
-            hand_over()
+            frames.hand_over()
     finally:
-        hand_over()
+        frames.hand_over()
     session.companion.send(session.describe_links())
     return ExitCode.DONE
 

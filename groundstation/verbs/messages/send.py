@@ -21,7 +21,7 @@ from groundstation.verbs.common.output import Output
 from groundstation.verbs.messages.demands import build_demand, check_demand
 from groundstation.verbs.messages.message_builder import build, parse_fields
 from groundstation.verbs.messages.message_values import find_message
-from groundstation.verbs.session.kinds import need_driven
+from groundstation.verbs.session.reports import need_driven
 from groundstation.verbs.session.session import VerbSession
 
 TARGETS = {"target": 0, "target_system": 0, "target_component": 1}

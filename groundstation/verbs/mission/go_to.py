@@ -16,8 +16,7 @@ from groundstation.verbs.common.arguments import finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.mission.plan import count_text, download, has_place
-from groundstation.verbs.session.kinds import need_driven
-from groundstation.verbs.session.reports import finish, wait_for_report
+from groundstation.verbs.session.reports import finish, need_driven, wait_for_report
 from groundstation.verbs.session.session import VerbSession
 from link.services.command.client import CommandPlace
 

@@ -9,21 +9,19 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import time
 from typing import Any
 
-from groundstation.ros.vehicle import RosVehicle
+from groundstation.ros.vehicle import Values
 from groundstation.ros1.process import NodeEndedError, NodeProcess, running_node
 from groundstation.verbs.common.arguments import Argument, seconds
 from groundstation.verbs.common.channel import Channel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.ros.ros_driver import RosDriver
-from groundstation.verbs.ros.ros_rates import RATE, request_rates
+from groundstation.verbs.ros.ros_rates import RATE, publish_telemetry, request_rates
 from groundstation.verbs.ros.ros_scale import ARGUMENTS as SCALE_ARGUMENTS
 from groundstation.verbs.ros.ros_scale import learn_scale
 from groundstation.verbs.session.session import VerbSession
-from link.core import Received
 
 TOPICS = {"command": "std_msgs/String", "cmd_vel": "geometry_msgs/Twist"}
 """Relative, so that ROS_NAMESPACE stands before them."""
@@ -54,18 +52,8 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     await session.need_only_vehicle(options.vehicle)
     driver = RosDriver(session, await learn_scale(session, options), output)
     ros1 = Ros1(session, driver, options, output)
-    work = driver.run(), ros1.run(), ros1.arm(), request_rates(session, options.rate)
-    tasks = [asyncio.ensure_future(each) for each in work]
-    try:
-        async with asyncio.timeout(options.seconds):
-            await asyncio.gather(*tasks)  # the first error ends it
-    except TimeoutError:
-        pass  # --for is over
-    finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.wait(tasks)
-        await driver.leave()
+    rates = request_rates(session, options.rate)
+    await driver.run_beside(ros1.run(), ros1.arm(), rates, seconds=options.seconds)
     return ExitCode.DONE
 
 
@@ -75,7 +63,8 @@ class Ros1:
     def __init__(self, session: VerbSession, driver: RosDriver, options: argparse.Namespace, output: Output) -> None:
         self._session, self._driver, self._output = session, driver, output
         self._options = options
-        self._telemetry = Ros1Telemetry(session)
+        self._joined = False
+        """A node is at its master."""
         self._senders: set[tuple[str, str]] = set()
         self._ready = asyncio.Event()
 
@@ -83,12 +72,11 @@ class Ros1:
         """Handle what the nodes say, until cancelled. Raises VerbError."""
         companion = self._session.companion
         companion.send(f"mavhelm_{self._session.vehicle.system}")
-        self._session.core.taps.append(self._telemetry.take)
+        publish_telemetry(self._session, self._publish)
         try:
             while True:
                 self._handle(await companion.receive())
         finally:
-            self._session.core.taps.remove(self._telemetry.take)
             self._forget()
 
     async def arm(self) -> None:
@@ -117,15 +105,19 @@ class Ros1:
             case {"waiting": str(uri)}:
                 note(f"no ROS master at {uri}: start `roscore`, or set ROS_MASTER_URI")
             case {"ready": str(name), "master": str(uri)}:
-                self._telemetry.ready = True
+                self._joined = True
                 self._ready.set()
                 note(f"{self._session.vehicle.name} is {name} at {uri}: publish to command or cmd_vel")
             case {"silent": bool(silent), "master": str(uri)}:
                 note(f"the ROS master at {uri} {SILENT if silent else 'answers again'}")
             case {"lost": str(text)}:
-                self._telemetry.ready = False
+                self._joined = False
                 self._forget()
                 note(f"the node has left ROS: {text}; neutral")
+
+    def _publish(self, topic: str, kind: str, values: Values) -> None:
+        if self._joined and topic in NODE_TOPICS:
+            self._session.companion.send((topic, kind.replace("/msg/", "/"), values))
 
     def _take(self, topic: str, sender: str, at: float, values: dict[str, Any]) -> None:
         if self._session.now - at > LATE:
@@ -142,24 +134,6 @@ class Ros1:
         for key in [each for each in self._senders if topic in (None, each[0])]:
             self._senders.discard(key)
             self._driver.remove(key)
-
-
-class Ros1Telemetry:
-    """Telemetry of the vehicle, published by the node of the companion once it is ready."""
-
-    def __init__(self, session: VerbSession) -> None:
-        self._system, self._companion = session.vehicle.system, session.companion
-        self._vehicle = RosVehicle(session.vehicle.component)
-        self.ready = False
-
-    def take(self, received: Received, now: float) -> None:
-        """Publish what a message says."""
-        if (received.system, received.component) != (self._system, self._vehicle.component):
-            return
-        made = self._vehicle.take(received.message, time.time_ns() // 1000)
-        if made is not None and self.ready and made[0] in NODE_TOPICS:
-            topic, kind, values = made
-            self._companion.send((topic, kind.replace("/msg/", "/"), values))
 
 
 async def serve(options: argparse.Namespace, output: Output, verb: Channel) -> None:

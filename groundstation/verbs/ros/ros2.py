@@ -11,8 +11,6 @@ from __future__ import annotations
 import argparse
 import asyncio
 import os
-import time
-from collections.abc import Callable
 from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING, Any
@@ -21,14 +19,14 @@ from dialects import messages as m
 from groundstation.ros.diagnostics import diagnostics, log_line
 from groundstation.ros.freshness import MAX_LATENESS
 from groundstation.ros.rmw.names import name_fault, namespace_fault
-from groundstation.ros.vehicle import ODOMETRY, RosVehicle, Values, transforms
+from groundstation.ros.vehicle import ODOMETRY, Values, transforms
 from groundstation.verbs.common.arguments import Argument
 from groundstation.verbs.common.channel import Channel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.ros.ros2_params import PARAMETER_SERVICES, parameter_services
 from groundstation.verbs.ros.ros_driver import RosDriver
-from groundstation.verbs.ros.ros_rates import RATE, request_rates
+from groundstation.verbs.ros.ros_rates import RATE, publish_telemetry, request_rates, unix_time
 from groundstation.verbs.ros.ros_scale import ARGUMENTS as SCALE_ARGUMENTS
 from groundstation.verbs.ros.ros_scale import learn_scale
 from groundstation.verbs.session.session import VerbSession
@@ -131,14 +129,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
         armed, text = await driver.set_armed(True, options.wait)
         if not armed:
             raise VerbError(ExitCode.REFUSED, f"{session.vehicle.name}: {text}")
-    tasks = [asyncio.ensure_future(each) for each in (driver.run(), node.listen(), node.publish())]
-    try:
-        await asyncio.gather(*tasks)  # the first error ends it
-    finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.wait(tasks)
-        await driver.leave()
+    await driver.run_beside(node.listen(), node.publish())
     return ExitCode.DONE
 
 
@@ -155,8 +146,12 @@ class _NodeUser:
         """Begin the node, and handle what it receives, until cancelled. Raises VerbError."""
         companion = self._session.companion
         companion.send(self._name)
-        while True:
-            self._handle(*await companion.receive())
+        try:
+            while True:
+                self._handle(*await companion.receive())
+        finally:
+            for call in self._calls:
+                call.cancel()
 
     def _handle(self, what: str, at: float, *values: Any) -> None:
         if what == NOTE:
@@ -181,32 +176,23 @@ class _NodeUser:
 
     async def publish(self) -> None:
         """Publish what the vehicle reports, and its diagnostics, until cancelled."""
-        self._session.core.taps.append(self._tap())
+        self._session.core.taps.append(self._take_text)
+        publish_telemetry(self._session, self._publish)
         await request_rates(self._session, self._options.rate)
         while True:
             view = self._session.vehicle.build_view(self._session.now)
-            self._send("/diagnostics", diagnostics(view, self._driver.engaged, _unix_time()))
+            self._send("/diagnostics", diagnostics(view, self._driver.engaged, unix_time()))
             await asyncio.sleep(DIAGNOSTICS_PERIOD)
 
-    def _tap(self) -> Callable[[Received, float], None]:
-        """Return what takes each message that arrives, and publishes what it makes."""
-        state = self._session.vehicle
-        vehicle = RosVehicle(state.component)
+    def _take_text(self, received: Received, now: float) -> None:
+        text, state = received.message, self._session.vehicle
+        if isinstance(text, m.StatusText) and (received.system, received.component) == (state.system, state.component):
+            self._send("/rosout", log_line(text.text, text.severity, self._name, unix_time()))
 
-        def take(received: Received, now: float) -> None:
-            if (received.system, received.component) != (state.system, state.component):
-                return
-            if isinstance(received.message, m.StatusText):
-                line = log_line(received.message.text, received.message.severity, self._name, _unix_time())
-                self._send("/rosout", line)
-            made = vehicle.take(received.message, _unix_time())
-            if made is not None:
-                topic, kind, values = made
-                self._send(topic, values)
-                if self._options.tf and kind == ODOMETRY:
-                    self._send(TRANSFORMS, transforms(values))
-
-        return take
+    def _publish(self, topic: str, kind: str, values: Values) -> None:
+        self._send(topic, values)
+        if self._options.tf and kind == ODOMETRY:
+            self._send(TRANSFORMS, transforms(values))
 
     def _send(self, topic: str, values: Values) -> None:
         self._session.companion.send((PUBLISH, topic, values))
@@ -271,7 +257,3 @@ class _Node:
 
     def _tell(self, what: str, *values: Any) -> None:
         self._verb.send((what, asyncio.get_running_loop().time(), *values))
-
-
-def _unix_time() -> int:
-    return time.time_ns() // 1000

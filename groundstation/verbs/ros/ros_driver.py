@@ -9,7 +9,7 @@ neutral, or fall silent, before it drives again. Neutral follows however the pro
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Hashable
+from collections.abc import Coroutine, Hashable
 
 from dialects.axes import NEUTRAL, Axes
 from groundstation.ros.demand import RefusedDemandError, Scale
@@ -97,6 +97,20 @@ class RosDriver:
                 await asyncio.sleep(LOOK_PERIOD)
         finally:
             self._disengage()
+
+    async def run_beside(self, *work: Coroutine[None, None, None], seconds: float | None = None) -> None:
+        """Drive, and do the work beside it, until one of them fails, or for `seconds`; then send neutral and leave."""
+        tasks = [asyncio.ensure_future(each) for each in (self.run(), *work)]
+        try:
+            async with asyncio.timeout(seconds):
+                await asyncio.gather(*tasks)
+        except TimeoutError:
+            pass  # --for is over
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.wait(tasks)
+            await self.leave()
 
     async def _look(self) -> None:
         session, now = self._session, self._session.now

@@ -1,11 +1,16 @@
-"""How often a vehicle sends what a node of ROS publishes."""
+"""What a node of ROS publishes of a vehicle, and how often the vehicle sends it."""
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
+
 from dialects import messages as m
 from dialects.enums import Command
+from groundstation.ros.vehicle import RosVehicle, Values
 from groundstation.verbs.common.arguments import Argument, rate
 from groundstation.verbs.session.session import VerbSession
+from link.core import Received
 
 RATE: Argument = ("--rate", {"type": rate, "default": 5.0, "metavar": "HZ", "help": "of odom and imu (default: 5)"})
 REQUESTED: dict[type[m.Message], float] = {
@@ -28,3 +33,21 @@ async def request_rates(session: VerbSession, hertz: float) -> None:
                 number, Command.SET_MESSAGE_INTERVAL, p, f"rate of {k.msgname}", now
             )
         )
+
+
+def publish_telemetry(session: VerbSession, publish: Callable[[str, str, Values], None]) -> None:
+    """Have topic, type and values of each message of ROS published that a message of the vehicle makes."""
+    system, vehicle = session.vehicle.system, RosVehicle(session.vehicle.component)
+
+    def take(received: Received, now: float) -> None:
+        if (received.system, received.component) == (system, vehicle.component):
+            made = vehicle.take(received.message, unix_time())
+            if made is not None:
+                publish(*made)
+
+    session.core.taps.append(take)
+
+
+def unix_time() -> int:
+    """Return the Unix time, us."""
+    return time.time_ns() // 1000

@@ -32,26 +32,6 @@ Tap = Callable[[Received, float], None]
 """Takes each message that arrives, and the time."""
 
 
-class Waiters:
-    """Conditions that a verb waits for, checked whenever something may have changed."""
-
-    def __init__(self) -> None:
-        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
-
-    def add(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
-        """Return a future that is done once `condition` holds at a check."""
-        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._waiters.append((condition, found))
-        return found
-
-    def check(self) -> None:
-        """End those whose condition holds, and forget those that have ended."""
-        for condition, found in self._waiters:
-            if not found.done() and condition():
-                found.set_result(None)
-        self._waiters = [each for each in self._waiters if not each[1].done()]
-
-
 class VerbCore:
     """A verb on `station`: that of its own process (OwnCore), or of one that runs (StationCore).
 
@@ -82,7 +62,7 @@ class VerbCore:
         """Our system and component id."""
         self._wanted = wanted
         self._heartbeat = HeartbeatSender(0.0)
-        self._waiters = Waiters()
+        self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message, which the station has handled; the HEARTBEAT of a vehicle begins the conversation."""
@@ -99,7 +79,7 @@ class VerbCore:
             tap(received, now)
         if self.chosen is None and not self.has_heard_all:
             self._choose(now)
-        self._waiters.check()
+        self._check_waiters()
 
     def add_vehicles(self, now: float) -> None:
         """Take the vehicles of the station that are heard, and leave out those for which it has no place."""
@@ -115,7 +95,7 @@ class VerbCore:
         contact = self.contacts.get(m.target_system(message))
         if contact is not None:
             contact.handle_refused(message, why)
-            self._waiters.check()
+            self._check_waiters()
 
     def tick(self, now: float) -> None:
         """Send heartbeats, repeat what is overdue."""
@@ -125,7 +105,7 @@ class VerbCore:
             self._choose(now)
         for contact in self.contacts.values():
             contact.tick(now)
-        self._waiters.check()
+        self._check_waiters()
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Keep the reports of the links."""
@@ -152,7 +132,15 @@ class VerbCore:
 
     def add_waiter(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
         """Return a future that is done once `condition` holds, checked after each message and tick."""
-        return self._waiters.add(condition)
+        found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters.append((condition, found))
+        return found
+
+    def _check_waiters(self) -> None:
+        for condition, found in self._waiters:
+            if not found.done() and condition():
+                found.set_result(None)
+        self._waiters = [each for each in self._waiters if not each[1].done()]
 
     def _choose(self, now: float) -> None:
         """Choose the vehicle. One that is not heard as an autopilot yet may be a script on board of it."""

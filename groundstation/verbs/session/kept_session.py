@@ -14,8 +14,14 @@ import contextlib
 import fcntl
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from groundstation.station.component import COMPONENT
 from groundstation.station_socket.verb_run import KEEP
+from groundstation.verbs.session.core import WATCHER
+
+if TYPE_CHECKING:
+    from groundstation.verbs.action import VerbAction
 
 MAX_SIZE = 64
 
@@ -85,11 +91,14 @@ class KeptSession:
             os.pwrite(self._file, f"{self.number} {now:.3f}\n".encode(), 0)
 
 
-def choose_session(system: int, now: float, *, take: bool, follow: bool) -> KeptSession:
-    """Return the session of a verb: the one before it if it takes part or follows, else a new one."""
-    if take:
-        return KeptSession.take(system, now)
-    return (KeptSession.follow(system, now) if follow else None) or KeptSession(_new_number())
+def choose_identity(action: VerbAction, system: int, now: float) -> tuple[tuple[int, int], KeptSession]:
+    """Return our ids, and our session: that of the verb before if this one takes part or follows, else a new one."""
+    if action.takes_part:
+        kept = KeptSession.take(system, now)
+    else:
+        kept = (KeptSession.follow(system, now) if action.follows else None) or KeptSession(_new_number())
+    looks = action.watches and not action.examines and not kept.follows
+    return (system, WATCHER if looks else COMPONENT), kept
 
 
 def _new_number() -> int:

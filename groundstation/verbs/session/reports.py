@@ -7,6 +7,7 @@ from typing import Any
 
 from groundstation.station.driving.arming import CONFIRM_WITHIN
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.session import VerbSession
@@ -45,3 +46,9 @@ async def wait_for_report(session: VerbSession, condition: Callable[[], bool]) -
         silence = f"{CONFIRM_WITHIN + SILENT_WITHIN:g} s"
         raise VerbError(ExitCode.NO_ANSWER, f"{state.name}: accepted, but no heartbeat came for {silence}")
     return condition()
+
+
+def need_driven(state: VehicleState) -> None:
+    """Raise VerbError for a vehicle of a kind that is only shown (dialects/kinds.py)."""
+    if state.model.refusal:
+        raise VerbError(ExitCode.REFUSED, f"{state.name}: {state.model.refusal}")

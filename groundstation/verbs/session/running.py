@@ -6,8 +6,6 @@ import asyncio
 from collections.abc import Awaitable, Callable, Sequence
 from typing import TYPE_CHECKING
 
-import msgspec
-
 from groundstation.vehicles.state.places import PLACES
 from groundstation.verbs.session.core import OwnCore
 from link.core import Core
@@ -26,32 +24,24 @@ END_WITHIN = 1.0
 """s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
 
 
-class VerbLinks(msgspec.Struct, frozen=True):
-    """How a verb reaches its vehicle."""
+async def run_over(
+    endpoints: Sequence[str],
+    core: Core,
+    script: Callable[[Runner], Awaitable[int]],
+    *,
+    ids: tuple[int, int],
+    signing: LinkSigning | None = None,
+    log_tap: LogTap | None = None,
+    guard: DemandGuard | None = None,
+) -> int:
+    """Open links and run the script with a core; return its exit code. Raises EndpointError, LinkError, VerbError.
 
-    endpoints: Sequence[str]
-    ids: tuple[int, int]
-    """Our system and component id."""
-    session: int
-    """Number of our session."""
-    signing: LinkSigning | None = None
-    log_tap: LogTap | None = None
-    guard: DemandGuard | None = None
-
-    def open(self, core: Core) -> Runner:
-        """Open the links. Raises EndpointError, LinkError."""
-        system, component = self.ids
-        opened = open_links(self.endpoints, system=system, component=component, side=Side.GROUND_STATION, places=PLACES)
-        sent = self.guard.record_sent if self.guard else None
-        return Runner(core, opened, period=PERIOD, route=False, log_tap=self.log_tap, sent=sent, signing=self.signing)
-
-
-async def run_over(links: VerbLinks, core: Core, script: Callable[[Runner], Awaitable[int]]) -> int:
-    """Run the script with a core, and return its exit code. Raises EndpointError, LinkError, VerbError.
-
-    A script that is interrupted gets END_WITHIN to end in order, over links that still work.
+    `ids` are our system and component id. A script that is interrupted gets END_WITHIN to end in order, over links
+    that still work.
     """
-    runner, guard = links.open(core), links.guard
+    links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION, places=PLACES)
+    sent = guard.record_sent if guard is not None else None
+    runner = Runner(core, links, period=PERIOD, route=False, log_tap=log_tap, sent=sent, signing=signing)
     running = [asyncio.ensure_future(runner.run())]
     await asyncio.sleep(0)  # run() begins
     if guard is not None and isinstance(core, OwnCore):

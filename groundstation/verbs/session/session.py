@@ -106,12 +106,12 @@ class VerbSession:
         """The vehicle, once it was heard."""
         return self.contact.state
 
-    async def find_vehicle(self, wait: float, wanted: int | str | None, where: str) -> None:
+    async def find_vehicle(self, wait: float, wanted: int | str | None) -> None:
         """Wait for the HEARTBEAT of the vehicle. Raises VerbError after `wait` s."""
         if not await self.wait_for(lambda: self.core.chosen is not None, wait):
             which = "no vehicle" if wanted is None else f"no vehicle {wanted}"
             why = f", but {_names(self.core.contacts)}" if self.core.contacts else self.describe_links()
-            raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {where} within {wait:g} s{why}")
+            raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {self.where} within {wait:g} s{why}")
 
     async def need_only_vehicle(self, wanted: int | str | None) -> None:
         """Before the first change: there must be only one, or only one with that name. Raises VerbError."""

@@ -132,6 +132,18 @@ def test_lines_run_verbs_for_the_vehicle() -> None:
         with_station(vehicle, use)
 
 
+def test_a_line_requests_a_message_and_sets_its_rate() -> None:
+    async def use(lines: Lines) -> None:
+        read = await lines.run("request AUTOPILOT_VERSION")
+        assert (read.state, "lines in Log (F6)" in read.note) == (DONE, True), read
+        assert any(line.startswith("capabilities") for line in lines.logged)
+        rate = await lines.run("rate ATTITUDE 5")
+        assert (rate.state, "sends ATTITUDE at 5 Hz on this link" in rate.note) == (DONE, True), rate
+
+    with foreign_vehicle() as vehicle:
+        with_station(vehicle, use)
+
+
 def test_refusals_and_mistakes_are_one_line() -> None:
     async def use(lines: Lines) -> None:
         vehicle.answers[42428] = (3, "")

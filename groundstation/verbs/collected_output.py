@@ -1,18 +1,25 @@
-"""What a verb prints for one of many vehicles: kept until the table or the JSON object of the vehicle is printed."""
+"""CollectedOutput: what a verb prints, kept: for one of many vehicles, or for a line of the screens."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from groundstation.vehicles.requests.requests import RequestReport
 
 
-class VehicleOutput:
-    """Has the methods of Output."""
+def one_line(text: str) -> str:
+    """Return a text without line breaks."""
+    return " ".join(text.split())
+
+
+class CollectedOutput:
+    """Has the methods of Output. `word` returns a note as it is kept."""
 
     as_json = False
 
-    def __init__(self) -> None:
+    def __init__(self, word: Callable[[str], str] = one_line) -> None:
+        self._word = word
         self.lines: list[str] = []
         """Data."""
         self.notes: list[str] = []
@@ -47,11 +54,11 @@ class VehicleOutput:
 
     def note(self, text: str) -> None:
         """Keep a note for the user."""
-        self.notes.append(" ".join(text.split()))
+        self.notes.append(self._word(text))
 
     def error(self, text: str) -> None:
         """Keep an error."""
         self.note(text)
 
     def progress(self, report: RequestReport) -> None:
-        """Ignore the progress of one of many."""
+        """Ignore the progress: nobody sees it."""
