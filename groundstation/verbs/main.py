@@ -239,7 +239,7 @@ def _find_way(
     hello = Hello(VERB, VERSION, f"mavhelm {output.verb}", follows=action.follows)
     station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
-        return station, station.ready.endpoints
+        return station, station.endpoints
     check_options(action, options)
     return None, endpoints or choose()
 

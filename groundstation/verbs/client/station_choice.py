@@ -48,11 +48,10 @@ class SeveralStationsError(VerbError):
 
 
 class StationLink:
-    """An open connection; `ready` has the ids and the session of the station."""
+    """An open connection; `endpoints` are those of the station."""
 
-    def __init__(self, sock: socket.socket, ready: VerbReady) -> None:
-        self.sock = sock
-        self.ready = ready
+    def __init__(self, sock: socket.socket, endpoints: Sequence[str]) -> None:
+        self.sock, self.endpoints = sock, endpoints
 
     @classmethod
     def open(cls, pid: int, hello: Hello, within: float = HELLO_WITHIN) -> StationLink:
@@ -67,7 +66,7 @@ class StationLink:
             answer = StationFailed(f"station {pid} does not answer; --station never opens links without it")
         if isinstance(answer, VerbReady):
             sock.setblocking(False)
-            return cls(sock, answer)
+            return cls(sock, answer.endpoints)
         sock.close()
         line = answer.line if isinstance(answer, StationFailed) else f"station {pid} has another version"
         raise StationLostError(ExitCode.USAGE, line)
@@ -115,6 +114,6 @@ def _matching(pids: Sequence[int], endpoints: Sequence[str], hello: Hello, withi
         with contextlib.suppress(VerbError):
             link = StationLink.open(pid, hello, within)
             link.sock.close()
-            if set(endpoints) <= set(link.ready.endpoints):
+            if set(endpoints) <= set(link.endpoints):
                 found.append(pid)
     return found

@@ -41,7 +41,7 @@ class VerbClient:
     """One verb. A station that does not answer for `patience` s is lost."""
 
     def __init__(self, link: StationLink, output: Output, patience: float = math.inf) -> None:
-        self._socket, self._endpoints = link.sock, link.ready.endpoints
+        self._socket, self._endpoints = link.sock, link.endpoints
         self._buffer = ReceiveBuffer(MAX_PRINTED)
         self._output = output
         self._patience = patience

@@ -26,12 +26,6 @@ def read_text(path: str) -> str:
         return local_file.read_text(path)
 
 
-def read_bytes(path: str) -> bytes:
-    """Return the content of a file. Raises VerbError."""
-    with file_errors():
-        return local_file.read_bytes(path)
-
-
 def check_new_file(path: str, *, overwrite: bool) -> None:
     """Raise VerbError if a file cannot be created there, before the work begins."""
     if not overwrite and Path(path).is_file():

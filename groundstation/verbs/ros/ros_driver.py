@@ -99,7 +99,10 @@ class RosDriver:
             self._disengage()
 
     async def run_beside(self, *work: Coroutine[None, None, None], seconds: float | None = None) -> None:
-        """Drive, and do the work beside it, until one of them fails, or for `seconds`; then send neutral and leave."""
+        """Drive, and do the work beside it, until one of them fails, or for `seconds`.
+
+        Then send the final neutrals, and disarm what this program has armed.
+        """
         tasks = [asyncio.ensure_future(each) for each in (self.run(), *work)]
         try:
             async with asyncio.timeout(seconds):
@@ -110,7 +113,9 @@ class RosDriver:
             for task in tasks:
                 task.cancel()
             await asyncio.wait(tasks)
-            await self.leave()
+            self.sources.stop()
+            self.engaged = False
+            await leave(self._session, disarm=self._armed_here)
 
     async def _look(self) -> None:
         session, now = self._session, self._session.now
@@ -198,12 +203,6 @@ class RosDriver:
         self._armed_here &= self._session.vehicle.armed
         done = report.state is RequestState.ACCEPTED
         return done, f"{self._session.vehicle.name} is disarmed" if done else report.text
-
-    async def leave(self) -> None:
-        """Send the final neutrals; disarm what this program has armed."""
-        self.sources.stop()
-        self.engaged = False
-        await leave(self._session, disarm=self._armed_here)
 
     def note(self, text: str) -> None:
         """Tell something, not more often than once in NOTE_PERIOD."""

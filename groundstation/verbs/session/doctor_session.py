@@ -45,12 +45,6 @@ class DoctorSession:
         self._request = DoctorRequest(station=getattr(options, "driver", 0))
         self.flush: Callable[[], None] = lambda: None
         """Sends the messages of the core."""
-        self._numbers = 0
-
-    def take_number(self) -> int:
-        """Return the number of the next request."""
-        self._numbers += 1
-        return self._numbers
 
     def do(self, *intents: Intent) -> None:
         """Carry out intents now."""

@@ -9,6 +9,7 @@ from groundstation.intents.setup import RunChecks
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.doctor_session import DoctorSession
+from groundstation.verbs.session.session import NUMBERS
 from groundstation.views.doctor import DoctorView
 from link.runtime.diagnosis import MARKS, Health
 
@@ -42,7 +43,7 @@ async def _ask(session: DoctorSession) -> None:
     await session.until(lambda: bool(session.doctor.system), SETTLE)
     view = session.doctor
     if not view.armed:
-        session.do(RunChecks(session.take_number(), view.system))
+        session.do(RunChecks(next(NUMBERS), view.system))
     await session.until(lambda: _is_settled(session.doctor), SETTLE)
 
 

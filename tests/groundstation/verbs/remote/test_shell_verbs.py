@@ -35,7 +35,6 @@ from tests.fakes.services import ARDUPILOT, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.setup.test_doctor import MAG_CAL_CANCEL, MAG_CAL_START, commanded, progress
 from tests.waits import PATIENCE
 
-IDS = (255, COMPONENT)
 Use = Callable[["Shells"], Awaitable[None]]
 
 
@@ -55,7 +54,7 @@ class Shells:
         port.start(VerbReady(("here",)))
         ready = decode_from_station(ours.recv(1 << 16))
         assert isinstance(ready, VerbReady)
-        return StationLink(ours, ready)
+        return StationLink(ours, ready.endpoints)
 
     async def run(self, *words: str, given: object = None, dialect: str = "") -> VerbEnded:
         """Run a verb to its end; it prints to stdout and stderr."""
