@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -60,6 +60,9 @@ oldest:  ## Run tests with the oldest allowed versions of all packages; needs a 
 
 mutate:  ## Change the safety code line by line and report what no test notices.
 	.venv/bin/python -m tests.mutation $(ARGS)
+
+docs:  ## Build the documentation site in build/site, without a network; needs the extra [docs].
+	NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict -q -f docs/mkdocs.yml
 
 release:  ## Build the packages, and list the dependencies with their hashes, in dist/.
 	.ci/release

@@ -14,6 +14,7 @@ from groundstation.client import StationClient, StationError
 from groundstation.station_socket.about import describe_stations
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
+from groundstation.verbs.manual.examples import help_examples
 from groundstation.watchdog.terminal_guard import guard_terminal
 from link.runtime.command_line import CommandLineParser
 
@@ -31,7 +32,7 @@ def build_parser() -> CommandLineParser:
     parser = CommandLineParser(
         prog="mavhelm attach",
         description="Open a screen for a station that runs here.",
-        epilog=EPILOG,
+        epilog=f"{help_examples('attach')}\n\n{EPILOG}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("pid", nargs="?", type=int, metavar="PID", help="its process id, where several run")

@@ -18,6 +18,7 @@ from groundstation.config.effective import build_keymap, resolve_endpoints
 from groundstation.config.settings import ROWS, format_value
 from groundstation.config.template import build_template
 from groundstation.input.keymap import KeymapError
+from groundstation.verbs.manual.examples import help_examples
 from link.endpoint import EndpointError
 from link.runtime.command_line import CommandLineParser
 
@@ -116,7 +117,9 @@ _FORMAT = argparse.RawDescriptionHelpFormatter
 
 def build_parser() -> CommandLineParser:
     """Return the parser for the arguments behind `config`."""
-    parser = CommandLineParser(prog="mavhelm config", epilog=EPILOG, formatter_class=_FORMAT)
+    parser = CommandLineParser(
+        prog="mavhelm config", epilog=f"{help_examples('config')}\n\n{EPILOG}", formatter_class=_FORMAT
+    )
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=CommandLineParser)
     for name, text in _HELP.items():
         action = actions.add_parser(

@@ -6,14 +6,14 @@ import contextlib
 import sys
 from collections.abc import Sequence
 
-from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
+from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
 from groundstation.verbs.manual.mavproxy_words import describe_action
 from link.runtime import startup_gc, stdio, without_openssl
 
 FLAGS = ("--json", "-q", "--quiet")
 """Options of all verbs that may also stand before the verb."""
 
-WITHOUT_STATION = frozenset({"-h", "--help", "--version"})
+WITHOUT_STATION = frozenset({"-h", "--help", "--help-all", "--version"})
 """Options that only print."""
 
 PLAIN = "--plain"
@@ -89,7 +89,7 @@ def _run_local(verb: str, arguments: Sequence[str]) -> int:
     else:
         from groundstation.cli.completion_verb import run as run_completion
 
-        return run_completion(arguments, {**VERB_HELP, **LOCAL_HELP})
+        return run_completion(arguments, {**VERB_HELP, **LOCAL_HELP, **PROGRAM_HELP})
     return run(arguments)
 
 

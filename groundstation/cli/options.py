@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from groundstation.cli.help_page import HelpPage
 from groundstation.cli.verb_help import verb_help
 from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.config.settings import ROWS, SettingRow, Settings
@@ -82,9 +83,12 @@ def build_parser() -> tuple[CommandLineParser, list[str]]:
         description="Drive a MAVLink rover from the terminal.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        add_help=False,
     )
     add = parser.add_argument
     actions = [
+        add("-h", "--help", action=HelpPage, nargs=0, help="show a page of help and exit"),
+        add("--help-all", action="help", help="show this help with all options and exit"),
         add("endpoints", nargs="*", metavar="ENDPOINT|NAME",
             help=f"where vehicles are, or a name of the config file (default: {DEFAULT_ENDPOINT})"),
         add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station"),
@@ -95,7 +99,7 @@ def build_parser() -> tuple[CommandLineParser, list[str]]:
         add_config(parser),
         add("--version", action=_Version, nargs=0, help="show the version and exit"),
     ]  # fmt: skip
-    return parser, ["--help", *(name for action in actions for name in action.option_strings)]
+    return parser, [name for action in actions for name in action.option_strings if name.startswith("--")]
 
 
 def add_config(parser: argparse.ArgumentParser) -> argparse.Action:

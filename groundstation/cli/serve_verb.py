@@ -14,6 +14,7 @@ from groundstation.client import StationError
 from groundstation.config.effective import resolve_endpoints
 from groundstation.config.settings import Settings
 from groundstation.station_socket.folder import FolderError, make_folder
+from groundstation.verbs.manual.examples import help_examples
 from groundstation.web.launch import DEFAULT_PORT, WebLaunch, missing_package
 from link.runtime.command_line import CommandLineParser
 
@@ -38,7 +39,7 @@ def build_parser() -> CommandLineParser:
     parser = CommandLineParser(
         prog="mavhelm serve",
         description="Run a station that verbs and `mavhelm attach` use.",
-        epilog=EPILOG,
+        epilog=f"{help_examples('serve')}\n\n{EPILOG}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("endpoints", nargs="*", metavar="ENDPOINT|NAME", help="where vehicles are")

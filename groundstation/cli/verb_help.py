@@ -56,7 +56,7 @@ PROGRAM_HELP = {
     "vehicle": "be a rover: the daemon with motors, or its simulator",
     "bridge": "join links; run the router of a fleet",
 }
-"""Other program of `mavhelm` (mavhelm/__main__.py) -> what it does."""
+"""Other program of `mavhelm` (link/program.py) -> what it does."""
 
 RESERVED = frozenset({**VERB_HELP, **LOCAL_HELP, **PROGRAM_HELP})
 """What cannot be the name of an endpoint."""

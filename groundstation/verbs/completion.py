@@ -270,8 +270,13 @@ NAMES: Mapping[str, Sequence[str]] = {
     ),
 }
 """What an argument is called in the help -> words that it may be."""
-LOCAL: Mapping[str, Sequence[str]] = {"config": ("check", "show", "init", "path"), "completion": SHELLS}
-"""Actions of verbs without a vehicle."""
+LOCAL: Mapping[str, Sequence[str]] = {
+    "config": ("check", "show", "init", "path"),
+    "completion": SHELLS,
+    "vehicle": ("init", "check", "doctor", "schema", "dialect", "motor-test", "key", "safe-stop", "systemd-unit"),
+    "bridge": ("doctor", "router", "fleet"),
+}
+"""Actions of verbs without a vehicle, and subcommands of the other programs."""
 _FILE_OPTIONS = {"--config": {"metavar": "FILE"}, "--dialect": {"metavar": "FILE"}}
 _OTHER_OPTIONS = {
     option: {"metavar": "S"} for option in ("-e", "--endpoint", "--group", "--wait", "--timeout", "--system")

@@ -30,6 +30,7 @@ from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.common.output import Output
+from groundstation.verbs.manual.examples import help_examples
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
@@ -269,14 +270,15 @@ def _cancel_on_signals(caught: list[int]) -> None:
 
 def build_parser(verb: str, kind: type[CommandLineParser] = CommandLineParser) -> CommandLineParser:
     """Return the parser for the arguments behind a verb."""
-    parser = kind(prog=f"mavhelm {verb}", epilog=EPILOG, formatter_class=_HELP)
+    parser = kind(prog=f"mavhelm {verb}", epilog=f"{help_examples(verb)}\n\n{EPILOG}", formatter_class=_HELP)
     if ONLY in VERBS[verb]:
         _add_arguments(parser, VERBS[verb][ONLY])
         parser.set_defaults(action=ONLY)
         return parser
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=kind)
     for name, action in VERBS[verb].items():
-        known = actions.add_parser(name, aliases=action.aliases, help=action.help, epilog=EPILOG, formatter_class=_HELP)
+        epilog = f"{help_examples(verb, name)}\n\n{EPILOG}"
+        known = actions.add_parser(name, aliases=action.aliases, help=action.help, epilog=epilog, formatter_class=_HELP)
         known.set_defaults(action=name)  # also for an alias
         _add_arguments(known, action)
     return parser

@@ -8,7 +8,10 @@ import sys
 import pytest
 
 from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
+from groundstation.verbs.completion import LOCAL
+from link.bridge.__main__ import SUBCOMMANDS as OF_BRIDGE
 from link.program import PROGRAMS
+from vehicle.cli.subcommands import SUBCOMMANDS as OF_VEHICLE
 
 COUNTED = "import sys; from link.program import main\ntry: main({words})\nfinally: print(*sys.modules, file=sys.stderr)"
 
@@ -23,6 +26,10 @@ def imported(*words: str) -> set[str]:
 def test_each_program_is_in_the_help_and_no_verb_has_its_name() -> None:
     assert PROGRAMS.keys() == PROGRAM_HELP.keys()
     assert not PROGRAMS.keys() & (VERB_HELP | LOCAL_HELP).keys()
+
+
+def test_shells_complete_the_subcommands_of_each_program() -> None:
+    assert (set(LOCAL["vehicle"]), set(LOCAL["bridge"])) == (OF_VEHICLE.keys(), OF_BRIDGE.keys())
 
 
 @pytest.mark.parametrize(

@@ -103,3 +103,23 @@ AUTOPILOT_EXAMPLES: tuple[tuple[str, str], ...] = (
     ("mavhelm ftp rm /logs/00000001.tlog", "remove a file there"),
 )
 """The same for what our own vehicle does not have."""
+
+LOCAL_EXAMPLES: tuple[tuple[str, str], ...] = (
+    ("mavhelm config init", "write a file with all settings as comments"),
+    ("mavhelm config show", "what holds, and where it comes from"),
+    ("mavhelm attach", "the screen again, after SSH has dropped"),
+    ("mavhelm serve --headless udpin:0.0.0.0:14550", "a station for verbs and `attach`"),
+    ("mavhelm serve --web", "the screens in a browser of this machine"),
+    ("mavhelm replay flight.tlog", "a telemetry log in the screens"),
+    ("mavhelm keys", "q ends it"),
+    ("mavhelm completion fish | source", "until the shell ends"),
+)
+"""The same for verbs without a vehicle."""
+
+
+def help_examples(verb: str, action: str = "") -> str:
+    """Return the examples of a verb, or of one of its actions, as lines for --help."""
+    begin = f"mavhelm {verb} {action}".split()
+    rows = [row for row in (*EXAMPLES, *AUTOPILOT_EXAMPLES, *LOCAL_EXAMPLES) if row[0].split()[: len(begin)] == begin]
+    width = max((len(command) for command, _ in rows if len(command) < 50), default=0)
+    return "\n".join(["examples:", *(f"  {command:<{width}}  {text}" for command, text in rows)])

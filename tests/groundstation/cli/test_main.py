@@ -93,7 +93,7 @@ def test_wrong_options(capsys: pytest.CaptureFixture[str], arguments: list[str],
 
 def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
-        main(["--help"])
+        main(["--help-all"])
     assert caught.value.code == 0
     text = capsys.readouterr().out
     for word in (

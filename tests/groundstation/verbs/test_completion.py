@@ -20,6 +20,8 @@ from tests.groundstation.verbs.shell import HELPS, InteractiveShell, complete, s
     [
         ("mavhelm ''", {"arm", "watch", "completion"}),
         ("mavhelm es", {"estop"}),
+        ("mavhelm vehicle mot", {"motor-test"}),
+        ("mavhelm bridge ro", {"router"}),
         ("mavhelm param ''", {"get", "set", "save", "load", "diff"}),
         ("mavhelm param save --c", {"--changed", "--config"}),
         ("mavhelm param save --format ''", {"mavproxy", "qgc", "mp"}),
