@@ -29,7 +29,8 @@ def test_each_program_is_in_the_help_and_no_verb_has_its_name() -> None:
 
 
 def test_shells_complete_the_subcommands_of_each_program() -> None:
-    assert (set(LOCAL["vehicle"]), set(LOCAL["bridge"])) == (OF_VEHICLE.keys(), OF_BRIDGE.keys())
+    assert sorted(LOCAL["vehicle"]) == sorted(OF_VEHICLE)
+    assert sorted(LOCAL["bridge"]) == sorted(OF_BRIDGE)
 
 
 @pytest.mark.parametrize(
