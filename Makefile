@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs deb deb-check
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -57,6 +57,13 @@ aarch64:  ## Test the core on an emulated aarch64, with Debian's Python for it; 
 
 oldest:  ## Run tests with the oldest allowed versions of all packages; needs a network.
 	.venv/bin/python -m tests.oldest $(ARGS)
+
+deb:  ## Assemble the Debian packages in dist/ from wheels; ARGS="--arch amd64 --suite trixie"; needs a network.
+	PYTHONPATH=packaging .venv/bin/python -m deb $(ARGS)
+
+deb-check:  ## Check the packages of dist/ with lintian and in a bare Debian; needs root, debootstrap, qemu-user-static.
+	lintian --fail-on error,warning dist/*.deb
+	for package in dist/*.deb; do python3 -m tests.debian $(ARGS) $$package || exit 1; done
 
 mutate:  ## Change the safety code line by line and report what no test notices.
 	.venv/bin/python -m tests.mutation $(ARGS)

@@ -25,8 +25,8 @@ MARKED = ("e2e", "interop")
 """Folders in which every test has one."""
 
 LONG = (
-    "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "recipes", "soak", "stress", "test_ci_again.py",
-    "test_examples.py", "test_order.py", "test_suite.py",
+    "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "oldest", "packages", "recipes", "soak", "stress",
+    "test_ci_again.py", "test_examples.py", "test_order.py", "test_suite.py",
     "test_release.py::test_a_signature",
     "test_keys_to_motion.py::test_every_key_and_chord", "test_missions.py", "test_roaming.py",
     "test_secure_by_default.py::test_no_data_becomes_code", "test_signed_stops.py::test_every_stop_stops_a_rover",
