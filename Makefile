@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs deb deb-check
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs deb deb-check wheels installs
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -57,6 +57,14 @@ aarch64:  ## Test the core on an emulated aarch64, with Debian's Python for it; 
 
 oldest:  ## Run tests with the oldest allowed versions of all packages; needs a network.
 	.venv/bin/python -m tests.oldest $(ARGS)
+
+wheels:  ## Fetch mavhelm and all that it needs as wheels for this computer into dist/wheels; needs a network.
+	rm -rf dist/wheels
+	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) .venv/bin/python -m hatchling build -t wheel -d dist/wheels
+	.venv/bin/pip wheel -q -c constraints.txt -w dist/wheels "$$(echo dist/wheels/*.whl)[all]"
+
+installs:  ## Type the install lines of docs/install.md without a network; needs make wheels, pipx, uv and root.
+	.venv/bin/python -m tests.installs
 
 deb:  ## Assemble the Debian packages in dist/ from wheels; ARGS="--arch amd64 --suite trixie"; needs a network.
 	PYTHONPATH=packaging .venv/bin/python -m deb $(ARGS)

@@ -69,7 +69,8 @@ class WebServer:
 
         @web.middleware
         async def check(request: web.Request, handler: Handler) -> web.StreamResponse:
-            if refused := self._refuse(request):
+            refused = self._refuse(request)
+            if refused is not None:  # a response is a mapping, and false while it is empty, before aiohttp 3.13
                 return refused
             if self.door is not None:
                 self.door.admit(request.transport)
