@@ -75,7 +75,7 @@ def _run(arguments: list[str]) -> int:
     if arguments[:1] and arguments[0] in SUBCOMMANDS:
         run: Callable[[Sequence[str]], int] = import_module(SUBCOMMANDS[arguments[0]]).run
         return run(arguments[1:])
-    parser = _parser()
+    parser = build_parser()
     parser.reject_unknown_options(arguments)
     parser.reject_unknown_word(arguments, SUBCOMMANDS)
     options = parser.parse_args(parser.reject_empty(arguments))
@@ -164,7 +164,8 @@ def _endpoint(text: str) -> str:
         raise argparse.ArgumentTypeError(str(error)) from error
 
 
-def _parser() -> CommandLineParser:
+def build_parser() -> CommandLineParser:
+    """Return the parser of the options."""
     parser = CommandLineParser(
         prog="mavhelm bridge",
         description="Joins MAVLink endpoints: forwards frames by system and component id and changes none.",

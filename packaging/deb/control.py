@@ -17,7 +17,7 @@ MAINTAINER = "The mavhelm maintainers <mavhelm@localhost>"
 """There is no public address yet; a package needs one of this form."""
 DESCRIPTION = """\
 ground station for terminals and rover daemon for MAVLink
- groundstation drives a MAVLink rover from a terminal: hold a key and it
+ mavhelm drives a MAVLink rover from a terminal: hold a key and it
  drives, let go and it stops. It has screens for missions, messages,
  parameters, charts, logs and files, and verbs for scripts.
  .

@@ -131,7 +131,7 @@ def _ours(environment: Path, target: Target) -> dict[str, str]:
     ours = environment.parent.parent.parent.with_name("ours")
     if not ours.exists():
         ours.mkdir()
-        for name in ("dialects", "link", "vehicle", "groundstation"):
+        for name in ("dialects", "link", "vehicle", "groundstation", "mavhelm"):
             (ours / name).symlink_to(site / name)
         for info in site.glob("mavhelm-*.dist-info"):
             (ours / info.name).symlink_to(info)
@@ -153,7 +153,11 @@ def _write_manuals(build: Build, environment: Path, folder: Path) -> None:
     times = {**_ours(environment, build.target), "SOURCE_DATE_EPOCH": str(build.time)}
     subprocess.run(command, check=True, env=times)
     for page in sorted(folder.iterdir()):
-        _compress(page.with_name(f"{page.name}.gz"), page.read_text())
+        if page.read_text().startswith(".so "):
+            shown = page.read_text().split("/")[-1].strip()
+            page.with_name(f"{page.name}.gz").symlink_to(f"{shown}.gz")
+        else:
+            _compress(page.with_name(f"{page.name}.gz"), page.read_text())
         page.unlink()
 
 

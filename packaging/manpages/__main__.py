@@ -8,7 +8,7 @@ import time
 from importlib.metadata import version
 from pathlib import Path
 
-from manpages.pages import build_pages
+from manpages.pages import SHORT_NAMES, build_pages
 from manpages.roff import Edition, build
 
 
@@ -20,6 +20,8 @@ def main(folder: Path) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     for page in build_pages():
         (folder / f"{page.name}.1").write_text(build(page, edition), "utf-8")
+    for name, shown in SHORT_NAMES.items():
+        (folder / f"{name}.1").write_text(f".so man1/{shown}.1\n")
     return 0
 
 

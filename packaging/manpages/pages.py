@@ -1,4 +1,4 @@
-"""All pages: one for each program, one for each verb of `groundstation` and each subcommand of `vehicle`."""
+"""All pages: one for each program, one for each verb of `mavhelm` and each subcommand of `vehicle`."""
 
 from __future__ import annotations
 
@@ -6,15 +6,18 @@ from collections.abc import Iterator
 from importlib import import_module
 
 from groundstation.cli import options as station_options
-from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
+from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
 from groundstation.verbs.main import build_parser as build_verb_parser
 from groundstation.verbs.manual.examples import AUTOPILOT_EXAMPLES, EXAMPLES
+from link.bridge.__main__ import build_parser as build_bridge_parser
 from manpages.roff import Page
 from vehicle.cli import options as vehicle_options
 from vehicle.cli.subcommands import SUBCOMMANDS
 from vehicle.cli.subcommands import build_parser as build_subcommand_parser
 
-STATION, VEHICLE = "groundstation", "vehicle"
+STATION, VEHICLE, BRIDGE = "mavhelm", "vehicle", "mavhelm-bridge"
+SHORT_NAMES = {"groundstation": STATION}
+"""Program -> the program whose page it shows."""
 BUILDERS = {"replay": "build_replay_parser"}
 """Verb without a vehicle -> the function of its module that returns its parser, where it is not build_parser."""
 
@@ -22,14 +25,15 @@ BUILDERS = {"replay": "build_replay_parser"}
 def build_pages() -> Iterator[Page]:
     """Yield every page."""
     parser, _ = station_options.build_parser()
-    verbs = {**VERB_HELP, **LOCAL_HELP}
-    yield Page(STATION, "drive a MAVLink vehicle from a terminal", parser, (), [f"{STATION}-{verb}" for verb in verbs])
+    verbs = [f"{STATION}-{verb}" for verb in (*VERB_HELP, *LOCAL_HELP)]
+    yield Page(STATION, "drive a MAVLink vehicle from a terminal", parser, (), [VEHICLE, BRIDGE, *verbs])
     for verb, summary in VERB_HELP.items():
         examples = [row for row in (*EXAMPLES, *AUTOPILOT_EXAMPLES) if row[0].split()[1] == verb]
         yield Page(f"{STATION}-{verb}", summary, build_verb_parser(verb), examples, [STATION])
     for verb, summary in LOCAL_HELP.items():
         build_parser = getattr(import_module(f"groundstation.cli.{verb}_verb"), BUILDERS.get(verb, "build_parser"))
         yield Page(f"{STATION}-{verb}", summary, build_parser(), (), [STATION])
+    yield Page(BRIDGE, PROGRAM_HELP["bridge"], build_bridge_parser(), (), [STATION])
     names = [f"{VEHICLE}-{name}" for name in SUBCOMMANDS]
     yield Page(VEHICLE, "control the motors of a rover over MAVLink", vehicle_options.build_parser(), (), names)
     for name, subcommand in SUBCOMMANDS.items():

@@ -63,7 +63,7 @@ def install(machine: Machine, package: Path) -> None:
     _bring(machine, package)
     machine.run(*APT, "update")
     machine.run(*APT, "install", "--no-install-recommends", f"/srv/{package.name}")
-    for program in ("groundstation", "vehicle"):
+    for program in ("mavhelm", "groundstation", "vehicle"):
         machine.run(program, "--version")
     machine.run("sh", "-c", "command -v bridge", code=127)
     check((machine.root / "usr/lib/mavhelm/bin/bridge").exists(), "the private bridge is missing")

@@ -24,8 +24,10 @@ def _wide_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_every_verb_and_subcommand_has_a_page() -> None:
-    verbs = {f"groundstation-{verb}" for verb in (*VERB_HELP, *LOCAL_HELP)}
-    assert PAGES.keys() == {"groundstation", "vehicle"} | verbs | {f"vehicle-{name}" for name in SUBCOMMANDS}
+    verbs = {f"mavhelm-{verb}" for verb in (*VERB_HELP, *LOCAL_HELP)}
+    assert PAGES.keys() == {"mavhelm", "vehicle", "mavhelm-bridge"} | verbs | {
+        f"vehicle-{name}" for name in SUBCOMMANDS
+    }
 
 
 def flags(parser: argparse.ArgumentParser) -> set[str]:
