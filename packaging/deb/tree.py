@@ -13,7 +13,7 @@ from pathlib import Path
 
 from deb import control
 from deb.target import Target
-from deb.wheels import read_info, read_metadata, unpack
+from deb.wheels import packages_of, read_info, read_metadata, unpack
 
 HERE = Path(__file__).parent
 PRIVATE = ("bridge",)
@@ -55,8 +55,8 @@ def lay_out(build: Build, root: Path, project: Path) -> None:
     _link_programs(environment, root / "usr/bin", read_info(build.wheel, "entry_points.txt"))
     for source, place in PLACED.items():
         _write(root / place, (HERE / source).read_text())
-    _write(root / control.CONFIG[1:], control.config(_print_with(environment, CONFIG_TEXT, build.target)))
-    unit = control.unit(_print_with(environment, UNIT_TEXT, build.target))
+    _write(root / control.CONFIG[1:], control.config(_print_with(environment, CONFIG_TEXT, build)))
+    unit = control.unit(_print_with(environment, UNIT_TEXT, build))
     _write(root / "usr/lib/systemd/system" / control.UNIT, unit)
     _write_documents(build, root, project)
     _write_manuals(build, environment, root / "usr/share/man/man1")
@@ -116,25 +116,23 @@ print(build_unit(UnitOptions(
 """
 
 
-def _print_with(environment: Path, code: str, target: Target, *words: str) -> str:
+def _print_with(environment: Path, code: str, build: Build) -> str:
     """Return what our own packages print: the modules of the package, with the libraries of the Python that runs."""
-    command = [sys.executable, "-P", "-c", code, *words]
-    return subprocess.run(command, check=True, capture_output=True, text=True, env=_ours(environment, target)).stdout
+    command = [sys.executable, "-P", "-c", code]
+    return subprocess.run(command, check=True, capture_output=True, text=True, env=_ours(environment, build)).stdout
 
 
-def _ours(environment: Path, target: Target) -> dict[str, str]:
+def _ours(environment: Path, build: Build) -> dict[str, str]:
     """Return an environment in which our modules are those of the package.
 
     Other modules of the package may be for another Python and processor.
     """
-    site = environment / "lib" / f"python{target.python}" / "site-packages"
+    site = environment / "lib" / f"python{build.target.python}" / "site-packages"
     ours = environment.parent.parent.parent.with_name("ours")
     if not ours.exists():
         ours.mkdir()
-        for name in ("dialects", "link", "vehicle", "groundstation", "mavhelm"):
+        for name in packages_of(build.wheel):
             (ours / name).symlink_to(site / name)
-        for info in site.glob("mavhelm-*.dist-info"):
-            (ours / info.name).symlink_to(info)
     path = os.pathsep.join((str(ours), str(HERE.parent)))
     return {**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1"}
 
@@ -150,7 +148,7 @@ def _write_documents(build: Build, root: Path, project: Path) -> None:
 
 def _write_manuals(build: Build, environment: Path, folder: Path) -> None:
     command = [sys.executable, "-P", "-m", "manpages", str(folder)]
-    times = {**_ours(environment, build.target), "SOURCE_DATE_EPOCH": str(build.time)}
+    times = {**_ours(environment, build), "SOURCE_DATE_EPOCH": str(build.time)}
     subprocess.run(command, check=True, env=times)
     for page in sorted(folder.iterdir()):
         if page.read_text().startswith(".so "):

@@ -118,6 +118,12 @@ def read_info(wheel: Path, name: str) -> str:
         return archive.read(found[0]).decode() if found else ""
 
 
+def packages_of(wheel: Path) -> list[str]:
+    """Return the top folders of a wheel: its packages, and its metadata."""
+    with zipfile.ZipFile(wheel) as archive:
+        return sorted({name.split("/")[0] for name in archive.namelist() if "/" in name})
+
+
 def unpack(wheel: Path, site: Path) -> None:
     """Unpack what is imported from a wheel, and its metadata with the licences."""
     name = parse_wheel_filename(wheel.name)[0]
