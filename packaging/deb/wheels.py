@@ -27,6 +27,8 @@ PARTS: Mapping[str, tuple[str, ...]] = {
     "pymavlink": ("pymavlink/__init__.py", "pymavlink/dialects/*.xml", "pymavlink-*.dist-info/*"),
 }
 """Package -> the files that are used. The modules of pymavlink's dialects alone are 43 MB, to be compiled on a Pi."""
+UNUSED = ("sdl2/examples/*", "sdl2/test/*", "apsw/sqlite_extra_binaries/*", "textual_serve/templates/*")
+"""Files that nothing imports: tests, examples, programs, and a page that would fetch a font from elsewhere."""
 
 Metadata = Callable[[NormalizedName], Message]
 """Name of a package, normalized -> its METADATA."""
@@ -139,6 +141,7 @@ def kept_files(name: str, files: Iterable[str]) -> list[str]:
         file
         for file in files
         if any(fnmatch(file, pattern) for pattern in patterns)
+        and not any(fnmatch(file, pattern) for pattern in UNUSED)
         and "__pycache__" not in PurePosixPath(file).parts
         and ".data" not in PurePosixPath(file).parts[0]
         and not file.endswith((".dist-info/RECORD", ".gitignore", "/"))
