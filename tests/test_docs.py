@@ -131,7 +131,7 @@ def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, w
     elif words and words[0] in bridge_main.SUBCOMMANDS:
         import_module(bridge_main.SUBCOMMANDS[words[0]]).build_parser().parse_args(words[1:])
     else:
-        bridge_main._parser().parse_args(words)
+        bridge_main.build_parser().parse_args(words)
 
 
 def test_commands_are_found_in_the_documents() -> None:
