@@ -61,7 +61,7 @@ def try_line(line: str, home: Path) -> None:
     type_line(line, home)
     type_line("mavhelm --version && groundstation --version && vehicle --version", home)
     type_line(asked_extra("mavhelm serve --web", home), home)
-    type_line('"$(head -n 1 "$(command -v mavhelm)" | cut -c 3-)" -c "import textual_serve"', home)
+    type_line('$(head -n 1 "$(command -v mavhelm)" | cut -c 3-) -c "import textual_serve"', home)
 
 
 def asked_extra(command: str, home: Path) -> str:
