@@ -23,7 +23,7 @@ ENTRY_POINTS = "[console_scripts]\n" + "".join(f"{name} = {place}\n" for name, p
 TRIXIE = Target("trixie", "arm64")
 
 
-def test_every_program_of_the_wheel_is_started_by_the_private_python() -> None:
+def test_every_program_is_started_by_the_private_python() -> None:
     launchers = tree.launchers(ENTRY_POINTS)
     assert launchers.keys() == SCRIPTS.keys()
     assert all(text.startswith("#!/usr/lib/mavhelm/bin/python3 -P\n") for text in launchers.values())
