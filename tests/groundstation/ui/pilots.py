@@ -39,11 +39,13 @@ class Console:
     offered: int = 0
 
     async def show(self, picture: Snapshot) -> None:
-        """Let the station offer a picture and wait until it is on the screen."""
+        """Let the station offer a picture and wait until it, and what follows from it, is on the screen."""
         self.offered += 1
         self.clock.skip(MIN_FRAME_TIME)  # else the app shows it with its next tick only
         self.station.offer(msgspec.structs.replace(picture, number=self.offered))
         await until(lambda: self.app.drive.snapshot.number == self.offered)
+        self.clock.skip(MIN_FRAME_TIME)
+        self.app._tick()  # closes the gate, requests the views of the screen; else within 0.1 s
         await self.pilot.pause()
 
     async def press(self, *keys: str) -> None:
@@ -93,8 +95,6 @@ async def console(
                 await until(lambda: app.gate.closure != STARTING)
                 made = Console(app, station, pilot, held_time)
                 await made.show(snapshot() if picture is None else picture)
-                app._tick()  # it requests the views of its screen
-                await pilot.pause()
                 yield made
                 paint_changes(app.screen)
     finally:
