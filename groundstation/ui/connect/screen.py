@@ -41,7 +41,7 @@ class ConnectScreen(ConsoleScreen):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - Textual declares it so
     KEYS = (
         ScreenKey("enter", "Connect", "Connect to what is marked; with nothing heard, start a simulated rover"),
-        ScreenKey("tab", "ConnectPanel", "Next list: heard now, recent, serial ports, simulators"),
+        ScreenKey("tab", "Panel", "Next list: heard now, recent, serial ports, simulators"),
         ScreenKey("colon", "Type one", "Type an endpoint"),
         ScreenKey("s", "Simulator", "Start a simulated rover; the other simulators are listed with their keys"),
         ScreenKey("W", "Watch", "Connect to what is marked, or to a typed endpoint, and never send a byte"),

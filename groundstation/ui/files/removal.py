@@ -87,4 +87,4 @@ _BY_PANEL: dict[FilesPanel, Callable[[FileRemoval], None]] = {
     FilesPanel.LOGS: FileRemoval._ask_logs,
     FilesPanel.HERE: FileRemoval._ask_here,
 }
-"""FilesPanel with the cursor -> what is asked there."""
+"""Panel with the cursor -> what is asked there."""

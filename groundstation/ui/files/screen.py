@@ -45,7 +45,7 @@ class FilesScreen(ConsoleScreen):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (120, "-wide")]  # noqa: RUF012 - Textual declares it so
     KEYS = (
         ScreenKey("D", "Download", "Download the log or file under the cursor; one that was interrupted goes on"),
-        ScreenKey("tab", "FilesPanel", "Next panel: logs there, files there, files here, tasks"),
+        ScreenKey("tab", "Panel", "Next panel: logs there, files there, files here, tasks"),
         ScreenKey("enter", "Open", "Open or close the folder under the cursor"),
         ScreenKey("x", "Stop task", "Stop the task under the cursor, else the newest; what has arrived is kept"),
         ScreenKey("U", "Upload", "Upload a file of this machine into the folder under the cursor", commands=True),
