@@ -44,15 +44,19 @@ class Console:
         self.clock.skip(MIN_FRAME_TIME)  # else the app shows it with its next tick only
         self.station.offer(msgspec.structs.replace(picture, number=self.offered))
         await until(lambda: self.app.drive.snapshot.number == self.offered)
+        await self.tick()
+
+    async def tick(self) -> None:
+        """Let a tick of the app pass, which closes the gate, requests views and draws: it comes within 0.1 s else."""
         self.clock.skip(MIN_FRAME_TIME)
-        self.app._tick()  # closes the gate, requests the views of the screen; else within 0.1 s
+        self.app._tick()
         await self.pilot.pause()
 
     async def press(self, *keys: str) -> None:
         """Press keys one after the other."""
         self.clock.skip(MIN_FRAME_TIME)
         await self.pilot.press(*keys)
-        await self.pilot.pause()
+        await self.tick()
 
     async def go_home(self) -> None:
         """Close all screens on top of Drive."""
