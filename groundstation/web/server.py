@@ -70,7 +70,7 @@ class WebServer:
         @web.middleware
         async def check(request: web.Request, handler: Handler) -> web.StreamResponse:
             refused = self._refuse(request)
-            if refused is not None:  # a response is a mapping, and false while it is empty, before aiohttp 3.13
+            if refused is not None:  # not its truth: in aiohttp 3.9 a response is an empty mapping
                 return refused
             if self.door is not None:
                 self.door.admit(request.transport)
