@@ -62,6 +62,7 @@ class IntentHandler:
         self._operator, self._fleet, self._log = parts.operator, parts.fleet, parts.log
         self._commander, self._driving, self._services = parts.commander, parts.driving, parts.services
         self._shutdown, self._handover, self._link_closing = parts.shutdown, parts.handover, parts.link_closing
+        self._verbs = parts.verbs
         self._emergency_at = -math.inf
         self._permission = Permission("starting", "starting")
         """Before the intent that is being carried out."""
@@ -220,6 +221,7 @@ class IntentHandler:
         self._operator.sticks.block(now)
         self._handover.give(now)
         self._driving.end()
+        self._verbs.end(now)
         self._shutdown.begin(now, disarm=intent.disarm)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import asyncio
 import logging
-import math
 import os
 import signal
 import sys
@@ -25,7 +24,7 @@ from groundstation.station_socket.verb_run import VERSION, AskedGroup, RunVerb
 from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.client.companion import RunCompanion, local_companion
 from groundstation.verbs.client.station_choice import AUTO, StationLink, find_station, station_choice
-from groundstation.verbs.client.verb_client import VerbClient
+from groundstation.verbs.client.verb_client import HANGS_AFTER, VerbClient
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyModule
@@ -157,7 +156,7 @@ async def _run_once(
     output: Output,
     group: VehicleGroup | None,
     through: str,
-    patience: float = math.inf,
+    patience: float = HANGS_AFTER,
 ) -> int:
     """Do so once, in a station, or in this process. A station may be silent for `patience` s."""
     station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))

@@ -134,6 +134,11 @@ class RunningVerbs:
         self._verbs.remove(verb)
         self._end_demands(verb, now)
 
+    def end(self, now: float) -> None:
+        """End what all verbs demand with neutral, and take no more of them: the station ends."""
+        for verb in self._verbs:
+            self._refuse(verb, "the station ends", now)
+
     # ---- from the vehicles ----
 
     def receive(self, received: Received, now: float) -> None:
@@ -236,8 +241,8 @@ class RunningVerbs:
 
     @property
     def finished(self) -> bool:
-        """No neutral is left to send in the place of a verb."""
-        return not self._endings
+        """No verb is left that may send its last messages, and no neutral in the place of one."""
+        return not self.busy
 
     @property
     def _any_armed(self) -> bool:

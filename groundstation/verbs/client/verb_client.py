@@ -33,6 +33,8 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from link.transport.receive_buffer import ReceiveBuffer
 
+HANGS_AFTER = 10.0
+"""s without an answer after which a station counts as hanging. A stop does not wait that long for one."""
 END_WITHIN = 1.5
 """s for an interrupted verb to end in order; the station gives it 1 s."""
 
@@ -40,7 +42,7 @@ END_WITHIN = 1.5
 class VerbClient:
     """One verb. A station that does not answer for `patience` s is lost."""
 
-    def __init__(self, link: StationLink, output: Output, patience: float = math.inf) -> None:
+    def __init__(self, link: StationLink, output: Output, patience: float = HANGS_AFTER) -> None:
         self._socket, self._endpoints = link.sock, link.endpoints
         self._buffer = ReceiveBuffer(MAX_PRINTED)
         self._output = output

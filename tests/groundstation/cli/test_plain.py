@@ -50,6 +50,27 @@ def test_verbs_beside_it_drive_until_it_ends(number: signal.Signals, tmp_path: P
             plain.kill()
 
 
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_drive_ends_with_the_station_that_it_runs_in(number: signal.Signals) -> None:
+    core, endpoint = FakeArduPilot(station=255, latch=LONG_LATCH), f"udpin:127.0.0.1:{free_port()}"
+    with (
+        on_line(core, endpoint=endpoint),
+        subprocess.Popen([*PROGRAM, "serve", "--headless", endpoint], stderr=subprocess.DEVNULL) as serve,
+    ):
+        try:
+            wait_until(lambda: running_stations() == [serve.pid])
+            words = [*PROGRAM, "drive", "--arm", "--throttle", "50", "--for", "9"]
+            with subprocess.Popen(words, stderr=subprocess.DEVNULL) as driving:
+                wait_until(lambda: core.moves, "the wheels do not turn")
+                serve.send_signal(number)
+                at = time.monotonic()
+                wait_until(lambda: not core.moves, "the wheels turn on")
+                assert core.stopped_at - at < LONG_LATCH / 2
+                assert driving.wait(PATIENCE) != 0
+        finally:
+            serve.kill()
+
+
 def test_it_watches_through_a_station_that_has_the_endpoint(tmp_path: Path) -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     with (

@@ -7,6 +7,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, OperatorFlag, SystemState, VehicleType
 from dialects.messages import INVALID_AXIS, UINT16_MAX
+from groundstation.intents.session import Quit
 from groundstation.station.verbs.running_verbs import RunningVerbs, Verb
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from tests.fakes.rover import FakeArduPilot
@@ -122,6 +123,22 @@ def test_a_demand_of_a_stopped_verb_ends_and_does_not_resume() -> None:
     ashore.run(0.5, FULL)
     assert [t for t, x, _ in ashore.cockpit.demands() if x] == driven
     assert "stood still for" in ashore.refusals[0]
+
+
+def test_a_station_that_ends_ends_the_demands_of_its_verbs() -> None:
+    """The process ends as soon as nothing is left to do, so the neutral must not wait until the verb has ended."""
+    ashore = Ashore()
+    ashore.run(0.5, FULL)
+    ashore.cockpit.do(Quit())
+    at = ashore.cockpit.now
+    assert not ashore.cockpit.station.finished
+    ashore.run(1.0, FULL)
+    demands = [x for t, x, _ in ashore.cockpit.demands(at) if t > at]
+    assert len(demands) >= 5
+    assert set(demands) == {0}
+    assert not ashore.cockpit.station.finished, "the verb has not sent its last messages yet"
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
+    assert ashore.cockpit.station.finished
 
 
 def test_a_thawed_verb_is_found_out_by_its_first_packet() -> None:
