@@ -237,7 +237,7 @@ def test_station_never_and_only(verb: Run) -> None:
 
 def test_doctor_and_motor_go_through_the_station(verb: Run, vehicle: Vehicle) -> None:
     rows = {row["row"]: row for row in verb("doctor", "--json", "--station", "only").records if "row" in row}
-    assert rows["link"]["health"] == "ok", rows
+    assert rows["link"]["health"] in ("ok", "warning"), rows  # a late machine makes a slow round trip
     assert rows["pre_arm"]["health"] == "ok", rows
     began = time.monotonic()
     turned = verb("motor", "1", "10", "--for", "0.5", "--station", "only")
