@@ -15,10 +15,13 @@ TABLE = ROOT / "docs/reliability.md"
 
 
 def rows() -> Iterator[tuple[int, str]]:
-    """Return number and last cell of each row."""
+    """Return number and last cell of each row; a row without a number continues the one before."""
+    number = ""
     for line in TABLE.read_text().splitlines():
-        if found := re.match(r"\| (\d+) \|.*\| ([^|]*) \|$", line):
-            yield int(found[1]), found[2]
+        found = re.match(r"\| (\d*) ?\|.*\| ([^|]*) \|$", line)
+        number = (found[1] or number) if found else ""
+        if found and number:
+            yield int(number), found[2]
 
 
 def collected(path: Path) -> set[str]:

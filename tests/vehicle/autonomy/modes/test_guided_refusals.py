@@ -41,7 +41,7 @@ class TestRefusals:
         assert sum(why in text for text in field.texts) == 1
 
     @pytest.mark.parametrize("index", [5, 6, 8, 9, 14, 15])
-    def test_43_a_used_value_that_is_not_a_number_is_rejected(self, index: int) -> None:
+    def test_43_a_used_value_that_is_no_number_is_rejected(self, index: int) -> None:
         field = going()
         values: list[Any] = [0, 1, 1, 8, 64 | 128 | 256 | 4, 1.0, 1.0, 0, 0.1, 0.1, 0, 0, 0, 0, 0.1, 0.1]
         values[index] = NAN
@@ -57,7 +57,7 @@ class TestRefusals:
         field.wait(0.5)
         assert field.turning
 
-    def test_46_setpoints_without_mode_arming_or_control_are_ignored(self) -> None:
+    def test_46_is_ignored_without_mode_arming_or_control(self) -> None:
         field = Field()
         field.twist(0.8)
         assert said(field, "no GCS is in control")
@@ -85,7 +85,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("x", "y"), [(0, 0), (2**31 - 1, 80_000_000), (500_000_000, 2**31 - 1), (910_000_000, 0), (0, 1_810_000_000)]
     )
-    def test_53_reposition_to_an_invalid_position_is_denied(self, x: int, y: int) -> None:
+    def test_53_reposition_to_invalid_position_is_denied(self, x: int, y: int) -> None:
         field = Field()
         field.arm()
         assert field.command_int(Command.DO_REPOSITION, -1, 1, x=x, y=y) is Result.DENIED
