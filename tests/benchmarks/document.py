@@ -54,12 +54,14 @@ def replace(file: Path, part: str) -> None:
 def _head(run: Mapping[str, Any]) -> Iterator[str]:
     machine = run["machine"]
     kind = "`--quick` run (few samples: tails mean nothing)" if run["quick"] else "Full run"
-    taken = [f"{name} {each['seconds']:.0f}" for name, each in run["results"].items()]
     took = machine.get("seconds", 0.0) / 60
     loads = f"load {machine['load_before']} before and {machine.get('load_after', '?')} after"
     yield f"{kind}, {machine['date'][:16].replace('T', ' ')}, commit {machine['commit']}, {took:.0f} minutes, {loads}."
-    yield f"{machine['cpu']}, {machine['cores']} cores, {machine['system']}, Python {machine['python']}."
-    yield f"Seconds: {', '.join(taken)}.\n"
+    yield f"{machine['cpu']}, {machine['cores']} cores, {machine['system']}, Python {machine['python']}.\n"
+    yield _line(["benchmark", "s"])
+    yield _line(["---", "---:"])
+    yield from (_line([f"`{name}`", f"{each['seconds']:.0f}"]) for name, each in run["results"].items())
+    yield ""
     for word, reasons in (("Not run", run["failed"]), ("Left out", run["skipped"]), ("Run again", run["again"])):
         for name, reason in reasons.items():
             yield f"- {word}: `{name}`, {' '.join(reason.split())}."

@@ -112,7 +112,9 @@ def judge(parts: dict[str, Part], motors: Path, share: float, baud: int) -> tupl
         Goal(f"{jobs.DRIVEN_FILE} at {baud} baud, share of the wire", share, SHARE, "%", True, "the wire"),
         Goal(f"demands late by a control cycle, {WITH}", late, 0, "", reference=beside),
     ]
-    note = "ms from a changed demand to the motors. late: more than a control cycle later than the slowest without it."
+    note = (
+        "ms from a changed demand to the motors. `late`: more than a control cycle later than the slowest without it."
+    )
     return Table(f"Driven at 20 Hz at {baud} baud", rows, note), goals
 
 

@@ -90,7 +90,7 @@ def _report(found: dict[tuple[str, str], Outage]) -> Report:
         Goal("link back to obeyed, worst", max(each.back + each.obeyed for each in outages), BACK_WITHIN, "s"),
     ]
     note = (
-        "Full throttle when it begins, and through its first half; all demands since its middle are neutral, so that "
+        "Full throttle when it begins, and through its first half. All demands since its middle are neutral, so that "
         "any motion after its end is of an old one. Silence: the longest time without a frame of the vehicle."
     )
     return Report([Table("A driven rover of a fleet with two routers", rows, note)], goals)

@@ -62,8 +62,8 @@ def _sources(options: Options) -> dict[str, list[bytes]]:
 
 # ---- receiving ----
 
-NOTE = """x: against pymavlink in the same row. "+ screen's": and decode what the Drive screen reads; "+ all": and
-decode everything; "channel": with sequence, peers and rate limits, as the programs run it."""
+NOTE = """`x`: against pymavlink in the same row. `+ screen's`: and decode the messages that the Drive screen reads.
+`+ all`: and decode everything. `channel`: with sequence, peers and rate limits, as the programs run it."""
 
 
 DATAGRAM_GOALS = (("framer", FRAMER, 13.0), ("framer + Drive screen", SCREEN, 7.0))

@@ -237,7 +237,7 @@ def _report(outcomes: dict[str, Outcome]) -> Report:
         "Key byte written to the terminal -> motor outputs changed, ms",
         [_row(name, spreads, outcome) for name, outcome in outcomes.items()],
         "p50 is the median of the rounds' medians; p90, p99 and max are of all keys. "
-        "x: the 50 Hz hobby form / this. Drive with the pane "
+        "`x`: the 50 Hz hobby form / this. Drive with the pane "
         f"{BUSIEST}, which draws most.",
     )
     return Report([table], _goals(spreads, outcomes))

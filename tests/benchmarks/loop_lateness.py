@@ -210,8 +210,8 @@ class Driver:
 def _report(samples: Samples) -> Report:
     rows = [_row(name, load, rounds) for (name, load), rounds in samples.items()]
     note = (
-        f"{CORES} cores; busy: one process that only counts, or one a core. p50 is the median of the rounds' medians; "
-        "p99 and max are of all cycles. Late against the earliest cycle of the same 3 s."
+        f"{CORES} cores; `busy`: one process that only counts, or one a core. p50 is the median of the rounds' "
+        "medians; p99 and max are of all cycles. Late against the earliest cycle of the same 3 s."
     )
     goals = []
     for load in LOADS:

@@ -163,10 +163,10 @@ def wire_time(baud: int) -> float:
 def _report(seen: dict[tuple[int, str], Seen]) -> Report:
     presence, demand = frame_sizes()
     note = (
-        f"wire: of ROVER_OPERATOR_PRESENCE ({presence} bytes) and MANUAL_CONTROL ({demand} bytes) together, ms. "
+        f"`wire`: of ROVER_OPERATOR_PRESENCE ({presence} bytes) and MANUAL_CONTROL ({demand} bytes) together, ms. "
         "p50 is the median of the rounds' medians; p90, p99 and max are of all keys. "
-        "down, up: how full the wires were, with what the second "
-        "station asks for. copies: the most that copies of changed demands took of the wire up within any second."
+        "`down`, `up`: how full the wires were, with what the second "
+        "station asks for. `copies`: the most that copies of changed demands took of the wire up within any second."
     )
     rows = [_row(baud, load, each) for (baud, load), each in seen.items()]
     title = "Key byte written to the terminal -> motor outputs changed over a serial cable, ms"

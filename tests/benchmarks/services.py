@@ -126,8 +126,8 @@ def _on_wire(options: Options, report: Report) -> None:
         driven, late = judge(parts, motors, share, BAUD)
 
     note = (
-        f"A log of {size:,} bytes. wire: of the bytes that must travel, alone on the line; telemetry flows beside "
-        "them. share: of the wire that the job had."
+        f"A log of {size:,} bytes. `wire`: of the bytes that must travel, alone on the line; telemetry flows beside "
+        "them. `share`: of the wire that the job had."
     )
     table = Table(f"Parameters, missions and logs at {BAUD} baud, s", note=note)
     for name, each in times.items():

@@ -130,9 +130,9 @@ def _failsafes(vehicle: Program) -> int:
 
 def _report(seen: dict[str, Seen]) -> Report:
     note = (
-        "late: control cycles at 50 Hz against the earliest of the round. key: from a byte written to the terminal at "
-        "80x24 until the outputs change. failsafes: lines in the log of the vehicle. stopped: parts of a round in "
-        "which it did not drive on."
+        "`late`: control cycles at 50 Hz against the earliest of the round. `key`: from a byte written to the terminal "
+        "at 80x24 until the outputs change. `failsafes`: lines in the log of the vehicle. `stopped`: parts of a round "
+        "in which it did not drive on."
     )
     goals: list[Goal] = []
     whole = seen[WHOLE]
