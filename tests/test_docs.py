@@ -167,7 +167,6 @@ def test_every_recipe_of_contributing_is_followed_by_a_test() -> None:
 
 
 LONG_PROSE = (
-    "CHANGELOG.md",
     "docs/commands.md",
     "docs/dialect.md",
 )
