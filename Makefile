@@ -3,7 +3,7 @@
 PYTEST = .venv/bin/pytest
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs deb deb-check wheels installs
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs picture deb deb-check wheels installs
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -78,6 +78,9 @@ mutate:  ## Change the safety code line by line and report what no test notices.
 
 docs:  ## Build the documentation site in build/site, without a network; needs the extra [docs].
 	NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict -q -f docs/mkdocs.yml
+
+picture:  ## Record a drive with the real program and draw docs/drive.png; needs rsvg-convert and the extra [pictures].
+	.venv/bin/python -m tests.animation $(ARGS)
 
 release:  ## Build the packages, and list the dependencies with their hashes, in dist/.
 	.ci/release

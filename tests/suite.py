@@ -25,6 +25,7 @@ MARKED = ("e2e", "interop")
 """Folders in which every test has one."""
 
 LONG = (
+    "animation/test_drawing.py", "animation/test_recorder.py",
     "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "oldest", "packages", "recipes", "soak", "stress",
     "test_ci_again.py", "test_examples.py", "test_order.py", "test_suite.py",
     "test_release.py::test_a_signature",

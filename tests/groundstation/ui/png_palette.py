@@ -17,13 +17,13 @@ Colour = tuple[int, int, int]
 
 def to_palette(png: bytes) -> bytes:
     """Return a picture of 8 bits a channel with a palette; a colour that is not in it becomes the nearest."""
-    chunks = list(_chunks(png))
+    chunks = list(read_chunks(png))
     width, height, depth, kind = struct.unpack(">IIBB", chunks[0][1][:10])
     if depth != 8 or kind not in (2, 6):
         return png
     data = zlib.decompress(b"".join(body for name, body in chunks if name == b"IDAT"))
     rows = list(_rows(data, width, height, 4 if kind == 6 else 3))
-    palette = _choose(Counter(pixel for row in rows for pixel in row))
+    palette = choose_palette(Counter(pixel for row in rows for pixel in row))
     found = {colour: index for index, colour in enumerate(palette)}
     lines = bytearray()
     for row in rows:
@@ -34,12 +34,12 @@ def to_palette(png: bytes) -> bytes:
     return SIGNATURE + b"".join(_chunk(*each) for each in (*parts, (b"IDAT", zlib.compress(lines, 9)), (b"IEND", b"")))
 
 
-def _choose(counts: Counter[Colour]) -> list[Colour]:
-    """Return the most frequent colour of each bucket, then the most frequent of all that are left."""
+def choose_palette(counts: Counter[Colour], size: int = COLOURS) -> list[Colour]:
+    """Return at most `size` colours: the most frequent of each bucket, then the most frequent of all that are left."""
     first: dict[tuple[int, ...], Colour] = {}
     for colour, _ in counts.most_common():
         first.setdefault(tuple(part >> BUCKET for part in colour), colour)
-    return list(dict.fromkeys((*first.values(), *(colour for colour, _ in counts.most_common()))))[:COLOURS]
+    return list(dict.fromkeys((*first.values(), *(colour for colour, _ in counts.most_common()))))[:size]
 
 
 def _index(pixel: Colour, palette: list[Colour], found: dict[Colour, int]) -> int:
@@ -49,7 +49,8 @@ def _index(pixel: Colour, palette: list[Colour], found: dict[Colour, int]) -> in
     return found[pixel]
 
 
-def _chunks(png: bytes) -> Iterator[tuple[bytes, bytes]]:
+def read_chunks(png: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yield name and content of each chunk."""
     at = len(SIGNATURE)
     while at < len(png):
         size, name = struct.unpack_from(">I4s", png, at)
