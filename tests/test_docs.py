@@ -166,21 +166,9 @@ def test_every_recipe_of_contributing_is_followed_by_a_test() -> None:
     assert [name for name in documented_counts() if f'check_recipe("{name}")' not in tests] == []
 
 
-LONG_PROSE = (
-    "docs/commands.md",
-    "docs/dialect.md",
-)
-"""Documents that are still above the limits of tests/prose.py. No new one joins them."""
-
-
-@pytest.mark.parametrize("doc", [doc for doc in DOCS if path_of(doc) not in LONG_PROSE], ids=path_of)
+@pytest.mark.parametrize("doc", DOCS, ids=path_of)
 def test_prose_of_a_document_is_within_its_limits(doc: Path) -> None:
     assert find_faults(doc.read_text()) == []
-
-
-def test_documents_within_the_limits_of_prose_are_checked() -> None:
-    long = {path_of(doc) for doc in DOCS if find_faults(doc.read_text())}
-    assert [name for name in LONG_PROSE if name not in long] == [], "remove these from LONG_PROSE"
 
 
 def test_limits_of_prose_find_each_kind_of_fault() -> None:

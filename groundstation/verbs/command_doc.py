@@ -33,15 +33,16 @@ def _block(examples: tuple[tuple[str, str], ...]) -> str:
 
 
 def build_verbs() -> str:
-    """Return the table of verbs, their arguments and options."""
+    """Return the table of verbs, with a row for each argument and option."""
     return "| verb | what it does | arguments and options |\n|---|---|---|\n" + "".join(_rows())
 
 
 def _rows() -> Iterator[str]:
     for verb, actions in VERBS.items():
         for name, action in actions.items():
-            arguments = "<br>".join(map(_describe, action.arguments)) or "-"
-            yield f"| `{f'{verb} {name}'.strip()}` | {_cell(action.help)} | {arguments} |\n"
+            first, *others = [*map(_describe, action.arguments)] or ["-"]
+            yield f"| `{f'{verb} {name}'.strip()}` | {_cell(action.help)} | {first} |\n"
+            yield from (f"| | | {each} |\n" for each in others)
 
 
 def _describe(argument: Argument) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import zip_longest
 
 from dialects import messages as m
 from dialects.definition import MessageDefinition, private_enums, private_messages
@@ -23,6 +24,9 @@ TO_WHOM = {
     DialectLevel.ROVER: "peers that request ROVER_*",
 }
 """Receivers of a stream; empty for all peers."""
+
+CELL = 120
+"""Characters of a cell of a table, so that an editor shows it."""
 
 FENCE_NOTE = "RETURN_POINT, at most one, is only stored: the rover never drives there, FENCE_ACTION decides"
 
@@ -65,8 +69,23 @@ def _section(title: str, text: str) -> str:
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
+    lines = [head, ["---"] * len(head), *(line for row in rows for line in _lines(row))]
     return "".join(f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in row)} |\n" for row in lines)
+
+
+def _lines(row: Sequence[object]) -> Iterable[tuple[str, ...]]:
+    """Return the lines of a row: a long cell goes on in further lines, whose other cells are empty."""
+    return zip_longest(*(_pieces(str(cell)) for cell in row), fillvalue="")
+
+
+def _pieces(text: str) -> list[str]:
+    """Split a text into pieces of at most CELL characters, behind its punctuation where it has any."""
+    pieces = []
+    while len(text) > CELL and " " in text[:CELL]:
+        cut = max(text.rfind(f"{mark} ", 0, CELL) for mark in ".;:,") + 1 or text.rfind(" ", 0, CELL)
+        pieces.append(text[:cut])
+        text = text[cut + 1 :]
+    return [*pieces, text]
 
 
 def _streams() -> str:
@@ -77,11 +96,11 @@ def _streams() -> str:
     ]  # fmt: skip
     more = (
         "Rates are defaults, separate for each ground station: SET_MESSAGE_INTERVAL and REQUEST_DATA_STREAM change\n"
-        "them for their sender; slow links and full radio buffers lower them. A peer that has requested one of the\n"
-        "newer messages (or AVAILABLE_MODES, COMPONENT_METADATA, control, a standard mode) gets all of those; a peer\n"
-        "that has requested a ROVER_* message, or sent ROVER_OPERATOR_PRESENCE, gets those too. Other peers would\n"
-        "count them as lost. ROVER_LINK_STATUS is sent once a second for each link to peers that get ROVER_*. All\n"
-        "other messages are answers.\n"
+        "them for their sender; slow links and full radio buffers lower them.\n\n"
+        "A peer that has requested one of the newer messages (or AVAILABLE_MODES, COMPONENT_METADATA, control, a\n"
+        "standard mode) gets all of those. A peer that has requested a ROVER_* message, or sent\n"
+        "ROVER_OPERATOR_PRESENCE, gets those too. Other peers would count them as lost. ROVER_LINK_STATUS is\n"
+        "sent once a second for each link to peers that get ROVER_*. All other messages are answers.\n"
     )
     return f"{_table(('message', 'id', 'Hz', '', 'to whom', 'REQUEST_DATA_STREAM'), rows)}\n{more}"
 
