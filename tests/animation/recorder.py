@@ -89,6 +89,12 @@ class Shell:
             self.press(key, 2)
             self.look(GAP)
 
+    def quit_program(self) -> None:
+        """End the program by its key and wait for the prompt: until then it writes into the home folder."""
+        before = len(self.shown)
+        self.type("\x11")
+        self.wait_for(lambda: "$ " in self.shown[before:], "the prompt after Ctrl-Q")
+
     def close(self) -> None:
         """Close the terminal, which ends all programs in it."""
         os.close(self._terminal)
@@ -107,7 +113,9 @@ def record(home: Path) -> Cast:
         shell.look(0.4)
         _drive(shell)
         shell.look(2.0)
-        return shell.cast()
+        cast = shell.cast()
+        shell.quit_program()
+        return cast
 
 
 def _arm(shell: Shell) -> None:
