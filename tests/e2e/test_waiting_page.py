@@ -48,7 +48,7 @@ def run(tmp_path: Path) -> Iterator[Callable[[str], None]]:
 
         def begin(command: str) -> None:
             process = subprocess.Popen(
-                [sys.executable, "-m", *shlex.split(command)],
+                [sys.executable, "-m", "link.program", *shlex.split(command.removeprefix("mavhelm "))],
                 cwd=tmp_path, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
             )  # fmt: skip

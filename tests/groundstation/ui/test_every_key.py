@@ -168,9 +168,8 @@ async def test_tab_on_drive_keeps_the_style_and_says_so() -> None:
     """TAB chooses panels on the other screens: no key of theirs may make a key on Drive go on by itself."""
     async with driving_wheels() as wheels:
         await wheels.type("\t")
-        await wheels.pass_time(0.3)
-        frame = frames.text(wheels.app)
-        assert "no panels to choose on this screen; ^y: drive style" in frame
+        hint = "no panels to choose on this screen; ^y: drive style"
+        await wheels.until(lambda: hint in frames.text(wheels.app))
         await drives(wheels)
         sticks = wheels.station.drive.station.operator.sticks
         assert sticks.style.value == "hold"
