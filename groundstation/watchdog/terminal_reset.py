@@ -26,11 +26,14 @@ LOCAL_FLAGS = 3
 
 
 class TerminalReset:
-    """One terminal by its path, as it is before the screen starts. Without a path, or one that is gone: nothing."""
+    """One terminal by its path, as it is before the screen starts. Without a path, or one that is gone: nothing.
+
+    The number of a terminal that is closed goes to the next one that opens, which must not get the reset.
+    """
 
     def __init__(self, path: str | None) -> None:
         self._path = path
-        self._before = None if path is None else _attributes(path)
+        self._identity, self._before = (None, None) if path is None else _look_at(path)
         self._left = RESET
 
     def run(self) -> bool:
@@ -43,9 +46,10 @@ class TerminalReset:
         with contextlib.suppress(OSError, termios.error):
             descriptor = os.open(self._path, os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY)
             try:
-                if not self._write(descriptor):
-                    return False
-                self._restore_line(descriptor)
+                if self._identity in (None, _identify(descriptor)):
+                    if not self._write(descriptor):
+                        return False
+                    self._restore_line(descriptor)
             finally:
                 os.close(descriptor)
         self._path = None
@@ -70,14 +74,24 @@ class TerminalReset:
             termios.tcsetattr(descriptor, termios.TCSANOW, self._before)
 
 
-def _attributes(path: str) -> list[Any] | None:
+def _look_at(path: str) -> tuple[tuple[int, ...] | None, list[Any] | None]:
+    """Return which terminal has this path, and its attributes; None for what cannot be read."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY)
     except OSError:
-        return None
+        return None, None
     try:
-        return termios.tcgetattr(descriptor)
+        return _identify(descriptor), termios.tcgetattr(descriptor)
     except termios.error:
-        return None
+        return _identify(descriptor), None
     finally:
         os.close(descriptor)
+
+
+def _identify(descriptor: int) -> tuple[int, ...]:
+    """Return what tells a terminal from an earlier one of its number: its node is new, and has a new time of change.
+
+    Neither output nor termios change that time; chmod and chown do.
+    """
+    found = os.fstat(descriptor)
+    return found.st_dev, found.st_ino, found.st_rdev, found.st_ctime_ns

@@ -43,6 +43,25 @@ def test_a_terminal_that_is_gone_is_done() -> None:
     assert reset.run()
 
 
+def test_the_next_terminal_of_its_number_is_left_alone() -> None:
+    for _ in range(100):  # another process may take the number
+        master, slave = pty.openpty()
+        path, reset = os.ttyname(slave), TerminalReset(os.ttyname(slave))
+        os.close(slave)
+        os.close(master)
+        threading.Event().wait(0.02)  # the times of files have a step of up to 10 ms
+        master, slave = pty.openpty()
+        same = os.ttyname(slave) == path
+        assert reset.run()
+        drawn = bool(select.select([master], [], [], 0.0)[0])
+        os.close(slave)
+        os.close(master)
+        assert not (same and drawn)
+        if same:
+            return
+    raise AssertionError("no terminal ever got the number of the one before")
+
+
 def _fill(slave: int) -> None:
     with contextlib.suppress(BlockingIOError):
         while True:
