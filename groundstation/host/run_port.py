@@ -33,7 +33,7 @@ from groundstation.station_socket.verb_run import (
     encode,
     split,
 )
-from groundstation.verbs.common.channel import Channel
+from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from link.transport.receive_buffer import ReceiveBuffer
 
@@ -80,7 +80,7 @@ class RunPort:
         """Number of the file on which the shell works; an answer about another one is that of an interrupted verb."""
         self._answer: asyncio.Future[FileAnswered] | None = None
         """What its verb waits for while the shell works on a file; on one at a time (remote/shell_files.py)."""
-        self._companion = Channel(self._send_value)
+        self._companion = CompanionChannel(self._send_value)
         self._open = True
 
     def start(self, ready: VerbReady) -> None:

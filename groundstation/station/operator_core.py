@@ -317,7 +317,7 @@ class OperatorCore:
             and self.driving.finished
             and self.shutdown.finished
             and self._handover.finished
-            and self.verbs.finished
+            and not self.verbs.busy
         )
 
     def _expire_lease(self, now: float) -> None:

@@ -10,7 +10,7 @@ import msgspec
 
 if TYPE_CHECKING:
     from groundstation.verbs.common.arguments import Argument
-    from groundstation.verbs.common.channel import Channel
+    from groundstation.verbs.common.channel import CompanionChannel
     from groundstation.verbs.common.output import Output
     from link.protocol.log_tap import LogTap
 
@@ -36,7 +36,7 @@ class VerbAction(msgspec.Struct, frozen=True):
 
     It runs in the process of the user before any link is opened, also for a verb that a station runs. Raises VerbError.
     """
-    companion: Callable[[argparse.Namespace, Output, Channel], Awaitable[None]] | None = None
+    companion: Callable[[argparse.Namespace, Output, CompanionChannel], Awaitable[None]] | None = None
     """Runs beside `run` in the process of the user, which may be another one: files that are written as data arrive,
     programs and libraries of others. `session.companion` is the other end of its channel."""
     finds: bool = True

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from deb.target import MACHINES, SUITES, Target
+from deb.target import MACHINES, SUITES, DebTarget
 from deb.tree import Build, lay_out, pack
 from deb.wheels import MissingWheelError, gather, wheels_in
 
@@ -24,7 +24,7 @@ def main(words: list[str]) -> int:
     with tempfile.TemporaryDirectory(prefix="mavhelm-deb-") as scratch:
         wheel = options.wheel or _build_wheel(Path(scratch), time)
         for architecture in options.arch or MACHINES:
-            target = Target(options.suite, architecture)
+            target = DebTarget(options.suite, architecture)
             cache = options.cache / f"{options.suite}-{architecture}"
             cache.mkdir(parents=True, exist_ok=True)
             try:

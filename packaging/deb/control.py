@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from email.message import Message
 from email.utils import format_datetime
 
-from deb.target import Target
+from deb.target import DebTarget
 
 PACKAGE, UNIT, USER = "mavhelm", "rover.service", "mavhelm"
 STATE, CONFIG = "/var/lib/mavhelm", "/etc/mavhelm/rover.toml"
@@ -27,7 +27,7 @@ ground station for terminals and rover daemon for MAVLink
  All that it needs of Python is in a folder of its own."""
 
 
-def control(target: Target, version: str, size: int) -> str:
+def control(target: DebTarget, version: str, size: int) -> str:
     """Return the file control; `size` is in KiB."""
     python = f"python3 (>= {target.python}~), python3 (<< {target.next_python}~)"
     needs = f"libc6 (>= 2.28), libgcc-s1, libstdc++6, {python}, systemd | systemd-standalone-sysusers"

@@ -23,7 +23,7 @@ OLD_NAMES = ("manylinux2014", "manylinux2010", "manylinux1")
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class DebTarget:
     """A release of Debian on a kind of processor."""
 
     suite: str

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deb import control
-from deb.target import Target
+from deb.target import DebTarget
 from deb.wheels import packages_of, read_info, read_metadata, unpack
 
 HERE = Path(__file__).parent
@@ -33,7 +33,7 @@ PLACED = {
 class Build:
     """What a package is made of."""
 
-    target: Target
+    target: DebTarget
     wheel: Path
     """Of mavhelm."""
     bundled: Sequence[Path]

@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 from packaging.requirements import Requirement
 from packaging.utils import NormalizedName, canonicalize_name, parse_wheel_filename
 
-from deb.target import Target
+from deb.target import DebTarget
 
 EXTRAS = ("all", "pi")
 LEFT_OUT = {
@@ -75,7 +75,7 @@ def collect(
     return sorted(extras.keys() - {name})
 
 
-def download(names: Collection[str], target: Target, folder: Path, constraints: Path) -> None:
+def download(names: Collection[str], target: DebTarget, folder: Path, constraints: Path) -> None:
     """Fetch the wheels of packages in the versions of the file. Raises MissingWheelError."""
     platforms = [word for each in target.platforms for word in ("--platform", each)]
     command = [
@@ -88,7 +88,7 @@ def download(names: Collection[str], target: Target, folder: Path, constraints: 
         raise MissingWheelError(f"pip for {target.architecture}: {(reasons or [done.stderr.strip()])[-1]}")
 
 
-def gather(wheel: Path, target: Target, folder: Path, constraints: Path) -> list[Path]:
+def gather(wheel: Path, target: DebTarget, folder: Path, constraints: Path) -> list[Path]:
     """Return the wheels of all that mavhelm's wheel needs, fetched into the folder. Raises MissingWheelError."""
 
     def fetch(names: Collection[NormalizedName]) -> Metadata:

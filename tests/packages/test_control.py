@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from deb import control, tree
-from deb.target import Target
+from deb.target import DebTarget
 
 from link.runtime import install_hint
 from vehicle.cli.systemd_unit import HARDWARE_GROUPS, UnitOptions, build_unit
@@ -20,7 +20,7 @@ from vehicle.config.template import build_template
 ROOT = Path(__file__).parents[2]
 SCRIPTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
 ENTRY_POINTS = "[console_scripts]\n" + "".join(f"{name} = {place}\n" for name, place in SCRIPTS.items())
-TRIXIE = Target("trixie", "arm64")
+TRIXIE = DebTarget("trixie", "arm64")
 
 
 def test_every_program_is_started_by_the_private_python() -> None:
@@ -78,7 +78,7 @@ def test_the_package_is_for_one_python_only() -> None:
 
 @pytest.mark.skipif(shutil.which("dpkg") is None, reason="the program dpkg is missing")
 def test_a_version_of_an_older_suite_is_lower() -> None:
-    older, newer = (Target(suite, "amd64").version("0.1.0", 1) for suite in ("bookworm", "trixie"))
+    older, newer = (DebTarget(suite, "amd64").version("0.1.0", 1) for suite in ("bookworm", "trixie"))
     subprocess.run(["dpkg", "--compare-versions", older, "lt", newer], check=True)
 
 

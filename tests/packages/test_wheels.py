@@ -7,19 +7,19 @@ from email.message import Message
 from email.parser import Parser
 
 import pytest
-from deb.target import MACHINES, SUITES, Target
+from deb.target import MACHINES, SUITES, DebTarget
 from deb.wheels import LEFT_OUT, collect, kept_files
 from packaging.tags import cpython_tags
 from packaging.utils import NormalizedName
 
-TRIXIE = Target("trixie", "arm64")
+TRIXIE = DebTarget("trixie", "arm64")
 
 
 def metadata(name: str, *requirements: str) -> Message:
     return Parser().parsestr(f"Name: {name}\n" + "".join(f"Requires-Dist: {each}\n" for each in requirements))
 
 
-def collected(packages: dict[str, Message], target: Target = TRIXIE) -> Sequence[str]:
+def collected(packages: dict[str, Message], target: DebTarget = TRIXIE) -> Sequence[str]:
     """Return what the first package needs; each one is fetched once."""
     fetched: list[str] = []
 
@@ -53,14 +53,14 @@ def test_an_extra_that_is_wanted_later_adds_its_packages() -> None:
     [
         ("python_version < '3.14'", TRIXIE, True),
         ("python_version < '3.13'", TRIXIE, False),
-        ("python_version < '3.13'", Target("bookworm", "amd64"), True),
+        ("python_version < '3.13'", DebTarget("bookworm", "amd64"), True),
         ("platform_machine == 'x86_64'", TRIXIE, False),
-        ("platform_machine == 'x86_64'", Target("trixie", "amd64"), True),
+        ("platform_machine == 'x86_64'", DebTarget("trixie", "amd64"), True),
         ("platform_system == 'Linux'", TRIXIE, True),
         ("sys_platform == 'win32'", TRIXIE, False),
     ],
 )
-def test_markers_are_those_of_the_target(marker: str, target: Target, needed: bool) -> None:
+def test_markers_are_those_of_the_target(marker: str, target: DebTarget, needed: bool) -> None:
     packages = {"mavhelm": metadata("mavhelm", f"a; {marker}"), "a": metadata("a")}
     assert collected(packages, target) == (["a"] if needed else [])
 
@@ -71,7 +71,7 @@ def test_what_debian_brings_is_left_out() -> None:
 
 @pytest.mark.parametrize(("architecture", "machine"), MACHINES.items())
 def test_every_tag_is_one_that_pip_knows(architecture: str, machine: str) -> None:
-    platforms = Target("trixie", architecture).platforms
+    platforms = DebTarget("trixie", architecture).platforms
     assert all(each.endswith(f"_{machine}") for each in platforms)
     tags = {str(tag) for tag in cpython_tags((3, 13), platforms=platforms)}
     assert f"cp313-cp313-manylinux_2_17_{machine}" in tags
@@ -80,7 +80,7 @@ def test_every_tag_is_one_that_pip_knows(architecture: str, machine: str) -> Non
 
 @pytest.mark.parametrize("suite", SUITES)
 def test_the_next_python_is_another_folder(suite: str) -> None:
-    target = Target(suite, "amd64")
+    target = DebTarget(suite, "amd64")
     assert int(target.next_python.split(".")[1]) == int(target.python.split(".")[1]) + 1
 
 

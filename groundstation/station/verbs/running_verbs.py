@@ -231,18 +231,13 @@ class RunningVerbs:
 
     @property
     def busy(self) -> bool:
-        """Whether a verb is connected, or what one demanded is being ended."""
+        """Whether a verb runs, which may send its last messages yet, or what one demanded is being ended."""
         return bool(self._verbs or self._endings)
 
     @property
     def uses_services(self) -> bool:
         """Whether a verb runs, so that the services of vehicles are used although no screen is there."""
         return bool(self._verbs)
-
-    @property
-    def finished(self) -> bool:
-        """No verb is left that may send its last messages, and no neutral in the place of one."""
-        return not self.busy
 
     @property
     def _any_armed(self) -> bool:

@@ -7,10 +7,10 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
-from groundstation.verbs.common.channel import Channel, ChannelEndedError
+from groundstation.verbs.common.channel import ChannelEndedError, CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 
-RunCompanion = Callable[[Channel], Awaitable[None]]
+RunCompanion = Callable[[CompanionChannel], Awaitable[None]]
 
 
 class RunningCompanion:
@@ -19,7 +19,7 @@ class RunningCompanion:
     def __init__(
         self, run: RunCompanion, send: Callable[[Any], None], ended: Callable[[VerbError | None], None]
     ) -> None:
-        self.channel = Channel(send)
+        self.channel = CompanionChannel(send)
         self._run, self._ended = run, ended
         self._verb_ended = False
         self._task = asyncio.ensure_future(self._run_to_the_end())
@@ -47,9 +47,9 @@ class RunningCompanion:
 
 
 @asynccontextmanager
-async def local_companion(run: RunCompanion | None) -> AsyncIterator[Channel]:
+async def local_companion(run: RunCompanion | None) -> AsyncIterator[CompanionChannel]:
     """Run a companion, if there is one, beside its verb, which runs in this process, too; yield the verb's end."""
-    ours = Channel()
+    ours = CompanionChannel()
     if run is None:
         yield ours
         return

@@ -1,4 +1,4 @@
-"""Channel: one end of what joins a verb with its companion, the part of it in the process of the user.
+"""CompanionChannel: one end of what joins a verb with its companion, the part of it in the process of the user.
 
 A verb that a station runs has its companion in the shell (client/companion.py), with the files, the environment and
 the foreign programs of the user. Values are plain: what msgpack has.
@@ -21,7 +21,7 @@ class ChannelEndedError(Exception):
     """The other end has ended in order."""
 
 
-class Channel:
+class CompanionChannel:
     """One end. `send` takes a value for the other one, `push` a value that it has sent."""
 
     def __init__(self, send: Callable[[Any], None] = lambda value: None) -> None:

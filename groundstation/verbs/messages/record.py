@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from groundstation.verbs.common.channel import Channel, ChannelEndedError
+from groundstation.verbs.common.channel import ChannelEndedError, CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.local_file import check_new_file
 from groundstation.verbs.common.output import Output
@@ -81,7 +81,7 @@ class FrameCollector:
 
     def __init__(self, ids: tuple[int, int]) -> None:
         self.ids = ids
-        self.companion: Channel | None = None
+        self.companion: CompanionChannel | None = None
         """Gets the frames, once the verb has begun."""
         self.log_tap = LogTap(self._add, system=ids[0], component=ids[1], unsent=False)
         self._frames: list[tuple[float, Sequence[bytes]]] = []
@@ -128,7 +128,7 @@ async def record(session: VerbSession, options: argparse.Namespace, output: Outp
     return ExitCode.DONE
 
 
-async def _receive_soon(channel: Channel) -> Any:
+async def _receive_soon(channel: CompanionChannel) -> Any:
     """Return what comes within PERIOD, or None. Raises VerbError and ChannelEndedError, as the channel does."""
     try:
         async with asyncio.timeout(PERIOD):
@@ -137,7 +137,7 @@ async def _receive_soon(channel: Channel) -> Any:
         return None
 
 
-async def write(options: argparse.Namespace, output: Output, verb: Channel) -> None:
+async def write(options: argparse.Namespace, output: Output, verb: CompanionChannel) -> None:
     """Write what the verb collects, as its companion, and print what is in the file. Raises VerbError."""
     system, component = await verb.receive()
     recording, now = FileRecording(options.file, (system, component)), asyncio.get_running_loop().time

@@ -16,7 +16,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station_socket.verb_run import FileAnswered, FileAsked, Printed, RunVerb, VerbEnded
 from groundstation.verbs.action import VerbAction
-from groundstation.verbs.common.channel import Channel
+from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyAttribute, LazyCall
 from groundstation.verbs.line.parser import LineParser
@@ -48,7 +48,7 @@ class ShellVerb:
         flush: Callable[[], None],
         send: Callable[[Printed], None],
         ask_for_file: Callable[[FileAsked], Awaitable[FileAnswered]],
-        companion: Channel,
+        companion: CompanionChannel,
         silence: Callable[[float], float],
     ) -> None:
         self._station, self._name, self._follows = station, name, follows

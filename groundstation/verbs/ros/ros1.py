@@ -14,7 +14,7 @@ from typing import Any
 from groundstation.ros.vehicle import Values
 from groundstation.ros1.process import NodeEndedError, NodeProcess, running_node
 from groundstation.verbs.common.arguments import Argument, seconds
-from groundstation.verbs.common.channel import Channel
+from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.ros.ros_driver import RosDriver
@@ -136,7 +136,7 @@ class Ros1:
             self._driver.remove(key)
 
 
-async def serve(options: argparse.Namespace, output: Output, verb: Channel) -> None:
+async def serve(options: argparse.Namespace, output: Output, verb: CompanionChannel) -> None:
     """Run one node after another, as the companion: a node ends when its master does. Raises VerbError."""
     name = await verb.receive()
     try:
@@ -157,7 +157,7 @@ async def serve(options: argparse.Namespace, output: Output, verb: Channel) -> N
         raise VerbError(ExitCode.BROKEN, f"{error}; neutral") from None
 
 
-async def _read(node: NodeProcess, verb: Channel) -> None:
+async def _read(node: NodeProcess, verb: CompanionChannel) -> None:
     """Pass on what the node says, until it has left its master."""
     line: dict[str, Any] = {}
     while "lost" not in line:
@@ -165,7 +165,7 @@ async def _read(node: NodeProcess, verb: Channel) -> None:
         verb.send(line)
 
 
-async def _publish(node: NodeProcess, verb: Channel) -> None:
+async def _publish(node: NodeProcess, verb: CompanionChannel) -> None:
     """Publish what the verb sends, until it ends."""
     while True:
         node.publish(*await verb.receive())

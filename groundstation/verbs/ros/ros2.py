@@ -21,7 +21,7 @@ from groundstation.ros.freshness import MAX_LATENESS
 from groundstation.ros.rmw.names import name_fault, namespace_fault
 from groundstation.ros.vehicle import ODOMETRY, Values, transforms
 from groundstation.verbs.common.arguments import Argument
-from groundstation.verbs.common.channel import Channel
+from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.ros.ros2_params import PARAMETER_SERVICES, parameter_services
@@ -198,7 +198,7 @@ class _NodeUser:
         self._session.companion.send((PUBLISH, topic, values))
 
 
-async def serve(options: argparse.Namespace, output: Output, verb: Channel) -> None:
+async def serve(options: argparse.Namespace, output: Output, verb: CompanionChannel) -> None:
     """Be the node, as the companion of the verb: in the environment of the user, with the libraries of ROS."""
     node = _Node(options, await verb.receive(), verb)
     node.start()
@@ -212,7 +212,7 @@ async def serve(options: argparse.Namespace, output: Output, verb: Channel) -> N
 class _Node:
     """The companion's half: the node with its topics and services."""
 
-    def __init__(self, options: argparse.Namespace, name: str, verb: Channel) -> None:
+    def __init__(self, options: argparse.Namespace, name: str, verb: CompanionChannel) -> None:
         from groundstation.ros2.node import NodeNames, Ros2Node
 
         self._verb = verb

@@ -15,7 +15,7 @@ from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.operator_core import OperatorCore
 from groundstation.verbs.common.arguments import is_chosen
-from groundstation.verbs.common.channel import Channel
+from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.files import Files
 from groundstation.verbs.session.link_reasons import describe_silence
 from groundstation.views.doctor import DoctorRequest, DoctorView
@@ -38,7 +38,7 @@ class DoctorSession:
         self.core.intents.add(self._feed.handlers)
         self.files = Files()
         """The files of whoever typed the verb."""
-        self.companion = Channel()
+        self.companion = CompanionChannel()
         """As of a VerbSession."""
         self.observe: Callable[[], None] = lambda: None
         """Gets the newest reports of links of its own; those of a station come by themselves."""

@@ -14,7 +14,7 @@ from groundstation.station.driving.operator import NEUTRAL_LEAD
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.vehicle_state import VehicleState
-from groundstation.verbs.common.channel import Channel
+from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.files import Files
 from groundstation.verbs.session.contact import VehicleContact
@@ -58,7 +58,7 @@ class VerbSession:
         self._contact = contact
         self.files = Files()
         """The files of whoever typed the verb."""
-        self.companion = Channel()
+        self.companion = CompanionChannel()
         """Of a verb that has a companion in the process of the user."""
         self.where = ""
         """The endpoints, for texts."""

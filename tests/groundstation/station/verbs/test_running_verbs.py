@@ -108,7 +108,7 @@ def test_a_demand_ends_with_neutral_when_the_verb_ends() -> None:
     at = ashore.cockpit.now
     ashore.cockpit.run(1.0)
     assert [x for _, x, _ in ashore.cockpit.demands(at)] == [0] * 5
-    assert ashore.verbs.finished
+    assert not ashore.verbs.busy
 
 
 def test_a_demand_of_a_stopped_verb_ends_and_does_not_resume() -> None:

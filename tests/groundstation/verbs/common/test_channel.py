@@ -8,13 +8,13 @@ import pytest
 
 from groundstation.station_socket.verb_run import PIECE, split
 from groundstation.verbs.client.companion import local_companion
-from groundstation.verbs.common.channel import Channel, ChannelEndedError
+from groundstation.verbs.common.channel import ChannelEndedError, CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 
 
 def test_a_large_value_arrives_in_pieces() -> None:
     async def main() -> None:
-        channel, value = Channel(), ["x" * PIECE, {"nan": float("inf")}, b"end"]
+        channel, value = CompanionChannel(), ["x" * PIECE, {"nan": float("inf")}, b"end"]
         pieces = list(split(value))
         assert len(pieces) == 2
         for data, whole in pieces:
@@ -26,7 +26,7 @@ def test_a_large_value_arrives_in_pieces() -> None:
 
 def test_values_arrive_before_the_end() -> None:
     async def main() -> None:
-        channel = Channel()
+        channel = CompanionChannel()
         channel.push(1)
         channel.end()
         assert await channel.receive() == 1
@@ -38,7 +38,7 @@ def test_values_arrive_before_the_end() -> None:
 
 
 def test_a_verb_hears_how_its_companion_has_failed() -> None:
-    async def fail(verb: Channel) -> None:
+    async def fail(verb: CompanionChannel) -> None:
         raise VerbError(ExitCode.PARTLY, f"no room for {await verb.receive()}")
 
     async def main() -> None:
@@ -51,7 +51,7 @@ def test_a_verb_hears_how_its_companion_has_failed() -> None:
 
 
 def test_a_companion_that_fails_behind_its_verb_is_told() -> None:
-    async def fail_late(verb: Channel) -> None:
+    async def fail_late(verb: CompanionChannel) -> None:
         with pytest.raises(ChannelEndedError):
             await verb.receive()
         raise VerbError(ExitCode.PARTLY, "the rest is missing")
