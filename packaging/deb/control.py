@@ -145,7 +145,7 @@ def licence_of(metadata: Message) -> str:
 
 
 def unit(text: str) -> str:
-    """Return a unit that `vehicle systemd-unit` printed, without its advice to write it into /etc by hand."""
+    """Return a unit that `mavhelm vehicle systemd-unit` printed, without its advice to write it into /etc by hand."""
     head = f"# The rover of {CONFIG}. To start it with the computer: systemctl enable --now rover\n\n"
     return head + text[text.index("[Unit]") :]
 

@@ -12,10 +12,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-from tests.animation import LARGEST, PICTURE, ROOT
-from tests.animation.asciicast import Cast, read_cast, write_cast
-from tests.animation.drawing import draw
-from tests.animation.recorder import record
+from tests.extras import needing
+
+with needing("pictures"):
+    from tests.animation import LARGEST, PICTURE, ROOT
+    from tests.animation.asciicast import Cast, read_cast, write_cast
+    from tests.animation.drawing import draw
+    from tests.animation.recorder import record
+
 
 RECORDING = ROOT / "build" / "drive.cast"
 

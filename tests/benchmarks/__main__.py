@@ -12,40 +12,44 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks import (
-    bridge,
-    bridge_stations,
-    calls,
-    cost,
-    document,
-    fleet,
-    fleet_load,
-    fleet_outages,
-    fleet_path,
-    foreign_params,
-    framer,
-    hops,
-    key_to_motor,
-    link_loss,
-    loop_lateness,
-    message_rates,
-    mission,
-    receive_path,
-    recording,
-    replay,
-    screens,
-    serial_key,
-    services,
-    signing,
-    stations,
-    strangers,
-    tenth_core,
-    verb,
-)
-from tests.benchmarks.figures import BenchmarkError, Options
-from tests.benchmarks.pictures import write_pictures
-from tests.benchmarks.run import Benchmark, Run, say
-from tests.recorded import WHOLE_ARDUROVER
+from tests.extras import needing
+
+with needing("test"):
+    from tests.benchmarks import (
+        bridge,
+        bridge_stations,
+        calls,
+        cost,
+        document,
+        fleet,
+        fleet_load,
+        fleet_outages,
+        fleet_path,
+        foreign_params,
+        framer,
+        hops,
+        key_to_motor,
+        link_loss,
+        loop_lateness,
+        message_rates,
+        mission,
+        receive_path,
+        recording,
+        replay,
+        screens,
+        serial_key,
+        services,
+        signing,
+        stations,
+        strangers,
+        tenth_core,
+        verb,
+    )
+    from tests.benchmarks.figures import BenchmarkError, Options
+    from tests.benchmarks.pictures import write_pictures
+    from tests.benchmarks.run import Benchmark, Run, say
+    from tests.recorded import WHOLE_ARDUROVER
+
 
 BENCHMARKS: dict[str, tuple[Benchmark, str]] = {
     "cost": (cost.run, "start-up time, memory and CPU of both programs"),

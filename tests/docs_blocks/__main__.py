@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import subprocess
 import sys
@@ -31,4 +32,9 @@ def main(path: Path) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1])))
+    parser = argparse.ArgumentParser(prog="python -m tests.docs_blocks", description=(__doc__ or "").partition(": ")[2])
+    parser.add_argument("page", type=Path, metavar="PAGE.md")
+    named: Path = parser.parse_args().page
+    if not named.is_file():
+        parser.error(f"{named}: no such file")
+    sys.exit(main(named))

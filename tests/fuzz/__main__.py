@@ -6,19 +6,15 @@ import argparse
 import sys
 from pathlib import Path
 
+from tests.extras import needing
 from tests.fuzz import engine
 from tests.fuzz.campaign import Campaign
 
 
 def main() -> int:
     """Run one target, or all in turn; end with code 1 if an input raises, which is written to the corpus."""
-    try:
+    with needing("test,fuzz"):
         targets = engine.load_targets()
-    except ModuleNotFoundError as error:
-        if error.name != "atheris":
-            raise
-        print("tests.fuzz: the package atheris is missing: pip install -e '.[test,fuzz]'", file=sys.stderr)
-        return 2
     args = _parse(sorted(targets))
     if args.list:
         print(*sorted(targets), sep="\n")

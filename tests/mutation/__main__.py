@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import sys
 import tempfile
 import time
@@ -11,14 +10,17 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-import pytest
+from tests.extras import find, needing
 
-from link.runtime.install_hint import install_command
-from tests.mutation.child import OPTIONS, Examples
-from tests.mutation.mutants import Mutant, build_mutants
-from tests.mutation.results import Outcome, Result, Results
-from tests.mutation.runner import Runner
-from tests.mutation.survivors import load_explanations, unexplained_and_stale
+with needing("test,mutation"):
+    import pytest
+
+    from tests.mutation.child import OPTIONS, Examples
+    from tests.mutation.mutants import Mutant, build_mutants
+    from tests.mutation.results import Outcome, Result, Results
+    from tests.mutation.runner import Runner
+    from tests.mutation.survivors import load_explanations, unexplained_and_stale
+
 
 _VEHICLE_TESTS = (
     "tests/vehicle/drive", "tests/vehicle/safety", "tests/vehicle/commands/test_arming.py",
@@ -63,8 +65,6 @@ DESELECTED = (
 LIMIT = 2.0
 """s of tests to run against a mutant: behaviour that takes longer to test needs a test of its own."""
 
-MISSING = f"the package coverage is missing: {install_command('test,mutation')}"
-
 
 def main() -> int:
     """Run the program; return 1 if survivors and explanations differ, 2 if it cannot run or tests fail unchanged."""
@@ -74,9 +74,7 @@ def main() -> int:
     if args.list:
         print(*map(describe, mutants), sep="\n")
         return 0
-    if importlib.util.find_spec("coverage") is None:  # it is imported in a child only
-        print(f"tests.mutation: {MISSING}", file=sys.stderr)
-        return 2
+    find("test,mutation", ["coverage"])  # it is imported in a child only
     return _run(sorted(mutants, key=lambda mutant: not mutant.function), args)
 
 

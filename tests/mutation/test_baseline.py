@@ -59,7 +59,7 @@ def test_without_coverage_the_program_says_what_to_install() -> None:
     )
     assert (ran.returncode, ran.stdout) == (2, "")
     command = f"{sys.executable} -m pip install 'mavhelm[test,mutation]'"
-    assert ran.stderr == f"tests.mutation: the package coverage is missing: {command}\n"
+    assert ran.stderr == f"the package coverage is missing: {command}\n"
 
 
 def test_a_list_of_mutants_needs_no_coverage() -> None:

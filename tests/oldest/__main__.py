@@ -12,9 +12,13 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-from packaging.requirements import Requirement
+from tests.extras import needing
 
-from tests.oldest.bounds import EXTRAS, TESTS, lower_bounds
+with needing("test"):
+    from packaging.requirements import Requirement
+
+    from tests.oldest.bounds import EXTRAS, TESTS, lower_bounds
+
 
 ROOT = Path(__file__).resolve().parents[2]
 PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "not slow and not e2e and not tmux")

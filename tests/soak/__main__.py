@@ -14,8 +14,11 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tests.soak.soak import Soak
-from tests.soak.virtual import VirtualSoak
+from tests.extras import needing
+
+with needing("test"):
+    from tests.soak.soak import Soak
+    from tests.soak.virtual import VirtualSoak
 
 
 def main() -> int:

@@ -109,9 +109,9 @@ class SigningCommands:
         if self._safety.armed:
             return "refused while armed"
         if not any(secret):
-            return "use 'vehicle key revoke' to remove keys"
+            return "to remove: 'mavhelm vehicle key revoke'"
         if pairing.store.ring.keys and not self._may_add(received):
-            return "refused, use 'vehicle key install'"
+            return "refused: 'mavhelm vehicle key install'"
         return None
 
     def _may_add(self, received: Received) -> bool:

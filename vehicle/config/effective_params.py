@@ -1,4 +1,4 @@
-"""The parameters that a vehicle would use with a configuration file, for `vehicle check` and `motor-test`."""
+"""The parameters that a vehicle would use with a configuration file, for its `check` and `motor-test`."""
 
 from __future__ import annotations
 

@@ -17,11 +17,15 @@ import subprocess
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-from tests.groundstation.ui import frames
-from tests.groundstation.ui.png_palette import to_palette
-from tests.groundstation.ui.replay_picture import replay
-from tests.groundstation.ui.screenshots_connect import connect, files, links
-from tests.groundstation.ui.screenshots_drive import drive, mission, params
+from tests.extras import needing
+
+with needing("test,pictures"):
+    from tests.groundstation.ui import frames
+    from tests.groundstation.ui.png_palette import to_palette
+    from tests.groundstation.ui.replay_picture import replay
+    from tests.groundstation.ui.screenshots_connect import connect, files, links
+    from tests.groundstation.ui.screenshots_drive import drive, mission, params
+
 
 SIZES = ((80, 24), (140, 45))
 

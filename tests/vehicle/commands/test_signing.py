@@ -93,8 +93,8 @@ def test_without_a_folder_for_keys_it_is_refused() -> None:
 def test_a_vehicle_with_keys_takes_no_unsigned_one() -> None:
     store = Store(KeyRing().add(new_key("laptop", Role.SET_UP)))
     before = store.ring
-    assert give(bench_with(store, 0)) == ["Signing: refused, use 'vehicle key install'"]
-    assert give(bench_with(store, 0), bytes(32)) == ["Signing: use 'vehicle key revoke' to remove keys"]
+    assert give(bench_with(store, 0)) == ["Signing: refused: 'mavhelm vehicle key install'"]
+    assert give(bench_with(store, 0), bytes(32)) == ["Signing: to remove: 'mavhelm vehicle key revoke'"]
     assert store.ring == before
 
 

@@ -1,4 +1,4 @@
-"""Rows of `mavhelm vehicle doctor` that judge what `vehicle check` finds: file, motors, accessories, sensors, links."""
+"""Rows of `mavhelm vehicle doctor` that judge what its `check` finds: file, motors, accessories, sensors, links."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ def assert_keys_are_added_by_a_holder_only(capsys: Capture, cable: SerialCable, 
     save_keys(station_key_file(), KeyRing().add(new_key("stranger", Role.SET_UP)))
     refused = run_until_answered(capsys, "sign", "setup", "--unsigned", "-e", cable.two)
     assert refused.code == ExitCode.REFUSED
-    assert "use 'vehicle key install'" in refused.err
+    assert "refused: 'mavhelm vehicle key install'" in refused.err
     save_keys(station_key_file(), mine)
 
 
