@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import math
 import os
 import pty
 import re
@@ -126,6 +127,9 @@ class GroundStation:
     ) -> None:
         """`module`: another one that runs it, with something plugged in."""
         self.screen = b""
+        self.longest_pause = 0.0
+        """s between two writes of keys, the longest since a test has set it to 0."""
+        self._typed_at = math.inf
         self.log = folder / "groundstation.log"
         self._terminal, program = pty.openpty()
         fcntl.ioctl(program, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
@@ -143,6 +147,9 @@ class GroundStation:
     def type(self, keys: str) -> None:
         """Send all of `keys` in one write, as a slow SSH does."""
         os.write(self._terminal, keys.encode())
+        now = time.monotonic()
+        self.longest_pause = max(self.longest_pause, now - self._typed_at)
+        self._typed_at = now
         self.look(0.0)
 
     def hold(self, key: str, until: Callable[[], bool], within: float = PATIENCE) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.input.key_repeat import PRESS_WINDOW
 from groundstation.screens import SCREENS
 from tests.benchmarks.screens import TITLES
 from tests.e2e.programs import LET_GO, Vehicle
@@ -25,6 +26,8 @@ OTHERS = [row for row in SCREENS if row.in_tabs and row.id != "drive"]
 NARROW_TITLES = TITLES | {"charts": "─ 1 speed"}
 """Id of a screen -> what its first picture has at 80x24."""
 HELD = "i"
+TRIES = 5
+"""Rounds through all screens, until no pause between the repeats of the key was that of a new press."""
 
 
 @pytest.fixture
@@ -48,6 +51,27 @@ def drive(terminal: Tmux, vehicle: Vehicle) -> None:
     terminal.until(lambda _: vehicle.at_full(), PATIENCE, holding=HELD)
 
 
+def stands_on_all_screens(terminal: Tmux, vehicle: Vehicle) -> bool:
+    """Show each screen with the key held, then Drive; the wheels must not turn there.
+
+    Return False if there was a pause between two repeats as before a new press: then they may turn.
+    """
+    stood, terminal.longest_pause = 0.0, 0.0
+    for row in OTHERS:
+        terminal.press("C-g", row.digit)  # in one read, as a fast typist's
+        words = (NARROW_TITLES[row.id], "neutral", "! ", " ARMED")
+        terminal.until(lambda screen, words=words: all(each in screen for each in words), PATIENCE, holding=HELD)  # type: ignore[misc]
+        terminal.until(lambda _: vehicle.stands(), PATIENCE, holding=HELD)
+        stood = stood or time.monotonic()
+    terminal.press("C-g", "1")
+    terminal.until(
+        lambda screen: "one is held from before" in screen or vehicle.moved_since(stood), PATIENCE, holding=HELD
+    )
+    pause = terminal.longest_pause
+    assert not vehicle.moved_since(stood) or pause >= PRESS_WINDOW, f"it drives after pauses of {pause:.2f} s at most"
+    return pause < PRESS_WINDOW and not vehicle.moved_since(stood)
+
+
 def test_a_key_held_over_all_screens_drives_on_drive_only(
     tmux: Callable[..., Tmux], rover: Callable[[int], Vehicle]
 ) -> None:
@@ -56,18 +80,12 @@ def test_a_key_held_over_all_screens_drives_on_drive_only(
     vehicle = rover(port)
     terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
     terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
-    drive(terminal, vehicle)
-
-    stood = 0.0
-    for row in OTHERS:
-        terminal.press("C-g", row.digit)  # in one read, as a fast typist's
-        words = (NARROW_TITLES[row.id], "neutral", "! ", " ARMED")
-        terminal.until(lambda screen, words=words: all(each in screen for each in words), PATIENCE, holding=HELD)  # type: ignore[misc]
-        terminal.until(lambda _: vehicle.stands(), PATIENCE, holding=HELD)
-        stood = stood or time.monotonic()
-    terminal.press("C-g", "1")
-    terminal.until(lambda screen: "one is held from before" in screen, PATIENCE, holding=HELD)
-    assert not vehicle.moved_since(stood)
+    for _ in range(TRIES):
+        drive(terminal, vehicle)
+        if stands_on_all_screens(terminal, vehicle):
+            break
+    else:
+        pytest.fail(f"no {TRIES} times without a pause of {PRESS_WINDOW} s in the repeats of the key")
     drive(terminal, vehicle)
 
     terminal.press("C-g", OTHERS[-1].digit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import math
 import os
 import pty
 import re
@@ -40,6 +41,9 @@ class Tmux:
 
     def __init__(self, folder: Path, columns: int, lines: int, *arguments: str) -> None:
         self._socket = str(folder / "tmux")
+        self.longest_pause = 0.0
+        """s between two presses, the longest since a test has set it to 0."""
+        self._pressed_at = math.inf
         program = [sys.executable, "-m", "groundstation", *arguments, "--log-file", str(folder / "station.log")]
         size = ["-x", str(columns), "-y", str(lines)]
         self._run("-f", "/dev/null", "new-session", "-d", *size, f"{shlex.join(program)}; echo EXIT CODE $?; exec cat")
@@ -60,6 +64,9 @@ class Tmux:
     def press(self, *keys: str) -> None:
         """Press keys, by tmux's names."""
         self._run("send-keys", *keys)
+        now = time.monotonic()
+        self.longest_pause = max(self.longest_pause, now - self._pressed_at)
+        self._pressed_at = now
 
     def until(self, condition: Callable[[str], bool], within: float, holding: str | None = None) -> str:
         """Poll until the condition holds for the screen, with a key held meanwhile; return the screen."""
