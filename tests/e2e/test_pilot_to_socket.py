@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -23,6 +25,12 @@ from tests.waits import Patience, until
 pytestmark = pytest.mark.e2e
 
 
+async def soon(condition: Callable[[], bool]) -> None:
+    """Wait a few seconds for an answer that may not come."""
+    with suppress(TimeoutError):
+        await until(condition, 5.0)
+
+
 async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path: Path) -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     client = StationClient.start([endpoint], log_file=tmp_path / "log")
@@ -32,9 +40,12 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
         with on_line(FakeVehicle(), endpoint=endpoint) as vehicle:
             async with app.run_test(size=(80, 24)) as pilot:
                 await until(lambda: app.drive.snapshot.vehicle is not None)
-                await clock.hold(lambda: pilot.press("r"), ended=lambda: vehicle.armed)
-                await until(lambda: vehicle.armed)
-                await until(lambda: app.drive.snapshot.operator.gate_open)
+                patience = Patience()
+                while not app.drive.snapshot.operator.gate_open:
+                    # Again: a screen whose station has been late for a moment counts no hold that began then.
+                    assert not patience.ended
+                    await clock.hold(lambda: pilot.press("r"), ended=lambda: vehicle.armed)
+                    await soon(lambda: app.drive.snapshot.operator.gate_open)
                 pressed = time.monotonic()
 
                 def driven() -> bool:

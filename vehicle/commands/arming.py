@@ -33,6 +33,8 @@ FORWARD_INTERVAL = 3.0
 ANSWER_WITHIN, LEAST_ANSWER, MOST_ANSWER = 10.0, 3.0, 60.0
 """s for which a request for control may be answered, unless its parameter 3 names another time within these limits of
 the specification (development.xml, 32100)."""
+RELEASE_REPEATED_WITHIN = 10.0
+"""s for which a release that is repeated is answered as it was, although another ground station is in control now."""
 _STATIONS = range(256)
 """System ids, and 0."""
 ASKERS_MAX = 8
@@ -51,6 +53,8 @@ class ArmingCommands:
         self._note = context.arming_note
         self._forwarded: tuple[Conversation | None, float] = (None, -math.inf)
         """Who sent the newest REQUEST_OPERATOR_CONTROL that was forwarded, and when."""
+        self._released: tuple[Conversation | None, float] = (None, -math.inf)
+        """Who has released control last, and when."""
         self._asking: dict[int, tuple[CommandRequest, float]] = {}
         """System id of a ground station that was refused control -> its request, and until when it is answered; the
         newest last."""
@@ -194,7 +198,8 @@ class ArmingCommands:
         if self._ownership.driver is None:
             return Result.ACCEPTED
         if not self._ownership.is_driver(request, now):
-            return Result.FAILED
+            return Result.ACCEPTED if self._has_released(request, now) else Result.FAILED
+        self._released = (Conversation.of(request), now)
         asker = self._pop_asker(station if station != request.system else 0, now)
         if asker is not None:
             self._control.take(Conversation.of(asker), now)
@@ -202,6 +207,12 @@ class ArmingCommands:
         self._control.release("gave it up", now)
         self._safety.choose_mode(Mode.HOLD, now)
         return Result.ACCEPTED
+
+    def _has_released(self, request: CommandRequest, now: float) -> bool:
+        """Return whether a former driver repeats its release, because the acknowledgement was lost."""
+        sender, at = self._released
+        repeats = sender == Conversation.of(request) and now - at <= RELEASE_REPEATED_WITHIN
+        return repeats and not self._ownership.has_driver_ids(request)
 
     def _note_asker(self, request: CommandRequest, now: float) -> None:
         """Keep who may be given control: one with other ids than the driver, and a key that may drive."""

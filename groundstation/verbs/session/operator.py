@@ -22,6 +22,9 @@ from link.services.command.client import CommandClient, CommandOutcome
 
 PROOFS_FIRST, FIRST_PERIOD = 5, 0.008
 """Proofs before the first command, and s between them: four of five may get lost."""
+PROVEN_FOR = 0.5
+"""s after these proofs for which commands follow without such proofs again. Our vehicle lets a session take or succeed
+control that was proven in the last second (PROOF_VALID), and where frames get lost four single proofs may be."""
 FRESH_TIME = 0.3
 """s since a time of the vehicle has arrived with which these proofs are sent: one that is older than OPR_ECHO_MAX when
 it is back proves nothing, and where frames get lost the newest may be that old. Our vehicle sends four a second."""
@@ -38,6 +41,8 @@ class VerbOperator:
         self._foreign = False
         self._wanted = False
         self._proofs = 0
+        self._first_left = PROOFS_FIRST
+        self._settled_at = -math.inf
         self._proven_at = -math.inf
         self._stream = DemandStream()
         self._outbox: list[m.Message] = []
@@ -60,10 +65,15 @@ class VerbOperator:
         """Count an input: a key of a script, or the beginning of a demand."""
         self._session.record_input(now)
 
+    def prove_again(self, now: float) -> None:
+        """Begin the first proofs again, if the session was proven and they are older than PROVEN_FOR."""
+        if self.settled and self._proofs and now - self._settled_at > PROVEN_FOR and self.may_prove(now):
+            self._first_left = PROOFS_FIRST
+
     @property
     def settled(self) -> bool:
         """Whether commands may follow: the session is proven, or the vehicle knows no sessions."""
-        return self._foreign or self._state.autopilot in FOREIGN_AUTOPILOTS or self._proofs >= PROOFS_FIRST
+        return self._foreign or self._state.autopilot in FOREIGN_AUTOPILOTS or not self._first_left
 
     @property
     def proves(self) -> bool:
@@ -120,8 +130,7 @@ class VerbOperator:
 
     def _prove(self, now: float) -> None:
         """Prove the session once a time of the vehicle is known: without it a proof proves nothing."""
-        first = self._proofs < PROOFS_FIRST
-        period, age = (FIRST_PERIOD, FRESH_TIME) if first else (IDLE_PROOF_PERIOD, math.inf)
+        period, age = (FIRST_PERIOD, FRESH_TIME) if self._first_left else (IDLE_PROOF_PERIOD, math.inf)
         known = self._state.has_rover_dialect and self._state.boot_time is not None
         if known and now - self._state.boot_time_at <= age and now - self._proven_at >= period and self.may_prove(now):
             self._add_proof(None, now)
@@ -132,4 +141,7 @@ class VerbOperator:
         proof.flags |= OperatorFlag.SCRIPT
         self._proven_at = now
         self._proofs += 1
+        if self._first_left:
+            self._first_left -= 1
+            self._settled_at = now
         self._outbox.append(proof)

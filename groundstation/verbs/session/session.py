@@ -114,7 +114,10 @@ class VerbSession:
             raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {self.where} within {wait:g} s{why}")
 
     async def need_only_vehicle(self, wanted: int | str | None) -> None:
-        """Before the first change: there must be only one, or only one with that name. Raises VerbError."""
+        """Before the first change: there must be only one, or only one with that name. Raises VerbError.
+
+        Then the session is proven again, because listening for others takes a while.
+        """
         if wanted is None:
             await self.hear_all()
             if len(self.core.contacts) > 1:
@@ -125,6 +128,7 @@ class VerbSession:
             if len(same) > 1:
                 text = f"{wanted} are several vehicles: choose one with --vehicle {same[0]}"
                 raise VerbError(ExitCode.USAGE, text)
+        await self._prove_again()
 
     async def hear_all(self, seconds: float = ALONE_AFTER) -> None:
         """Wait until the links were heard for so long, counted from the start; a station has heard them before."""
@@ -137,15 +141,27 @@ class VerbSession:
 
         A vehicle that says neither that it has our dialect nor that it has not is treated as one without.
         """
-        contact, until = self.contact, self.now + SETTLED_WITHIN
+        contact = self.contact
         contact.operator.begin(self.now)
+        await self._settle()
+        if contact.state.has_rover_dialect:
+            await self.wait_for(lambda: contact.state.control.session is not None, DRIVER_WITHIN)
+            await self.wait_for(lambda: not contact.follows, SUCCESSION_WITHIN)
+            await self._prove_again()
+
+    async def _settle(self) -> None:
+        """Wait until the first proofs are sent, or the vehicle is known to have no sessions."""
+        contact, until = self.contact, self.now + SETTLED_WITHIN
         while not (contact.operator.settled or contact.unproven) and self.now < until:
             contact.tick(self.now)  # proofs follow each other faster than PERIOD
             self.flush()
             await self.wait_for(lambda: contact.operator.settled, PROOF_PERIOD)
-        if contact.state.has_rover_dialect:
-            await self.wait_for(lambda: contact.state.control.session is not None, DRIVER_WITHIN)
-            await self.wait_for(lambda: not contact.follows, SUCCESSION_WITHIN)
+
+    async def _prove_again(self) -> None:
+        """Prove a session that was proven: since then its proofs may have been lost."""
+        self.contact.operator.prove_again(self.now)
+        if self.contact.operator.proves:
+            await self._settle()
 
     async def show_neutral(self) -> None:
         """Follow the verb that has armed our vehicle: nothing moves it before the new session has shown neutral."""

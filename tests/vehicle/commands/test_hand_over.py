@@ -10,7 +10,7 @@ from dialects import messages as m
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, Bench, said
-from vehicle.commands.arming import ANSWER_WITHIN
+from vehicle.commands.arming import ANSWER_WITHIN, RELEASE_REPEATED_WITHIN
 
 THIRD = 253
 
@@ -117,6 +117,33 @@ def test_one_that_is_named_and_has_not_asked_gets_nothing() -> None:
     bench.wait(0.1)
     assert bench.mode is Mode.HOLD
     assert bench.newest(m.ControlStatus).gcs_main == 0
+
+
+def test_a_release_repeated_after_a_lost_ack_is_accepted() -> None:
+    bench = driven()
+    assert release(bench) is Result.ACCEPTED
+    bench.wait(0.5, NEUTRAL, system=OTHER)
+    assert release(bench) is Result.ACCEPTED
+    assert driver(bench) == OTHER, "the repetition takes nothing from the new driver"
+    assert (bench.mode, bench.armed) == (Mode.MANUAL, True)
+
+
+def test_a_release_without_asker_is_accepted_again_after_another_took() -> None:
+    bench = Bench()
+    bench.drive()
+    release(bench)
+    assert ask(bench, OTHER) is Result.ACCEPTED
+    assert release(bench) is Result.ACCEPTED
+    assert driver(bench) == OTHER
+
+
+def test_a_late_or_foreign_release_is_no_repetition() -> None:
+    bench = driven()
+    release(bench)
+    assert release(bench, system=THIRD) is Result.FAILED
+    bench.wait(RELEASE_REPEATED_WITHIN + 0.1, NEUTRAL, system=OTHER)
+    assert release(bench) is Result.FAILED
+    assert driver(bench) == OTHER
 
 
 def test_only_the_driver_gives() -> None:
