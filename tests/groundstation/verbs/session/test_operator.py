@@ -30,7 +30,7 @@ class Proving:
         for _ in range(round(seconds / STEP)):
             self.now += STEP
             if round(self.now / STEP) % 25 == 0:
-                self._hear(m.RoverDriveStatus(round(self.now * 1000), 0, 0, 0, 0, 0, 0, 0))
+                self._hear(m.RoverDriveStatus(round(self.now * 1000), 0, 0, 0, [0] * 4, 0, 0, 0))
             self.operator.tick(self._client, self.now, may_query=False)
             sent = [each.message for each in self.operator.messages_to_send()]
             proofs += sum(isinstance(each, m.RoverOperatorPresence) for each in sent)
