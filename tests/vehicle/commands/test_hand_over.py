@@ -128,7 +128,7 @@ def test_a_release_repeated_after_a_lost_ack_is_accepted() -> None:
     assert (bench.mode, bench.armed) == (Mode.MANUAL, True)
 
 
-def test_a_release_without_asker_is_accepted_again_after_another_took() -> None:
+def test_a_release_is_accepted_again_after_another_has_taken() -> None:
     bench = Bench()
     bench.drive()
     release(bench)
