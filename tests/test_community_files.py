@@ -98,7 +98,7 @@ def test_a_bug_comes_with_the_report_of_doctor() -> None:
     [report] = [each for each in parse(GITHUB / "ISSUE_TEMPLATE/bug.yml")["body"] if each.get("id") == "report"]
     assert "doctor --report" in report["attributes"]["description"]
     assert report["validations"] == {"required": True}
-    [action] = VERBS["doctor"].values()
+    [action] = VERBS["doctor"].actions.values()
     assert "--report" in [name for name, _ in action.arguments]
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from groundstation.cli import attach_verb, completion_verb, config_verb, keys_verb, replay_verb, serve_verb
 from groundstation.cli import options as station_options
-from groundstation.cli.verb_help import LOCAL_HELP
+from groundstation.cli.verb_help import LOCAL_VERBS
 from groundstation.verbs import main as verbs_main
 from groundstation.verbs.table import VERBS
 from link.bridge import __main__ as bridge_main
@@ -124,7 +124,7 @@ def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, w
         options.build_parser().parse_intermixed_args(options.join_home_option(words))
     elif not program and words and words[0] in VERBS:
         verbs_main.build_parser(words[0]).parse_args(words[1:])
-    elif not program and words and words[0] in LOCAL_HELP:
+    elif not program and words and words[0] in LOCAL_VERBS:
         LOCAL_PARSERS[words[0]]().parse_args(words[1:])
     elif not program:
         station_options.build_parser()[0].parse_args(words)

@@ -10,11 +10,11 @@ from pathlib import Path
 from groundstation.cli.console import open_screen, terminal_path
 from groundstation.cli.local_verb import UsageError, load_settings, run_local
 from groundstation.cli.options import add_config, add_settings
+from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationClient, StationError
 from groundstation.station_socket.about import describe_stations
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
-from groundstation.verbs.manual.examples import help_examples
 from groundstation.watchdog.terminal_guard import guard_terminal
 from link.runtime.command_line import CommandLineParser
 
@@ -32,7 +32,7 @@ def build_parser() -> CommandLineParser:
     parser = CommandLineParser(
         prog="mavhelm attach",
         description="Open a screen for a station that runs here.",
-        epilog=f"{help_examples('attach')}\n\n{EPILOG}",
+        epilog=f"{local_examples('attach')}\n\n{EPILOG}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("pid", nargs="?", type=int, metavar="PID", help="its process id, where several run")

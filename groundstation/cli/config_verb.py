@@ -12,13 +12,12 @@ import msgspec
 
 from groundstation.cli.local_verb import load_settings
 from groundstation.cli.options import add_config, add_settings
-from groundstation.cli.verb_help import RESERVED
+from groundstation.cli.verb_help import EVERY_VERB, local_examples
 from groundstation.config.config_file import ConfigError, choose_path, read_config
 from groundstation.config.effective import build_keymap, resolve_endpoints
 from groundstation.config.settings import ROWS, format_value
 from groundstation.config.template import build_template
 from groundstation.input.keymap import KeymapError
-from groundstation.verbs.manual.examples import help_examples
 from link.endpoint import EndpointError
 from link.runtime.command_line import CommandLineParser
 
@@ -59,7 +58,7 @@ def _check(options: argparse.Namespace) -> int:
     if not named and not path.exists():
         _print_errors(f"there is no {path}, so the defaults hold; `mavhelm config init` writes one")
         return _Code.DIFFERS
-    read_config(path, RESERVED)
+    read_config(path, EVERY_VERB)
     _print(f"{path}: no mistakes")
     return _Code.DONE
 
@@ -118,7 +117,7 @@ _FORMAT = argparse.RawDescriptionHelpFormatter
 def build_parser() -> CommandLineParser:
     """Return the parser for the arguments behind `config`."""
     parser = CommandLineParser(
-        prog="mavhelm config", epilog=f"{help_examples('config')}\n\n{EPILOG}", formatter_class=_FORMAT
+        prog="mavhelm config", epilog=f"{local_examples('config')}\n\n{EPILOG}", formatter_class=_FORMAT
     )
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=CommandLineParser)
     for name, text in _HELP.items():

@@ -24,15 +24,6 @@ mavhelm VERB --help shows its options, with examples.
 mavhelm --help-all  shows all options, endpoints, keys and exit codes.
 """
 
-GROUPS = {
-    "drive": ("arm", "disarm", "stop", "estop", "drive", "goto", "home", "speed", "mode", "modes", "control"),
-    "vehicle": ("vehicles", "status", "doctor", "param", "motor", "calibrate", "reboot", "vehicle"),
-    "plans": ("mission", "fence", "rally"),
-    "data": ("messages", "watch", "request", "rate", "command", "send", "record", "replay", "export", "log", "ftp"),
-    "links": ("links", "ping", "serve", "attach", "ros1", "ros2", "bridge"),
-    "set-up": ("config", "keys", "sign", "completion"),
-}
-"""What a person wants -> verbs and programs. A new verb is added to one of them."""
 WIDTH = 80
 
 
@@ -47,7 +38,9 @@ class HelpPage(argparse.Action):
 
 def build_page() -> str:
     """Return the page, of lines of at most 80 characters."""
-    groups = [_wrap(title, verbs) for title, verbs in GROUPS.items()]
+    from groundstation.cli.verb_help import group_verbs  # loads the tables of verbs
+
+    groups = [_wrap(group, verbs) for group, verbs in group_verbs()]
     return PAGE.format(groups="\n".join([*groups, "", _wrap("endpoint", (each.syntax for each in SCHEMES.values()))]))
 
 

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 from groundstation.cli.options import given_settings
-from groundstation.cli.verb_help import RESERVED
+from groundstation.cli.reserved import RESERVED
 from groundstation.client import StationError
 from groundstation.config.config_file import ConfigError
 from groundstation.config.effective import Effective, load_config, merge
@@ -41,6 +41,12 @@ def report_mistakes(run: Callable[[], int], word: str = "") -> int:
         sys.stderr.writelines(f"mavhelm: {problem}\n" for problem in error.problems)
     except (UsageError, EndpointError, KeymapError, StationError) as error:
         is_word = isinstance(error, EndpointError) and repr(word) in str(error)
-        hint = describe_word(word, RESERVED) if is_word else None
+        hint = _describe_word(word) if is_word else None
         sys.stderr.write(f"mavhelm: {hint or error}\n")
     return 2
+
+
+def _describe_word(word: str) -> str | None:
+    from groundstation.cli.verb_help import EVERY_VERB  # loads the tables of verbs
+
+    return describe_word(word, EVERY_VERB)

@@ -6,7 +6,6 @@ import contextlib
 import sys
 from collections.abc import Sequence
 
-from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
 from groundstation.verbs.manual.mavproxy_words import describe_action
 from link.runtime import startup_gc, stdio, without_openssl
 
@@ -35,13 +34,17 @@ def _run(arguments: Sequence[str]) -> int:
     if hint := describe_action(arguments):
         print(f"mavhelm: {hint}", file=sys.stderr)
         return 2
-    if verb in VERB_HELP:
-        without_openssl.load()
-        from groundstation.verbs.main import run as run_verb  # loads the dialect, which the screen does without
+    if verb.isalnum():  # it may be a verb; the screen of an endpoint does without the table
+        from groundstation.cli.verb_help import LOCAL_VERBS
+        from groundstation.verbs.table import VERBS
 
-        return run_verb(arguments)
-    if verb in LOCAL_HELP:
-        return _run_local(verb, arguments[1:])
+        if verb in VERBS:
+            without_openssl.load()
+            from groundstation.verbs.main import run as run_verb  # loads the dialect, which the screen does without
+
+            return run_verb(arguments)
+        if verb in LOCAL_VERBS:
+            return _run_local(verb, arguments[1:])
     if PLAIN in arguments:
         from groundstation.cli.plain import run as run_plain
 
@@ -71,7 +74,11 @@ def _run_screen(arguments: Sequence[str]) -> int:
 def _verb_first(arguments: Sequence[str]) -> Sequence[str]:
     """Return the arguments with --json and -q behind the verb, where its parser takes them."""
     flags = next((at for at, each in enumerate(arguments) if each not in FLAGS), 0)
-    return [*arguments[flags:], *arguments[:flags]] if flags and arguments[flags] in VERB_HELP else arguments
+    if not flags:
+        return arguments
+    from groundstation.verbs.table import VERBS
+
+    return [*arguments[flags:], *arguments[:flags]] if arguments[flags] in VERBS else arguments
 
 
 def _run_local(verb: str, arguments: Sequence[str]) -> int:
@@ -88,8 +95,9 @@ def _run_local(verb: str, arguments: Sequence[str]) -> int:
         from groundstation.cli.serve_verb import run
     else:
         from groundstation.cli.completion_verb import run as run_completion
+        from groundstation.cli.verb_help import EVERY_VERB
 
-        return run_completion(arguments, {**VERB_HELP, **LOCAL_HELP, **PROGRAM_HELP})
+        return run_completion(arguments, {name: verb.help for name, verb in EVERY_VERB.items()})
     return run(arguments)
 
 

@@ -10,13 +10,12 @@ from typing import Any
 import msgspec
 
 from groundstation.cli.help_page import HelpPage
-from groundstation.cli.verb_help import verb_help
 from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.config.settings import ROWS, SettingRow, Settings
 from link.endpoint import endpoint_help
 from link.runtime.command_line import CommandLineParser
 
-EXAMPLES = f"""\
+_EPILOG = """\
 examples:
   mavhelm --sitl                     start a simulated rover and drive it
   mavhelm                            choose what to connect to: vehicles heard, recent endpoints, serial ports
@@ -34,10 +33,10 @@ Keys drive on the Drive screen only. F6 lists all alerts and messages, F3 every 
 Ctrl-G goes to the other screens, Escape back.
 
 verbs, which open no screen (mavhelm VERB --help):
-{verb_help()}
+{verbs}
 
 endpoints:
-{endpoint_help()}
+{endpoints}
 
 key map file (--keys my.toml): replaces the keys of the actions it names
   base = "standard"            # or "teleop"
@@ -76,19 +75,35 @@ class _Version(argparse.Action):
         parser.exit()
 
 
+class _FullHelp(argparse.Action):
+    """Prints all options, verbs and endpoints. Loading the tables of verbs takes a while, so only here."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print the help and exit."""
+        parser.epilog = build_epilog()
+        parser.print_help()
+        parser.exit()
+
+
+def build_epilog() -> str:
+    """Return what follows the options in --help-all."""
+    from groundstation.cli.verb_help import verb_help
+
+    return _EPILOG.format(verbs=verb_help(), endpoints=endpoint_help())
+
+
 def build_parser() -> tuple[CommandLineParser, list[str]]:
     """Return the parser and the names of all options."""
     parser = CommandLineParser(
         prog="mavhelm",
         description="Drive a MAVLink rover from the terminal.",
-        epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         add_help=False,
     )
     add = parser.add_argument
     actions = [
         add("-h", "--help", action=HelpPage, nargs=0, help="show a page of help and exit"),
-        add("--help-all", action="help", help="show this help with all options and exit"),
+        add("--help-all", action=_FullHelp, nargs=0, help="show this help with all options and exit"),
         add("endpoints", nargs="*", metavar="ENDPOINT|NAME",
             help=f"where vehicles are, or a name of the config file (default: {DEFAULT_ENDPOINT})"),
         add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station"),

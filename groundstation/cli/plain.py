@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator, Sequence
 
 from groundstation.cli.local_verb import report_mistakes
-from groundstation.cli.verb_help import RESERVED
+from groundstation.cli.verb_help import EVERY_VERB
 from groundstation.station_socket.about import ask_about
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
@@ -85,7 +85,7 @@ def _usual_endpoints(options: Sequence[str]) -> list[str]:
     from groundstation.verbs.session.endpoints import choose_endpoints
 
     config = dict(zip(("option", "value"), _option(options, "--config"), strict=False)).get("value")
-    return choose_endpoints(None, config, os.environ, note=_note, reserved=RESERVED)
+    return choose_endpoints(None, config, os.environ, note=_note, reserved=EVERY_VERB)
 
 
 def _note(text: str) -> None:

@@ -10,8 +10,8 @@ from pathlib import Path
 from groundstation.cli.console import docs_file, import_screen, open_screen, terminal_path
 from groundstation.cli.local_verb import load_settings, run_local
 from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_settings
+from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationClient
-from groundstation.verbs.manual.examples import help_examples
 from groundstation.watchdog.terminal_guard import guard_terminal
 from link.runtime.command_line import CommandLineParser
 
@@ -35,7 +35,7 @@ def build_replay_parser() -> CommandLineParser:
     parser = CommandLineParser(
         prog="mavhelm replay",
         description="Show a telemetry log in the screens.",
-        epilog=f"{help_examples('replay')}\n\n{EPILOG}",
+        epilog=f"{local_examples('replay')}\n\n{EPILOG}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="telemetry log (.tlog)")

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from groundstation.cli.console import docs_file, find_log_file, record_options
 from groundstation.cli.local_verb import UsageError, load_settings, run_local
 from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_settings, option_words
+from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationError
 from groundstation.config.effective import resolve_endpoints
 from groundstation.config.settings import Settings
 from groundstation.station_socket.folder import FolderError, make_folder
-from groundstation.verbs.manual.examples import help_examples
 from groundstation.web.launch import DEFAULT_PORT, WebLaunch, missing_package
 from link.runtime.command_line import CommandLineParser
 
@@ -39,7 +39,7 @@ def build_parser() -> CommandLineParser:
     parser = CommandLineParser(
         prog="mavhelm serve",
         description="Run a station that verbs and `mavhelm attach` use.",
-        epilog=f"{help_examples('serve')}\n\n{EPILOG}",
+        epilog=f"{local_examples('serve')}\n\n{EPILOG}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("endpoints", nargs="*", metavar="ENDPOINT|NAME", help="where vehicles are")

@@ -1,67 +1,60 @@
-"""The verbs of `mavhelm`, for --help. groundstation/verbs/table.py has what they do."""
+"""Verbs without a vehicle, the other programs of `mavhelm`, and the help of all verbs.
+
+groundstation/verbs/table.py has the verbs that do something with a vehicle.
+"""
 
 from __future__ import annotations
 
-VERB_HELP = {
-    "status": "print the state of a vehicle",
-    "vehicles": "print the vehicles that are heard",
-    "links": "print what arrives on each link",
-    "arm": "arm a vehicle",
-    "disarm": "disarm and wait for confirmation",
-    "stop": "change to HOLD and wait for confirmation",
-    "estop": "stop the motors and lock them; --clear releases them",
-    "control": "show, request, release or give control of a vehicle",
-    "goto": "drive to a place",
-    "home": "drive home",
-    "speed": "set the speed of modes that drive by themselves",
-    "drive": "drive by hand, for a time or as a script of keys says",
-    "messages": "print which messages arrive, and their rates",
-    "watch": "print the values of a message, until a condition holds",
-    "send": "send a message, once or at a rate",
-    "record": "record what is heard into a telemetry log",
-    "command": "send a MAV_CMD",
-    "request": "request one message and print it",
-    "rate": "set how often a message comes",
-    "ping": "measure round trips to a vehicle",
-    "param": "get, set, save, load, diff, store or reset parameters of a vehicle",
-    "mission": "show, get, put, check or clear the mission; start, pause or jump",
-    "fence": "show, get, put, check or clear the fence; on or off",
-    "rally": "show, get, put, check or clear the rally points",
-    "modes": "print the modes of the vehicle",
-    "mode": "change the mode",
-    "reboot": "restart the vehicle",
-    "doctor": "print why the vehicle cannot be driven",
-    "motor": "turn one motor of a disarmed vehicle",
-    "calibrate": "calibrate gyros, level, pressure, compass or RC sticks",
-    "ftp": "ls, get, put, rm or crc files on the vehicle",
-    "log": "list, get or erase the logs on the vehicle",
-    "sign": "new, show, install, setup, list, use or forget: keys for MAVLink signing",
-    "ros1": "be a node of ROS 1: /command and /cmd_vel drive, telemetry is published",
-    "ros2": "be a node of ROS 2: /cmd_vel drives, telemetry is published",
-    "export": "write a telemetry log as MCAP, CSV, GPX, KML, JSON lines, or a part of it",
-}
-"""Verb -> what it does with a vehicle."""
+from collections.abc import Iterator, Mapping
 
-LOCAL_HELP = {
-    "config": "check, show, init or path of the config file",
-    "attach": "drive or watch with a station that runs: after an SSH drop, or as a second screen",
-    "serve": "run a station without a screen, for verbs, `mavhelm attach` and browsers",
-    "keys": "show what this terminal sends for keys",
-    "replay": "show a telemetry log in the screens, with a timeline and search",
-    "completion": "print a script that completes verbs in bash, zsh or fish",
-}
-"""Verb without a vehicle -> what it does."""
+from groundstation.verbs.table import VERBS
+from groundstation.verbs.verb import Example, Group, Verb, format_examples
 
-PROGRAM_HELP = {
-    "vehicle": "be a rover: the daemon with motors, or its simulator",
-    "bridge": "join links; run the router of a fleet",
-}
-"""Other program of `mavhelm` (link/program.py) -> what it does."""
+LOCAL_VERBS: dict[str, Verb] = {
+    "config": Verb(Group.SETUP, (
+        Example("mavhelm config init", "write a file with all settings as comments"),
+        Example("mavhelm config show", "what holds, and where it comes from"),
+    ), {}, "check, show, init or path of the config file"),
+    "attach": Verb(Group.LINKS, (
+        Example("mavhelm attach", "the screen again, after SSH has dropped"),
+    ), {}, "drive or watch with a station that runs: after an SSH drop, or as a second screen"),
+    "serve": Verb(Group.LINKS, (
+        Example("mavhelm serve --headless udpin:0.0.0.0:14550", "a station for verbs and `attach`"),
+        Example("mavhelm serve --web", "the screens in a browser of this machine"),
+    ), {}, "run a station without a screen, for verbs, `mavhelm attach` and browsers"),
+    "keys": Verb(Group.SETUP, (
+        Example("mavhelm keys", "q ends it"),
+    ), {}, "show what this terminal sends for keys"),
+    "replay": Verb(Group.DATA, (
+        Example("mavhelm replay flight.tlog", "a telemetry log in the screens"),
+    ), {}, "show a telemetry log in the screens, with a timeline and search"),
+    "completion": Verb(Group.SETUP, (
+        Example("mavhelm completion fish | source", "until the shell ends"),
+    ), {}, "print a script that completes verbs in bash, zsh or fish"),
+}  # fmt: skip
+"""Verb without a vehicle -> its row; groundstation/cli/main.py runs it."""
 
-RESERVED = frozenset({**VERB_HELP, **LOCAL_HELP, **PROGRAM_HELP})
-"""What cannot be the name of an endpoint."""
+PROGRAMS: dict[str, Verb] = {
+    "vehicle": Verb(Group.VEHICLE, (), {}, "be a rover: the daemon with motors, or its simulator"),
+    "bridge": Verb(Group.LINKS, (), {}, "join links; run the router of a fleet"),
+}
+"""Other program of `mavhelm` (link/program.py) -> its row."""
+
+EVERY_VERB: Mapping[str, Verb] = {**VERBS, **LOCAL_VERBS, **PROGRAMS}
+"""Verb or program -> its row. No endpoint may have such a name."""
+
+
+def group_verbs() -> Iterator[tuple[Group, list[str]]]:
+    """Yield each heading of --help with its verbs and programs."""
+    for group in Group:
+        yield group, [name for name, verb in EVERY_VERB.items() if verb.group is group]
 
 
 def verb_help() -> str:
-    """Return the verbs as lines for --help."""
-    return "\n".join(f"  mavhelm {name:<10} {text}" for name, text in {**VERB_HELP, **LOCAL_HELP}.items())
+    """Return the verbs as lines for --help-all."""
+    return "\n".join(f"  mavhelm {name:<10} {verb.help}" for name, verb in {**VERBS, **LOCAL_VERBS}.items())
+
+
+def local_examples(verb: str) -> str:
+    """Return the examples of a verb without a vehicle as lines for its --help."""
+    return format_examples(LOCAL_VERBS[verb].examples)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from typing import Any
 
 import msgspec
@@ -28,7 +28,7 @@ Problem = tuple[tuple[str, ...], str]
 """The key, table by table, and the line for the user without the place."""
 
 
-def find_problems(values: Mapping[str, Any], reserved: Collection[str]) -> Iterator[Problem]:
+def find_problems(values: Mapping[str, Any], reserved: Container[str]) -> Iterator[Problem]:
     """Yield every mistake; no endpoint may have one of the names in `reserved`."""
     for name, value in values.items():
         if name not in ROWS:
@@ -45,7 +45,7 @@ def find_problems(values: Mapping[str, Any], reserved: Collection[str]) -> Itera
     yield from _together(values)
 
 
-def _entry_problems(table: str, key: str, value: Any, reserved: Collection[str]) -> list[str]:
+def _entry_problems(table: str, key: str, value: Any, reserved: Container[str]) -> list[str]:
     """Return the mistakes in one entry of a table. TOML takes each line below [table] as an entry of it."""
     found = list(TABLES[table](key, value, reserved))
     return [f"{key} is a setting: move its line above [{table}]"] if found and key in ROWS else found
@@ -101,7 +101,7 @@ def _open_problems(value: str | list[str], endpoints: Any) -> Iterator[str]:
             yield f"no name of [endpoints]: {text!r}; {suggest(text, endpoints)}" if known else str(error)
 
 
-def _endpoint_problems(name: str, value: Any, reserved: Collection[str]) -> Iterator[str]:
+def _endpoint_problems(name: str, value: Any, reserved: Container[str]) -> Iterator[str]:
     if not NAME.fullmatch(name):
         yield "a name has letters, digits, - _ . only, and begins with a letter or digit"
     if name in reserved:
@@ -116,7 +116,7 @@ def _endpoint_problems(name: str, value: Any, reserved: Collection[str]) -> Iter
         yield str(error)
 
 
-def _group_problems(name: str, value: Any, reserved: Collection[str]) -> Iterator[str]:
+def _group_problems(name: str, value: Any, reserved: Container[str]) -> Iterator[str]:
     if not GROUP_NAME.fullmatch(name):
         yield "a name has letters, digits, - _ . only, and begins with a letter"
     try:
@@ -127,7 +127,7 @@ def _group_problems(name: str, value: Any, reserved: Collection[str]) -> Iterato
         yield str(error)
 
 
-def _key_problems(action: str, value: Any, reserved: Collection[str]) -> Iterator[str]:
+def _key_problems(action: str, value: Any, reserved: Container[str]) -> Iterator[str]:
     try:
         parse_bindings({action: value})
     except KeymapError as error:
@@ -141,11 +141,11 @@ def _keymap_problems(name: str) -> Iterator[str]:
         yield str(error)
 
 
-def _pad_problems(name: str, value: Any, reserved: Collection[str]) -> Iterator[str]:
+def _pad_problems(name: str, value: Any, reserved: Container[str]) -> Iterator[str]:
     yield from find_pad_problems(name, value)
 
 
-TABLES: dict[str, Callable[[str, Any, Collection[str]], Iterator[str]]] = {
+TABLES: dict[str, Callable[[str, Any, Container[str]], Iterator[str]]] = {
     "endpoints": _endpoint_problems,
     "groups": _group_problems,
     "keys": _key_problems,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Container, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +63,7 @@ def choose_path(option: str | None, environment: Mapping[str, str]) -> tuple[Pat
     return (Path(os.path.expanduser(named)), True) if named else (default_path(), False)
 
 
-def read_config(path: Path, reserved: Collection[str] = ()) -> ConfigFile:
+def read_config(path: Path, reserved: Container[str] = ()) -> ConfigFile:
     """Read the file; no endpoint may have one of the names in `reserved`. Raises ConfigError."""
     try:
         text = read_text(path, MAX_SIZE)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Container, Mapping, Sequence
 from typing import Any
 
 import msgspec
@@ -24,9 +24,7 @@ class Effective(msgspec.Struct, frozen=True):
     """Setting -> where its value is from; a setting that is missing has its default."""
 
 
-def load_config(
-    option: str | None, environment: Mapping[str, str], reserved: Collection[str] = ()
-) -> ConfigFile | None:
+def load_config(option: str | None, environment: Mapping[str, str], reserved: Container[str] = ()) -> ConfigFile | None:
     """Return the file that --config or MAVHELM_CONFIG names, or the user's own if there is one. Raises ConfigError."""
     path, named = choose_path(option, environment)
     return read_config(path, reserved) if named or path.exists() else None

@@ -132,8 +132,8 @@ def _rules(helps: Mapping[str, str]) -> Iterator[str]:
 def _verb_cases(helps: Mapping[str, str]) -> Iterator[str]:
     """Yield one case for each verb, inside it one for each action."""
     for verb in helps:
-        actions = VERBS.get(verb)
-        if actions is None:
+        actions = VERBS[verb].actions if verb in VERBS else {}
+        if not actions:
             if verb in LOCAL:
                 yield f'        {verb}) known="{" ".join(LOCAL[verb])}" ;;'
         elif ONLY in actions:
@@ -179,7 +179,7 @@ def _fish_lines(helps: Mapping[str, str]) -> Iterator[str]:
             yield f"complete -c mavhelm -n {_quote(chosen)} -a {_quote(' '.join(LOCAL[verb]))}"
         elif verb not in VERBS:
             yield from _fish_file(chosen)
-        actions = VERBS.get(verb, {})
+        actions = VERBS[verb].actions if verb in VERBS else {}
         for name, action in actions.items():
             if name != ONLY:
                 first = f"{chosen}; and not __fish_seen_subcommand_from {' '.join(actions)}"
@@ -283,8 +283,8 @@ _OTHER_OPTIONS = {
 }
 _OWN_OPTIONS = {
     name: settings
-    for actions in VERBS.values()
-    for action in actions.values()
+    for verb in VERBS.values()
+    for action in verb.actions.values()
     for name, settings in action.arguments
     if name.startswith("--") and settings.get("action") != "store_true"
 }

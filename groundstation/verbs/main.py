@@ -29,11 +29,11 @@ from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.manual.examples import help_examples
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
 from groundstation.verbs.table import VERBS
+from groundstation.verbs.verb import format_examples
 from link.endpoint import EndpointError
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
@@ -108,7 +108,7 @@ def run(arguments: Sequence[str]) -> int:
 
 def choose_action(verb: str, options: argparse.Namespace) -> VerbAction:
     """Return the action that the options name."""
-    action = VERBS[verb][options.action]
+    action = VERBS[verb].actions[options.action]
     if action.only_reads(options):
         action = replace(action, watches=True, takes_part=False, shows_neutral=False)
     return action
@@ -269,14 +269,17 @@ def _cancel_on_signals(caught: list[int]) -> None:
 
 def build_parser(verb: str, kind: type[CommandLineParser] = CommandLineParser) -> CommandLineParser:
     """Return the parser for the arguments behind a verb."""
-    parser = kind(prog=f"mavhelm {verb}", epilog=f"{help_examples(verb)}\n\n{EPILOG}", formatter_class=_HELP)
-    if ONLY in VERBS[verb]:
-        _add_arguments(parser, VERBS[verb][ONLY])
+    row = VERBS[verb]
+    epilog = f"{format_examples(row.examples)}\n\n{EPILOG}"
+    parser = kind(prog=f"mavhelm {verb}", epilog=epilog, formatter_class=_HELP)
+    if ONLY in row.actions:
+        _add_arguments(parser, row.actions[ONLY])
         parser.set_defaults(action=ONLY)
         return parser
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=kind)
-    for name, action in VERBS[verb].items():
-        epilog = f"{help_examples(verb, name)}\n\n{EPILOG}"
+    for name, action in row.actions.items():
+        examples = [each for each in row.examples if each.command.split()[2] == name]
+        epilog = f"{format_examples(examples)}\n\n{EPILOG}"
         known = actions.add_parser(name, aliases=action.aliases, help=action.help, epilog=epilog, formatter_class=_HELP)
         known.set_defaults(action=name)  # also for an alias
         _add_arguments(known, action)

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from importlib import import_module
 
 from groundstation.cli import options as station_options
-from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
+from groundstation.cli.verb_help import LOCAL_VERBS, PROGRAMS
 from groundstation.verbs.main import build_parser as build_verb_parser
-from groundstation.verbs.manual.examples import AUTOPILOT_EXAMPLES, EXAMPLES
+from groundstation.verbs.table import VERBS
 from link.bridge.__main__ import build_parser as build_bridge_parser
 from manpages.roff import Page
 from vehicle.cli import options as vehicle_options
@@ -25,15 +25,16 @@ BUILDERS = {"replay": "build_replay_parser"}
 def build_pages() -> Iterator[Page]:
     """Yield every page."""
     parser, _ = station_options.build_parser()
-    verbs = [f"{STATION}-{verb}" for verb in (*VERB_HELP, *LOCAL_HELP)]
+    parser.epilog = station_options.build_epilog()
+    verbs = [f"{STATION}-{verb}" for verb in (*VERBS, *LOCAL_VERBS)]
     yield Page(STATION, "drive a MAVLink vehicle from a terminal", parser, (), [VEHICLE, BRIDGE, *verbs])
-    for verb, summary in VERB_HELP.items():
-        examples = [row for row in (*EXAMPLES, *AUTOPILOT_EXAMPLES) if row[0].split()[1] == verb]
-        yield Page(f"{STATION}-{verb}", summary, build_verb_parser(verb), examples, [STATION])
-    for verb, summary in LOCAL_HELP.items():
+    for verb, row in VERBS.items():
+        examples = [(each.command, each.note) for each in row.examples]
+        yield Page(f"{STATION}-{verb}", row.help, build_verb_parser(verb), examples, [STATION])
+    for verb, row in LOCAL_VERBS.items():
         build_parser = getattr(import_module(f"groundstation.cli.{verb}_verb"), BUILDERS.get(verb, "build_parser"))
-        yield Page(f"{STATION}-{verb}", summary, build_parser(), (), [STATION])
-    yield Page(BRIDGE, PROGRAM_HELP["bridge"], build_bridge_parser(), (), [STATION])
+        yield Page(f"{STATION}-{verb}", row.help, build_parser(), (), [STATION])
+    yield Page(BRIDGE, PROGRAMS["bridge"].help, build_bridge_parser(), (), [STATION])
     names = [f"{VEHICLE}-{name}" for name in SUBCOMMANDS]
     yield Page(VEHICLE, "control the motors of a rover over MAVLink", vehicle_options.build_parser(), (), names)
     for name, subcommand in SUBCOMMANDS.items():

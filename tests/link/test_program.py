@@ -7,8 +7,10 @@ import sys
 
 import pytest
 
-from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
+from groundstation.cli.verb_help import LOCAL_VERBS
+from groundstation.cli.verb_help import PROGRAMS as PROGRAM_ROWS
 from groundstation.verbs.completion import LOCAL
+from groundstation.verbs.table import VERBS
 from link.bridge.__main__ import SUBCOMMANDS as OF_BRIDGE
 from link.program import PROGRAMS
 from vehicle.cli.subcommands import SUBCOMMANDS as OF_VEHICLE
@@ -24,8 +26,8 @@ def imported(*words: str) -> set[str]:
 
 
 def test_each_program_is_in_the_help_and_no_verb_has_its_name() -> None:
-    assert PROGRAMS.keys() == PROGRAM_HELP.keys()
-    assert not PROGRAMS.keys() & (VERB_HELP | LOCAL_HELP).keys()
+    assert PROGRAMS.keys() == PROGRAM_ROWS.keys()
+    assert not PROGRAMS.keys() & (VERBS | LOCAL_VERBS).keys()
 
 
 def test_shells_complete_the_subcommands_of_each_program() -> None:

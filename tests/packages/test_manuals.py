@@ -11,7 +11,8 @@ import pytest
 from manpages.pages import build_pages
 from manpages.roff import Edition, Page, build, escape
 
-from groundstation.cli.verb_help import LOCAL_HELP, VERB_HELP
+from groundstation.cli.verb_help import LOCAL_VERBS
+from groundstation.verbs.table import VERBS
 from vehicle.cli.subcommands import SUBCOMMANDS
 
 EDITION = Edition("0.1.0", "2026-11-27")
@@ -24,7 +25,7 @@ def _wide_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_every_verb_and_subcommand_has_a_page() -> None:
-    verbs = {f"mavhelm-{verb}" for verb in (*VERB_HELP, *LOCAL_HELP)}
+    verbs = {f"mavhelm-{verb}" for verb in (*VERBS, *LOCAL_VERBS)}
     assert PAGES.keys() == {"mavhelm", "vehicle", "mavhelm-bridge"} | verbs | {
         f"vehicle-{name}" for name in SUBCOMMANDS
     }

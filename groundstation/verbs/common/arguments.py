@@ -12,6 +12,9 @@ from link.services.param.float32 import is_float32
 
 Argument = tuple[str, dict[str, Any]]
 """Name and settings for argparse."""
+FILE: Argument = ("file", {"metavar": "FILE"})
+YES: Argument = ("--yes", {"action": "store_true", "help": "overwrite the file"})
+
 LONGEST = 86_400.0
 """s; a day."""
 SLOWEST, FASTEST = 0.001, 200

@@ -66,7 +66,7 @@ def parse_line(text: str, modes: Collection[str] = ()) -> ParsedLine:
     _refuse_elsewhere(verb)
     options = build_parser(verb, LineParser).parse_args(words[1:])
     name = f"{verb} {options.action}".strip()
-    rule, action = LINE_RULES.get(name, IN_A_SHELL), VERBS[verb][options.action]
+    rule, action = LINE_RULES.get(name, IN_A_SHELL), VERBS[verb].actions[options.action]
     if rule.elsewhere:
         raise VerbError(ExitCode.USAGE, f"{name}: {rule.elsewhere}")
     if any(getattr(options, each) for each in FOR_SHELLS):
@@ -90,6 +90,6 @@ def _split(text: str) -> list[str]:
 
 def _refuse_elsewhere(verb: str) -> None:
     """Name the screen at once, before the arguments, where no action of the verb runs here."""
-    rules = [LINE_RULES.get(f"{verb} {action}".strip(), IN_A_SHELL) for action in VERBS[verb]]
+    rules = [LINE_RULES.get(f"{verb} {action}".strip(), IN_A_SHELL) for action in VERBS[verb].actions]
     if all(rule.elsewhere for rule in rules):
         raise VerbError(ExitCode.USAGE, f"{verb}: {rules[0].elsewhere}")

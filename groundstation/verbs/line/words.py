@@ -26,8 +26,8 @@ def complete(text: str, services: VehicleServices | None) -> tuple[str, ...]:
 
 def _candidates(before: Sequence[str], services: VehicleServices | None) -> Iterable[str]:
     if not before:
-        return [verb for verb, actions in VERBS.items() if any(_runs(verb, action) for action in actions)]
-    actions = VERBS.get(before[0], {})
+        return [verb for verb, row in VERBS.items() if any(_runs(verb, action) for action in row.actions)]
+    actions = VERBS[before[0]].actions if before[0] in VERBS else {}
     if ONLY in actions:
         return _arguments(actions[ONLY], len(before) - 1, services)
     if len(before) == 1:

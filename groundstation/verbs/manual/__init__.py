@@ -1,1 +1,1 @@
-"""Help texts of the verbs: examples, words of MAVProxy, shells."""
+"""Words of MAVProxy, shells."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from groundstation.config.defaults import DEFAULT_ENDPOINT
@@ -34,7 +34,7 @@ def choose_endpoints(
     environment: Mapping[str, str],
     recent: RecentFile | None = None,
     note: Callable[[str], None] = lambda _: None,
-    reserved: Collection[str] = (),
+    reserved: Container[str] = (),
 ) -> list[str]:
     """Return the endpoints of -e, of MAVHELM_ENDPOINT, of the config file, or the one used last.
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from groundstation.cli.help_page import GROUPS, WIDTH, build_page
-from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
-from groundstation.verbs.action import ONLY
-from groundstation.verbs.manual.examples import help_examples
+from groundstation.cli.help_page import WIDTH, build_page
+from groundstation.cli.verb_help import EVERY_VERB, LOCAL_VERBS, group_verbs, local_examples
 from groundstation.verbs.table import VERBS
 from link.endpoint import SCHEMES
 
 
 def test_every_verb_and_program_is_in_one_group() -> None:
-    grouped = [verb for verbs in GROUPS.values() for verb in verbs]
-    assert sorted(grouped) == sorted([*VERB_HELP, *LOCAL_HELP, *PROGRAM_HELP])
+    grouped = [verb for _, verbs in group_verbs() for verb in verbs]
+    assert sorted(grouped) == sorted(EVERY_VERB)
+    assert all(f" {verb}" in build_page() for verb in EVERY_VERB)
 
 
 def test_the_page_fits_in_a_terminal_of_80_by_24() -> None:
@@ -23,6 +22,7 @@ def test_the_page_fits_in_a_terminal_of_80_by_24() -> None:
 
 
 def test_every_verb_and_action_has_an_example() -> None:
-    words = [(verb, "" if name == ONLY else name) for verb, actions in VERBS.items() for name in actions]
-    words += [(verb, "") for verb in LOCAL_HELP]
-    assert [each for each in words if f"mavhelm {' '.join(each).strip()}" not in help_examples(*each)] == []
+    words = [f"{verb} {action}".strip() for verb, row in VERBS.items() for action in row.actions]
+    shown = {each.command for row in EVERY_VERB.values() for each in row.examples}
+    assert [each for each in words if not any(command.startswith(f"mavhelm {each}") for command in shown)] == []
+    assert all(f"mavhelm {verb}" in local_examples(verb) for verb in LOCAL_VERBS)

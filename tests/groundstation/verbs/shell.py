@@ -15,12 +15,12 @@ from typing import Self
 
 import pytest
 
-from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
+from groundstation.cli.verb_help import EVERY_VERB
 from groundstation.verbs.completion import build_script
 from tests.waits import PATIENCE
 
 PROGRAM = Path(sys.executable).parent / "mavhelm"
-HELPS = {**VERB_HELP, **LOCAL_HELP, **PROGRAM_HELP}
+HELPS = {name: verb.help for name, verb in EVERY_VERB.items()}
 ASK = """
 COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
 _mavhelm; printf '%s\\n' "${{COMPREPLY[@]}}"

@@ -60,8 +60,8 @@ def test_a_person_types_and_presses_tab(shell: str, tmp_path: Path) -> None:
 
 
 def test_every_proposed_option_exists(capsys: pytest.CaptureFixture[str]) -> None:
-    for verb, actions in VERBS.items():
-        for name, action in actions.items():
+    for verb, row in VERBS.items():
+        for name, action in row.actions.items():
             with pytest.raises(SystemExit):
                 build_parser(verb).parse_args([*([] if name == ONLY else [name]), "--help"])
             text = capsys.readouterr().out

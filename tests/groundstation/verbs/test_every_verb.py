@@ -26,8 +26,8 @@ from tests.e2e.relay import Relay
 from tests.fakes.params import Param
 from tests.fakes.services import ARDUPILOT, PX4, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
-from tests.groundstation.verbs.manual.test_examples import prepare
 from tests.groundstation.verbs.setup.test_doctor import INTERVAL, MAG_CAL_START, channels, progress, report, send_all
+from tests.groundstation.verbs.test_examples import prepare
 from tests.groundstation.verbs.verb_runs import LONG_PATIENCE, run_verb
 from tests.ports import free_port
 from tests.waits import wait_until
@@ -114,7 +114,7 @@ MOTORS = {"SERVO1_FUNCTION": Param(73.0), "SERVO3_FUNCTION": Param(74.0)}
 
 
 def test_every_verb_has_a_line() -> None:
-    names = {f"{verb} {action}".strip() for verb in VERBS.keys() - ELSEWHERE for action in VERBS[verb]}
+    names = {f"{verb} {action}".strip() for verb in VERBS.keys() - ELSEWHERE for action in VERBS[verb].actions}
     assert names == LINES.keys()
     assert all((Path(__file__).parent / test).exists() for test in ELSEWHERE.values())
 

@@ -21,7 +21,6 @@ import pytest
 from tests.fakes.params import Param
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
-from tests.groundstation.verbs.manual.test_examples import prepare
 from tests.groundstation.verbs.setup.test_doctor import (
     MAG_CAL_ACCEPT,
     MAG_CAL_CANCEL,
@@ -30,6 +29,7 @@ from tests.groundstation.verbs.setup.test_doctor import (
     commanded,
     progress,
 )
+from tests.groundstation.verbs.test_examples import prepare
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.waits import wait_until
 

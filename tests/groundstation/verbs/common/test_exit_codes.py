@@ -11,7 +11,7 @@ from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.table import VERBS
 from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
-from tests.groundstation.verbs.manual.test_examples import RUN, prepare
+from tests.groundstation.verbs.test_examples import RUN, prepare
 from tests.groundstation.verbs.verb_runs import run_verb
 from tests.ports import free_port
 
@@ -64,8 +64,8 @@ def test_no_vehicle(capsys: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_wrong_arguments(capsys: Capture) -> None:
-    for verb, actions in VERBS.items():
-        for action in actions:
+    for verb, row in VERBS.items():
+        for action in row.actions:
             words = [verb, *filter(None, (action,)), "--no-such-option"]
             assert run_verb(capsys, *words).code == ExitCode.USAGE, words
 

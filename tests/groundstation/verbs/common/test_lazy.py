@@ -12,8 +12,8 @@ from groundstation.verbs.table import VERBS
 
 NAMES = [
     value
-    for actions in VERBS.values()
-    for action in actions.values()
+    for verb in VERBS.values()
+    for action in verb.actions.values()
     for value in (action.run, action.check, action.guarded, action.arguments)
     if isinstance(value, LazyAttribute)
 ]
@@ -43,3 +43,10 @@ def test_a_verb_loads_neither_a_screen_nor_other_verbs() -> None:
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "groundstation.verbs.messages.status" in loaded
     assert [name for name in loaded if name.startswith(HEAVY)] == []
+
+
+def test_the_tables_load_no_dialect_and_no_verb() -> None:
+    code = "import sys, groundstation.cli.verb_help; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "groundstation.verbs.control.table" in loaded
+    assert [name for name in loaded if name.startswith((*HEAVY, "dialects", "groundstation.verbs.control.arm"))] == []

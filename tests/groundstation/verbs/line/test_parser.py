@@ -15,7 +15,7 @@ from groundstation.verbs.table import VERBS
 
 
 def test_every_rule_is_of_a_verb() -> None:
-    names = {f"{verb} {action}".strip() for verb, actions in VERBS.items() for action in actions}
+    names = {f"{verb} {action}".strip() for verb, row in VERBS.items() for action in row.actions}
     assert set(LINE_RULES) <= names
 
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from groundstation.cli.main import main
-from groundstation.cli.verb_help import LOCAL_HELP, PROGRAM_HELP, VERB_HELP
+from groundstation.cli.verb_help import EVERY_VERB, LOCAL_VERBS, PROGRAMS
 from groundstation.verbs.action import ONLY
 from groundstation.verbs.manual.mavproxy_words import ACTIONS, WORDS
 from groundstation.verbs.table import VERBS
@@ -36,7 +36,7 @@ def test_one_line_names_what_to_write(capsys: pytest.CaptureFixture[str], words:
 def test_every_verb_that_is_proposed_exists_and_none_is_hidden() -> None:
     for hint in [*WORDS.values(), *ACTIONS.values()]:
         for verb, action in re.findall(r"`mavhelm ([a-z]+)(?: ([a-z]+))?", hint):
-            assert verb in VERB_HELP | LOCAL_HELP | PROGRAM_HELP, hint
-            assert not action or verb in PROGRAM_HELP or ONLY in VERBS[verb] or action in VERBS[verb], hint
-    assert not set(WORDS) & (VERB_HELP | LOCAL_HELP).keys()
-    assert not any(action in VERBS.get(verb, {}) for verb, action in ACTIONS)
+            assert verb in EVERY_VERB, hint
+            assert not action or verb in PROGRAMS or {ONLY, action} & VERBS[verb].actions.keys(), hint
+    assert not set(WORDS) & (VERBS | LOCAL_VERBS).keys()
+    assert not any(verb in VERBS and action in VERBS[verb].actions for verb, action in ACTIONS)

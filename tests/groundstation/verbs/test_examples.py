@@ -11,15 +11,15 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 from groundstation.verbs.action import ONLY
 from groundstation.verbs.command_doc import update
 from groundstation.verbs.common.exit_codes import ExitCode
-from groundstation.verbs.manual.examples import AUTOPILOT_EXAMPLES, EXAMPLES
-from groundstation.verbs.table import VERBS
+from groundstation.verbs.table import VERBS, find_examples
+from groundstation.verbs.verb import Stage
 from tests.fakes.params import Param
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
 from tests.groundstation.formats.test_plan_file import as_text, document
 from tests.groundstation.verbs.verb_runs import run_verb
 
-DOCUMENT = Path(__file__).parents[4] / "docs/commands.md"
-ALL = (*EXAMPLES, *AUTOPILOT_EXAMPLES)
+DOCUMENT = Path(__file__).parents[3] / "docs/commands.md"
+ALL = [each.command for each in find_examples(Stage)]
 SHORTER = {
     "status": ("--timeout", "5"), "vehicles": ("--for", "0.2"), "links": ("--for", "0.2"), "messages": ("--for", "0.2"),
     "watch": ("--timeout", "0.3"), "ping": ("--count", "2", "--interval", "0.1"), "control give": ("--wait", "2"),
@@ -31,17 +31,13 @@ ELSEWHERE = frozenset(
 """Verbs that other tests run: with a watchdog, with a station, or without a vehicle."""
 OF_HANDS = frozenset({"wp", "compass", "sticks"})
 """Words of examples that need more of a vehicle, and have tests of their own."""
-RUN = [
-    words
-    for command, _ in ALL
-    if (words := shlex.split(command)[1:])[0] in {*VERBS} - ELSEWHERE and not OF_HANDS & {*words}
-]
+RUN = [words for command in ALL if (words := shlex.split(command)[1:])[0] not in ELSEWHERE and not OF_HANDS & {*words}]
 CODES = {"watch": {0, 7}, "control give": {7}}
 """Verb -> its codes with this vehicle; all others end with 0."""
 
 
 def name_of(words: list[str]) -> str:
-    actions = VERBS[words[0]]
+    actions = VERBS[words[0]].actions
     return words[0] if ONLY in actions else f"{words[0]} {words[1]}"
 
 
@@ -51,8 +47,8 @@ def test_the_document_is_generated() -> None:
 
 
 def test_every_verb_and_action_has_an_example() -> None:
-    shown = {name_of(words) for command, _ in ALL if (words := shlex.split(command)[1:])[0] in VERBS}
-    assert {f"{verb} {action}".strip() for verb, actions in VERBS.items() for action in actions} - shown == set()
+    shown = {name_of(words) for command in ALL if (words := shlex.split(command)[1:])}
+    assert {f"{verb} {action}".strip() for verb, row in VERBS.items() for action in row.actions} - shown == set()
 
 
 def test_each_example_runs(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

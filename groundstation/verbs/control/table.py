@@ -1,0 +1,99 @@
+"""The table of the verbs in this room.
+
+To add a verb, write its function in a module beside this one and add its row to VERBS.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from groundstation.verbs.action import ONLY, VerbAction
+from groundstation.verbs.common.arguments import LONGEST_HOLD, seconds, system_id
+from groundstation.verbs.common.lazy import LazyModule
+from groundstation.verbs.verb import Example, Group, Stage, Verb
+
+if TYPE_CHECKING:
+    from groundstation.verbs.control import arm, control, drive, mode, motor, reboot, stops
+else:
+    arm = LazyModule("control.arm")
+    control = LazyModule("control.control")
+    drive = LazyModule("control.drive")
+    mode = LazyModule("control.mode")
+    motor = LazyModule("control.motor")
+    reboot = LazyModule("control.reboot")
+    stops = LazyModule("control.stops")
+
+
+VERBS: dict[str, Verb] = {
+    "arm": Verb(Group.DRIVE, (
+        Example("mavhelm arm --wait 20", "waits until the vehicle is ready, then arms it", Stage.ARMED),
+    ), {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
+                             takes_part=True, many=True)}),
+    "disarm": Verb(Group.DRIVE, (
+        Example("mavhelm disarm", "repeated until the heartbeat reports it; so are stop, estop", Stage.STOPPING),
+        Example("mavhelm disarm --all",
+                "all vehicles at once, with a table of the results; also with --group NAME", Stage.STOPPING),
+    ), {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm, finds=False,
+                                own_timeout=True, many=True, stops=True)}),
+    "stop": Verb(Group.DRIVE, (
+        Example("mavhelm stop", "to HOLD", Stage.STOPPING),
+    ), {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop, finds=False,
+                              own_timeout=True, many=True, stops=True)}),
+    "estop": Verb(Group.DRIVE, (
+        Example("mavhelm estop", "motors off and locked", Stage.STOPPING),
+        Example("mavhelm estop --clear", "releases the lock", Stage.STOPPING),
+    ), {ONLY: VerbAction("stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
+        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True,
+        finds=False, many=True, stops=True)}),
+    "control": Verb(Group.DRIVE, (
+        Example("mavhelm control show", "who is in control", Stage.ARMED),
+        Example("mavhelm control request", "take control, or ask the driver for it", Stage.AFTERWARDS),
+        Example("mavhelm control release", "our own vehicle changes to HOLD", Stage.AFTERWARDS),
+        Example("mavhelm control give 255", "release control once 255 asks for it; show, release", Stage.AFTERWARDS),
+    ), {
+        "show": VerbAction("print who is in control", control.show, watches=True, many=True),
+        "request": VerbAction(
+            "take control, or ask the driver for it", control.request,
+            (("--takeover", {"action": "store_true", "help": "others may take control without asking"}),),
+            takes_part=True, many=True),
+        "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, takes_part=True,
+                              many=True),
+        "give": VerbAction(
+            "release control once another ground station asks for it, within --wait", control.give,
+            (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), takes_part=True),
+    }, "show, request, release or give control of a vehicle"),
+    "drive": Verb(Group.DRIVE, (
+        Example("mavhelm drive --throttle 30 --for 2", "by hand: %; then neutral. It must be armed", Stage.ARMED),
+        Example("mavhelm drive --arm --script run.keys",
+                "keys of a file; arms first, disarms at the end", Stage.STOPPING),
+    ), {ONLY: VerbAction("drive by hand for a time, or as a script of keys says, then neutral", drive.run,
+        (("--throttle", {"type": drive.percent, "metavar": "PERCENT", "help": "negative for backward"}),
+         ("--steering", {"type": drive.percent, "metavar": "PERCENT", "help": "positive to the right"}),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": f"up to {LONGEST_HOLD:g} s"}),
+         ("--script", {"metavar": "FILE", "help": "lines such as '0.5 press i': s from the start, then a key"}),
+         ("--speed", {"type": drive.limit, "metavar": "LIMIT", "help": "of the keys, 0.1 to 1, as for the screen"}),
+         ("--arm", {"action": "store_true", "help": "arm first, and disarm at the end"}),
+         ("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what --arm has armed"})),
+        takes_part=True, prepare=drive.prepare, guarded=lambda _: True)}),
+    "motor": Verb(Group.VEHICLE, (
+        Example("mavhelm motor 1 12 --for 1", "turn motor 1 at 12 % for 1 s, wheels off the ground"),
+    ), {ONLY: VerbAction("turn one motor of a disarmed vehicle, wheels off the ground", motor.run,
+        (("number", {"type": int, "metavar": "N", "help": "its number, as on the Setup screen"}),
+         ("throttle", {"type": motor.percent, "metavar": "PERCENT", "help": "up to 30, negative for backward"}),
+         ("--for", {"dest": "seconds", "type": motor.duration, "default": 1.0, "metavar": "S",
+                    "help": "how long, up to 2 s (default: 1)"})),
+        examines=True)}),
+    "modes": Verb(Group.DRIVE, (
+        Example("mavhelm modes", "the modes of the vehicle; > marks the current one"),
+    ), {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes,
+                               watches=True, many=True)}),
+    "mode": Verb(Group.DRIVE, (
+        Example("mavhelm mode HOLD", "done when the heartbeat reports it"),
+    ), {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
+                              (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True, many=True)}),
+    "reboot": Verb(Group.VEHICLE, (
+        Example("mavhelm reboot", "the vehicle refuses while it is armed", Stage.AFTERWARDS),
+    ), {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, takes_part=True,
+                                many=True)}),
+}  # fmt: skip
+"""Verb -> its row."""
