@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import msgspec
 
 from dialects.messages import Message
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 
 class Peer(NamedTuple):
@@ -52,7 +52,7 @@ class Received(NamedTuple):
     """Another program counts in the same run, with the same ids and at the same peer."""
     digest: int = 0
     """Equal for frames that are equal byte for byte; 0: not known."""
-    role: Role = Role.SET_UP
+    role: SigningRole = SigningRole.SET_UP
     """What the sender may do: the role of the key that signed the frame, or what the link grants unsigned frames."""
     signed: bool = False
     """The frame carried a signature, and it was verified."""

@@ -12,7 +12,7 @@ from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.runtime.worker import Worker
 from link.signing.keys import KeyRing
 from link.signing.memory_file import load_memory, save_memory
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signing import Signing, SigningMemory
 from link.signing.system_clock import is_synchronized
 
@@ -59,7 +59,7 @@ class LinkSigning:
 
     def guard(self, index: int) -> SigningGuard | None:
         """Return the guard of the link `index`; None while there is no key and nothing unsigned is refused."""
-        if not self.signing.ring.keys and self._policy.unsigned is Role.SET_UP:
+        if not self.signing.ring.keys and self._policy.unsigned is SigningRole.SET_UP:
             return None
         return SigningGuard(self.signing, self._policy, index)
 

@@ -16,15 +16,15 @@ from groundstation.snapshot.signing import SigningState, SigningView
 from link.core import SigningCounts
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.link.signing.signed import DRIVER, SIGNED_ONLY, keep
 from tests.test_stops import NEUTRAL_WITHIN, Drive
 from vehicle.safety.states import SafetyState
 
 AT_ONCE = {"falls": 0.05, "neutral": 0.5}
 LOCKED = {"falls": 0.05, "neutral": 0.05}
-OTHER = SigningKey("other", Role.SET_UP, bytes(range(32)))
-WATCHED = SigningPolicy(unsigned=Role.WATCH, open_stops=True)
+OTHER = SigningKey("other", SigningRole.SET_UP, bytes(range(32)))
+WATCHED = SigningPolicy(unsigned=SigningRole.WATCH, open_stops=True)
 
 
 def signed_drive(key: SigningKey | None = DRIVER, policy: SigningPolicy = SIGNED_ONLY) -> Drive:

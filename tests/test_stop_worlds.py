@@ -25,7 +25,7 @@ from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import to_stamp
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.transport.memory import LossyPipe
 from tests.link.signing.signed import DRIVER as OWNER
 from tests.link.signing.signed import NOON, SIGNED_ONLY, STRANGER, WATCHER, keep, signed
@@ -78,7 +78,7 @@ class StopWorld(CrowdedLink):
         super().__init__(keep(OWNER, WATCHER, wall=facts.clock, now=100.0), facts.strangers)
         assert self.channel.guard is not None
         self.channel.guard = SigningGuard(
-            keep(OWNER, WATCHER, wall=facts.clock, now=100.0), SigningPolicy(Role.WATCH, open_stops=True), 0
+            keep(OWNER, WATCHER, wall=facts.clock, now=100.0), SigningPolicy(SigningRole.WATCH, open_stops=True), 0
         )
         self.facts = facts
         self.core = OwnCore(VERB, facts.vehicle, 1)

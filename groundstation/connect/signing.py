@@ -10,7 +10,7 @@ from link.protocol.signing_guard import SigningPolicy
 from link.signing.key_file import KeyFileError, load_keys, station_key_file
 from link.signing.keys import KeyRing
 from link.signing.memory_file import FILE, MemoryFileError
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 
 class SigningError(Exception):
@@ -83,7 +83,7 @@ class StationSigning:
 
 
 def _policy(required: bool) -> SigningPolicy:
-    unsigned = None if required else Role.SET_UP
+    unsigned = None if required else SigningRole.SET_UP
     return SigningPolicy(unsigned, pinned_for=math.inf, greets_late=True, announces=True)
 
 

@@ -107,9 +107,9 @@ def vehicle(facts: DoctorFacts) -> ChainFinding:
     if not view.alive:
         stops = f": {view.link_loss_action}" if view.link_loss_action else ""
         return fault(f"{view.name} lost for {view.silence:.0f} s{stops}", "check power and link", "app.links")
-    if view.twins:
+    if view.duplicates:
         advice = "give one of them another id (MAV_SYSID, SYSID_THISMAV, MAV_SYS_ID)"
-        return fault(f"several vehicles use id {view.system}: {view.twins}", advice, "app.links")
+        return fault(f"several vehicles use id {view.system}: {view.duplicates}", advice, "app.links")
     firmware = f", firmware {facts.firmware}" if facts.firmware else ""
     return ok(f"{view.name}{firmware}, heard {view.silence:.0f} s ago")
 

@@ -15,7 +15,7 @@ from groundstation.ros.rmw.names import BEST_EFFORT_5, RELIABLE_10, Kind, RmwEnd
 from groundstation.ros.types import BadMessageError, RosTypes
 from groundstation.ros.vehicle import Values
 from groundstation.ros2.router import RosRouter
-from groundstation.ros2.wire import Arrived, Request, Wire, WireEvents
+from groundstation.ros2.wire import Arrived, Request, RosWire, WireEvents
 
 MAX_CALLS = 32
 """Requests that are served at once; further ones get no answer, and their clients time out."""
@@ -71,7 +71,7 @@ class Ros2Node(msgspec.Struct):
     _serves: dict[int, Serve] = msgspec.field(default_factory=dict)
     _calls: set[asyncio.Task[None]] = msgspec.field(default_factory=set)
     _lateness: LatenessCheck = msgspec.field(default_factory=LatenessCheck)
-    _wire: Wire | None = None
+    _wire: RosWire | None = None
     _told: str = ""
 
     # ---- what it has ----
@@ -93,7 +93,7 @@ class Ros2Node(msgspec.Struct):
     def start(self) -> None:
         """Connect to the router, and try again until it is there."""
         events = WireEvents(self._opened, self._tell, self._take, self.left, self._request)
-        self._wire = Wire(self.names.router, events)
+        self._wire = RosWire(self.names.router, events)
         self._wire.start()
 
     def close(self) -> None:

@@ -58,7 +58,7 @@ class WireEvents(msgspec.Struct, frozen=True):
     request: Callable[[Request], None]
 
 
-class Wire:
+class RosWire:
     """One session, from start() to close()."""
 
     def __init__(self, router: RosRouter, events: WireEvents) -> None:

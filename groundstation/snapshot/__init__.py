@@ -75,7 +75,7 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Our request, while the vehicle does not report an emergency stop itself; else None."""
     stop_doubt: str = ""
     """Which sender of its id does not report that our emergency stop is done, in words."""
-    twins: str = ""
+    duplicates: str = ""
     """Senders that use its id and are several vehicles, in words."""
     position: tuple[float, float] | None = None
     """North, east of the origin, m."""

@@ -58,7 +58,7 @@ class SnapshotBuilder:
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
             stop_question=commander.stop_question(state.system, now),
             stop_doubt=state.senders.find_doubt(now) if commander.is_locked(state.system) else "",
-            twins=state.senders.describe_twins(now),
+            duplicates=state.senders.describe_duplicates(now),
             refusal=commander.last_refusal(state.system, now),
             **self._display.build_fields(contact, now),
         )

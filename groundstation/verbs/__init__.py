@@ -1,7 +1,7 @@
 """Verbs of the command line: `mavhelm param get`, each one thing with one vehicle, without a screen.
 
 To add or change:
-- a verb, or an action of one: its function in a module of a room (`groundstation/verbs/control/` and so on) and its row,
-  with its examples, in `table.py` of that room; then `python -m groundstation.verbs.command_doc docs/commands.md`;
+- a verb, or an action of one: its function in a module of a room (`groundstation/verbs/control/` and so on) and its
+  row, with its examples, in `table.py` of that room; then `python -m groundstation.verbs.command_doc docs/commands.md`;
 - a word of MAVProxy: `groundstation/verbs/manual/mavproxy_words.py`.
 """

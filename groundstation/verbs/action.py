@@ -47,7 +47,7 @@ class VerbAction(msgspec.Struct, frozen=True):
     """Only looks, and so has ids that are never those of a driver."""
     follows: bool = False
     """Keeps the session of the verb before alive, if there was one just now (kept_session.py)."""
-    takes_part: bool = False
+    needs_session: bool = False
     """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
     shows_neutral: bool = False
     """Shows neutral then, because it can make the vehicle move."""

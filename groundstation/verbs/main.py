@@ -110,7 +110,7 @@ def choose_action(verb: str, options: argparse.Namespace) -> VerbAction:
     """Return the action that the options name."""
     action = VERBS[verb].actions[options.action]
     if action.only_reads(options):
-        action = replace(action, watches=True, takes_part=False, shows_neutral=False)
+        action = replace(action, watches=True, needs_session=False, shows_neutral=False)
     return action
 
 

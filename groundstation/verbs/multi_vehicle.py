@@ -129,7 +129,7 @@ class ManyVehicles:
         )
 
     async def _perform(self, session: VerbSession, options: argparse.Namespace, output: Any) -> int:
-        if self._action.takes_part:
+        if self._action.needs_session:
             await session.prove_session()
         if self._action.shows_neutral:
             await session.show_neutral()

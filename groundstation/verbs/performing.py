@@ -60,7 +60,7 @@ async def perform(
         return await _perform_for_group(session, action, options, output, group)
     if action.finds:
         await session.find_vehicle(options.wait, options.vehicle)
-    if action.takes_part:
+    if action.needs_session:
         await session.prove_session()
     if action.shows_neutral:
         await session.show_neutral()

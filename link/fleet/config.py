@@ -15,7 +15,7 @@ import msgspec
 from link.endpoint import FLEET_NAME, Endpoint, Side
 from link.fleet.traffic import CLASSES
 from link.runtime.install_hint import install_command
-from link.signing.role import ROLES, Role
+from link.signing.role import ROLES, SigningRole
 from link.transport.transport import LinkError
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class FleetConfig(msgspec.Struct, frozen=True):
     """PEM of its own certificate, if the file holds it."""
 
     @property
-    def operator_role(self) -> Role | None:
+    def operator_role(self) -> SigningRole | None:
         """What an operator may do; None if it is not known."""
         return None if self.role is None else ROLES.get(self.role)
 

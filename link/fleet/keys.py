@@ -20,7 +20,7 @@ from link.fleet.roles import needed_role, watch_condition
 from link.fleet.traffic import TELEMETRY, traffic_class
 from link.protocol.frame import Frame
 from link.protocol.framer import Framer
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 _BRIEF = "brief"
 _CHUNKS = 6
@@ -82,7 +82,7 @@ class FleetPlace(msgspec.Struct, frozen=True):
 
     def is_conditional(self, frame: Frame) -> bool:
         """Return whether this is a watcher's frame that counts in some circumstances only."""
-        return self.role == Role.WATCH.word and watch_condition(frame) is not None
+        return self.role == SigningRole.WATCH.word and watch_condition(frame) is not None
 
 
 class FleetKeys(msgspec.Struct, frozen=True):
@@ -123,7 +123,7 @@ class FleetKeys(msgspec.Struct, frozen=True):
             return chunks[2] if len(chunks) == 4 and chunks[3] == "alive" else None
         return "/".join(chunks[4:]) if len(chunks) == _CHUNKS and chunks[3] == "gcs" else None
 
-    def place(self, frame: Frame, address: str, role: Role | None = None) -> str:
+    def place(self, frame: Frame, address: str, role: SigningRole | None = None) -> str:
         """Return the key under which to publish a frame for an address; `role`: None for the one that it needs."""
         base = f"fleet/{self.fleet}/{address}/down/{self.me}" if self.me else f"{self._base}/up/{address}"
         word = f"{(role or needed_role(frame)).word}/" if self.me else ""

@@ -14,7 +14,7 @@ from dialects.messages import MESSAGES, Message, target_system
 from dialects.traits import COMMANDS, holds_by_number, is_stop, only_asks
 from link.fleet.rights.drive_commands import DRIVE_COMMANDS
 from link.protocol.frame import Frame, payload_of
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 
 class WatchCondition(Enum):
@@ -73,19 +73,19 @@ _RESET_SESSIONS = 2
 """Of MAV_FTP_OPCODE: ends the sessions of all who have a file open."""
 
 
-def needed_role(frame: Frame) -> Role:
+def needed_role(frame: Frame) -> SigningRole:
     """Return the least role that may send this frame to any vehicle at any time.
 
     An unknown message or command may do anything, so it needs the highest.
     """
     number = frame[0]
     if number in _WATCH:
-        return Role.WATCH
+        return SigningRole.WATCH
     if number in _SET_UP or number not in MESSAGES:
-        return Role.SET_UP
+        return SigningRole.SET_UP
     if number == m.FileTransferProtocol.id:
         return _needed_for_file(frame)
-    return _needed_for_command(_decode(frame)) if number in COMMANDS else Role.DRIVE
+    return _needed_for_command(_decode(frame)) if number in COMMANDS else SigningRole.DRIVE
 
 
 def watch_condition(frame: Frame) -> WatchCondition | None:
@@ -114,24 +114,24 @@ def file_opcode(frame: Frame) -> int:
     return payload[_FILE_OPCODE] if len(payload) > _FILE_OPCODE else 0  # zeros at the end are not sent
 
 
-def _needed_for_file(frame: Frame) -> Role:
+def _needed_for_file(frame: Frame) -> SigningRole:
     opcode = file_opcode(frame)
     if opcode in _READING_OPCODES:
-        return Role.WATCH
-    return Role.DRIVE if opcode == _RESET_SESSIONS else Role.SET_UP
+        return SigningRole.WATCH
+    return SigningRole.DRIVE if opcode == _RESET_SESSIONS else SigningRole.SET_UP
 
 
-def _needed_for_command(message: Message) -> Role:
+def _needed_for_command(message: Message) -> SigningRole:
     if isinstance(message, m.SetMode):
-        return Role.DRIVE
+        return SigningRole.DRIVE
     assert isinstance(message, m.CommandLong | m.CommandInt)
     if message.command == _SEND_BANNER or (is_stop(message) and not holds_by_number(message)):
-        return Role.WATCH
+        return SigningRole.WATCH
     if only_asks(message):
-        return Role.DRIVE if _sets_rate_of_heartbeat(message) else Role.WATCH
+        return SigningRole.DRIVE if _sets_rate_of_heartbeat(message) else SigningRole.WATCH
     if message.command == rover.MAV_CMD_DO_FENCE_ENABLE and message.param1 != 1:
-        return Role.SET_UP
-    return Role.DRIVE if message.command in DRIVE_COMMANDS else Role.SET_UP
+        return SigningRole.SET_UP
+    return SigningRole.DRIVE if message.command in DRIVE_COMMANDS else SigningRole.SET_UP
 
 
 def _sets_rate_of_heartbeat(message: m.CommandLong | m.CommandInt) -> bool:

@@ -28,7 +28,7 @@ from link.fleet.session import FleetSession
 from link.fleet.validity import warning_of
 from link.protocol.frame import Frame, Header, read_header
 from link.protocol.link_events import CONNECTING
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.transport.priority_queue import STALE
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
@@ -110,7 +110,7 @@ class FleetTransport:
 
     def refusal(self, data: bytes) -> str | None:
         """Return which role this program lacks to send a frame; None if it may, or its role is not known."""
-        frame = self._read(data) if self._role not in (None, Role.SET_UP) else None
+        frame = self._read(data) if self._role not in (None, SigningRole.SET_UP) else None
         return None if frame is None else self._role_missing(frame)
 
     def set_interest(self, systems: frozenset[int] | None) -> None:
@@ -169,19 +169,19 @@ class FleetTransport:
         if not self._keys.me or self._role is None:
             return None
         needed = needed_role(frame)
-        if needed <= self._role or self._claimed_role(frame) is Role.WATCH:
+        if needed <= self._role or self._claimed_role(frame) is SigningRole.WATCH:
             return None
         return f"the certificate of {self._name} may {self._role.word} only; ask for the role {needed.word}"
 
-    def _claimed_role(self, frame: Frame) -> Role | None:
+    def _claimed_role(self, frame: Frame) -> SigningRole | None:
         """Return WATCH for what a watcher may send in these circumstances; None for the role that the frame needs.
 
         A ground station does not see what others transfer: the vehicle's end decides that.
         """
-        condition = watch_condition(frame) if self._role is Role.WATCH else None
+        condition = watch_condition(frame) if self._role is SigningRole.WATCH else None
         if condition is None or (condition is WatchCondition.HOLD and not self._circumstances.holds(target_of(frame))):
             return None
-        return Role.WATCH
+        return SigningRole.WATCH
 
     # ---- from threads of Zenoh ----
 

@@ -34,7 +34,7 @@ from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
 from link.protocol.signing_guard import Passed, SigningContext, SigningGuard, best_key
 from link.protocol.stops import find_stops
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 _RADIO_STATUS: int = RadioStatus.id
 _RATE_CLASS = {**dict.fromkeys(DEMANDS, "demand"), **dict.fromkeys(COMMANDS, "command")}
@@ -240,7 +240,7 @@ class Channel:
                 continue
             numbering, clash = (source.numbering.index, source.clash) if source else (0, False)
             introduced, named = system in state.systems, state.is_expected
-            role = Role.SET_UP if judged is None else judged[index].role
+            role = SigningRole.SET_UP if judged is None else judged[index].role
             verified = judged is not None and judged[index].verified is not None
             received = Received(message, system, component, sequence, state.peer, introduced, named, numbering, clash,
                                 digest, role, verified)  # fmt: skip

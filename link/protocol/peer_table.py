@@ -24,7 +24,7 @@ from link.protocol.address_budget import AddressBudget
 from link.protocol.frame import Frame, FramerCounts
 from link.protocol.framer import Framer
 from link.protocol.peer import PeerState
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 if TYPE_CHECKING:
     from link.signing.keys import SigningKey
@@ -64,7 +64,7 @@ def rank_of(key: SigningKey | None) -> Rank:
     """Return the rank of a peer whose newest verified frame was signed with `key`; None: it has sent none."""
     if key is None:
         return Rank.UNSIGNED
-    return Rank.WATCH if key.role is Role.WATCH else Rank.DRIVE
+    return Rank.WATCH if key.role is SigningRole.WATCH else Rank.DRIVE
 
 
 class PeerTable:

@@ -21,7 +21,7 @@ from link.protocol.peer import PeerState, find_signing
 from link.protocol.rate import SenderLimit
 from link.signing.clock import FOLLOWED_MAX, TICKS
 from link.signing.keys import MAX_KEYS, SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import is_signed, link_and_stamp
 from link.signing.signing import FrameSigner, Signing
 from link.signing.verifier import AHEAD_MAX, PINNED_FOR, Refusal, Verified
@@ -42,7 +42,7 @@ ANSWERS_MAX = 32
 class SigningPolicy(msgspec.Struct, frozen=True):
     """What a program makes of frames that are not signed, or not well."""
 
-    unsigned: Role | None
+    unsigned: SigningRole | None
     """What unsigned senders may do; None: their frames are dropped. RADIO_STATUS is used for flow control all the same,
     because telemetry radios cannot sign."""
     open_stops: bool = False
@@ -77,7 +77,7 @@ class Passed(NamedTuple):
     """A frame that may be handled."""
 
     frame: Frame
-    role: Role
+    role: SigningRole
     verified: Verified | None
     """None: it is not signed."""
 

@@ -11,7 +11,7 @@ from link.signing.key_file import change_keys, load_keys
 from link.signing.key_qr import draw_qr
 from link.signing.key_words import words_from_secret
 from link.signing.keys import KeyRing, SigningKey, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 
 class KeyActionError(Exception):
@@ -30,12 +30,12 @@ WORDS_PER_LINE = 6
 WARNING = "who sees this can do all that the key may do; clear the screen and its history afterwards"
 
 
-def make_key(path: Path, name: str, role: Role) -> SigningKey:
+def make_key(path: Path, name: str, role: SigningRole) -> SigningKey:
     """Add a new key to a file and return it. Raises KeyActionError, KeyFileError."""
     return store_key(path, _checked(lambda: new_key(name, role)))
 
 
-def install_key(path: Path, name: str, role: Role, secret: bytes) -> SigningKey:
+def install_key(path: Path, name: str, role: SigningRole, secret: bytes) -> SigningKey:
     """Add a key made elsewhere to a file and return it. Raises KeyActionError, KeyFileError."""
     return store_key(path, _checked(lambda: SigningKey(name, role, secret)))
 

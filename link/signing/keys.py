@@ -16,7 +16,7 @@ from typing import NoReturn
 import msgspec
 from msgspec.structs import replace
 
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 SECRET_SIZE = 32
 """Bytes of a secret; the MAVLink specification."""
@@ -36,7 +36,7 @@ class SigningKey:
     """A key. Its text form and its pickle never contain the secret."""
 
     name: str
-    role: Role
+    role: SigningRole
     secret: bytes = field(repr=False)
 
     def __post_init__(self) -> None:
@@ -65,7 +65,7 @@ def find_secret_problem(secret: bytes) -> str | None:
     return None if any(secret) else "32 zero bytes are not a key"
 
 
-def new_key(name: str, role: Role) -> SigningKey:
+def new_key(name: str, role: SigningRole) -> SigningKey:
     """Return a key with 32 random bytes of the operating system."""
     return SigningKey(name, role, secrets.token_bytes(SECRET_SIZE))
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from enum import IntEnum
 
 
-class Role(IntEnum):
+class SigningRole(IntEnum):
     """What the holder of a key may do. Each role includes those before it."""
 
     WATCH = 1
@@ -22,5 +22,9 @@ class Role(IntEnum):
         return ROLE_WORDS[self]
 
 
-ROLE_WORDS: Mapping[Role, str] = {Role.WATCH: "watch", Role.DRIVE: "drive", Role.SET_UP: "setup"}
-ROLES: Mapping[str, Role] = {word: role for role, word in ROLE_WORDS.items()}
+ROLE_WORDS: Mapping[SigningRole, str] = {
+    SigningRole.WATCH: "watch",
+    SigningRole.DRIVE: "drive",
+    SigningRole.SET_UP: "setup",
+}
+ROLES: Mapping[str, SigningRole] = {word: role for role, word in ROLE_WORDS.items()}

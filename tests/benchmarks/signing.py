@@ -20,7 +20,7 @@ from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.key_file import FILE, save_keys, station_key_file
 from link.signing.keys import KeyRing, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signing import Signing
 from tests.benchmarks.figures import ROUNDS, Goal, Options, Report, Spread, Table, brief, spread
 from tests.benchmarks.key_to_motor import CONTENDERS, KEYS, OURS_NARROW, QUICK_KEYS, Outcome, running
@@ -54,7 +54,7 @@ def run(options: Options) -> Report:
 
 def _frames(count: int, *, signed: bool) -> dict[str, float]:
     """Return us a frame, sent by one channel and received by another."""
-    ring = KeyRing().add(new_key("bench", Role.SET_UP))
+    ring = KeyRing().add(new_key("bench", SigningRole.SET_UP))
     sender, receiver = (_channel(ring, signed=signed, target=target) for target in (ADDRESS, None))
     outgoing = Outgoing(build_manual_control(Axes(0.5, 0.1), 1))
     start = time.thread_time_ns()
@@ -130,7 +130,7 @@ def _with_keys(folder: Path) -> Iterator[tuple[str, ...]]:
         stack.enter_context(_environment(folder / "config"))
         state = folder / "state"
         if not state.exists():
-            ring = KeyRing().add(new_key("bench", Role.SET_UP))
+            ring = KeyRing().add(new_key("bench", SigningRole.SET_UP))
             for path in (station_key_file(), state / FILE):
                 save_keys(path, ring)
             (folder / "rover.toml").write_text("[signing]\nrequired = true\n")

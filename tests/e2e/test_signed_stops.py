@@ -11,7 +11,7 @@ import pytest
 
 from link.signing.key_actions import make_key
 from link.signing.key_file import FILE, load_keys, save_keys, station_key_file
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.e2e.conftest import Rig
 from tests.e2e.programs import GroundStation, Vehicle
 from tests.e2e.relay import Relay
@@ -34,7 +34,7 @@ def test_key_given_to_running_station_drives_and_signs_its_stops(
     Neutral goes on for 5 s, so that the vehicle's own failsafe, which would stop it as well, has nothing to do.
     """
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
-    make_key(tmp_path / FILE, "laptop", Role.SET_UP)
+    make_key(tmp_path / FILE, "laptop", SigningRole.SET_UP)
     file = tmp_path / "rover.toml"
     file.write_text("[signing]\nrequired = true\n")
     with ExitStack() as stack:

@@ -36,6 +36,6 @@ class SeatLog:
         """Do nothing."""
 
 
-def verb_of(name: str, *, takes_part: bool = False, follows: bool = False, seat: SeatLog | None = None) -> Verb:
+def verb_of(name: str, *, needs_session: bool = False, follows: bool = False, seat: SeatLog | None = None) -> Verb:
     """Return a verb for a station to join."""
-    return Verb(name, takes_part, seat or SeatLog(), follows=follows)
+    return Verb(name, needs_session, seat or SeatLog(), follows=follows)

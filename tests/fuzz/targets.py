@@ -27,7 +27,7 @@ from link.protocol.framer import Framer
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.routing.router import Router
 from link.signing.clock import TICKS
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import STAMP_MAX
 from link.tlog.tlog import read_records
 from tests.fuzz.files import as_file
@@ -160,7 +160,7 @@ UNITS = (1, TICKS, 60 * TICKS, DAY, 365 * DAY)
 
 def signing(data: bytes) -> None:
     """Six bytes a frame: the driver's, a stranger's or unsigned, from any system and link id, at any time."""
-    guard = SigningGuard(keep(DRIVER), SigningPolicy(unsigned=Role.WATCH), 0)
+    guard = SigningGuard(keep(DRIVER), SigningPolicy(unsigned=SigningRole.WATCH), 0)
     link, newest = Channel("fuzz", 0, system=1, component=1, guard=guard), dict[tuple[int, int], int]()
     for at in range(0, len(data) - 5, 6):
         who, link_id, system, unit = data[at : at + 4]
@@ -171,7 +171,7 @@ def signing(data: bytes) -> None:
         ours = {"link_id": link_id, "sequence": at // 6 % 256, "ids": (system, 190)}
         frame = signed(key=key, stamp=stamp, **ours) if key else unsigned  # type: ignore[arg-type]
         for received in link.receive(frame, "x", at / 100):
-            if received.role > Role.WATCH:
+            if received.role > SigningRole.WATCH:
                 assert key is DRIVER
                 assert stamp > newest.get((system, link_id), -1), "a replay"
                 newest[system, link_id] = stamp

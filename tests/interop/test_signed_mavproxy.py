@@ -8,7 +8,7 @@ import pytest
 
 from link.signing.key_file import FILE, save_keys
 from link.signing.keys import KeyRing, SigningKey, key_from_passphrase
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.interop import mavproxy as mavproxy_program
 from tests.interop.conftest import Rover
 
@@ -20,7 +20,7 @@ PASSPHRASE = "six-random-words-of-the-test"
 @pytest.fixture
 def options(tmp_path: Path) -> tuple[str, ...]:
     """The vehicle has the key that MAVProxy makes of the passphrase, and requires signing."""
-    key = SigningKey("mavproxy", Role.DRIVE, key_from_passphrase(PASSPHRASE))
+    key = SigningKey("mavproxy", SigningRole.DRIVE, key_from_passphrase(PASSPHRASE))
     save_keys(tmp_path / FILE, KeyRing().add(key))
     (tmp_path / "rover.toml").write_text("[signing]\nrequired = true\n")
     return ("--config", str(tmp_path / "rover.toml"), "--state", str(tmp_path))

@@ -9,7 +9,7 @@ import pytest
 
 from link.signing.key_actions import make_key
 from link.signing.key_file import FILE
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.e2e.programs import Vehicle
 from tests.interop import mavsdk_process
 from tests.interop.mavsdk_process import Client
@@ -19,7 +19,7 @@ pytestmark = [pytest.mark.interop, mavsdk_process.needed]
 
 
 def test_it_watches_and_is_told_why_it_may_not_arm(tmp_path: Path) -> None:
-    make_key(tmp_path / FILE, "laptop", Role.SET_UP)
+    make_key(tmp_path / FILE, "laptop", SigningRole.SET_UP)
     port = free_port()
     with ExitStack() as stack:
         vehicle = Vehicle(tmp_path, f"udpin:0.0.0.0:{port}", "--state", str(tmp_path))

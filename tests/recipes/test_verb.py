@@ -33,7 +33,8 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
 ROW = """    "horn": Verb(Group.VEHICLE, (
         Example("mavhelm horn --relay 1", "sounds the horn at relay 1"),
     ), {ONLY: VerbAction("sound the horn", horn.run,
-        (("--relay", {"type": float, "default": 0.0, "metavar": "N", "help": "its relay (0)"}),), takes_part=True)}),"""
+        (("--relay", {"type": float, "default": 0.0, "metavar": "N", "help": "its relay (0)"}),),
+        needs_session=True)}),"""
 
 SOUND_IT = """
 from dialects.enums import Command

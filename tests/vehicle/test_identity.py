@@ -1,4 +1,4 @@
-"""Who drives, through real channels: second links, twins with the driver's ids, old frames, restarts and stops.
+"""Who drives, through real channels: second links, duplicates with the driver's ids, old frames, restarts and stops.
 
 A twin is another program with the driver's system and component id. "Ours" is a ground station with sessions,
 "foreign" one without.
@@ -76,7 +76,7 @@ def test_with_the_fast_link_cut_the_late_one_does_not_drive_on(kind: type[Progra
     assert not wires.turning  # of a session for good; a foreign one has shown no neutral
 
 
-# ---- 2: twins ----
+# ---- 2: duplicates ----
 
 
 @pytest.mark.parametrize("address", ["gcs", "elsewhere"])

@@ -22,7 +22,7 @@ from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import to_stamp
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import link_and_stamp
 from link.signing.signing import Signing, SigningMemory
 from link.signing.streams import SignedStream
@@ -35,7 +35,7 @@ CYCLE = 0.02
 WITHIN = 8.0
 YEAR = 365 * 86_400.0
 STORE_PERIOD = 30.0
-VEHICLE = SigningPolicy(unsigned=Role.WATCH, open_stops=True)
+VEHICLE = SigningPolicy(unsigned=SigningRole.WATCH, open_stops=True)
 STATION = SigningPolicy(unsigned=None, greets_late=True, announces=True)
 AHEAD, NEUTRAL = Axes(throttle=1.0), Axes()
 DESK, ELSEWHERE = ("10.0.0.2", 14550), ("10.0.0.3", 14550)
@@ -300,7 +300,7 @@ def test_genuine_frame_that_is_too_old_is_answered_once_a_second() -> None:
 def test_what_is_not_genuine_or_is_a_copy_is_not_answered(kind: str) -> None:
     field = Field(NOON + 100.0)
     field.send(BEAT, DRIVER, 0.0, DESK, (255, 190))
-    stranger = SigningKey("x", Role.SET_UP, bytes(range(32)))
+    stranger = SigningKey("x", SigningRole.SET_UP, bytes(range(32)))
     data = {
         "forged": signed(BEAT, stranger, NOW - DAY),
         "unsigned": codec.frame(m.Heartbeat.id, codec.encode_payload(BEAT), 9, 250, 190),

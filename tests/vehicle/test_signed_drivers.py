@@ -12,7 +12,7 @@ from dialects.modes import Mode
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import TICKS
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import SecretHash
 from link.signing.signing import Signing
 from tests.link.signing.signed import DRIVER, NOON, NOW, WATCHER, keep
@@ -21,7 +21,7 @@ from vehicle.config.signing import SigningSettings, build_policy
 from vehicle.drive.roles import UNSIGNED
 
 AHEAD, NEUTRAL = Axes(throttle=1.0), Axes()
-DRIVES_ONLY = SigningKey("phone", Role.DRIVE, bytes(range(32)))
+DRIVES_ONLY = SigningKey("phone", SigningRole.DRIVE, bytes(range(32)))
 OPEN = build_policy(SigningSettings(), private=False)
 """A link that a whole network reaches, as the default has it."""
 STOPS = [(Command.COMPONENT_ARM_DISARM, (0,)), (Command.DO_SET_SAFETY_SWITCH_STATE, (0,)),
@@ -254,15 +254,15 @@ def test_a_driver_whose_key_is_withdrawn_stops() -> None:
 @pytest.mark.parametrize(
     ("settings", "private", "unsigned", "stops"),
     [
-        (SigningSettings(), True, Role.SET_UP, True),
-        (SigningSettings(), False, Role.WATCH, True),
-        (SigningSettings(allow_unsigned=True), False, Role.SET_UP, True),
+        (SigningSettings(), True, SigningRole.SET_UP, True),
+        (SigningSettings(), False, SigningRole.WATCH, True),
+        (SigningSettings(allow_unsigned=True), False, SigningRole.SET_UP, True),
         (SigningSettings(required=True), True, None, True),
         (SigningSettings(required=True), False, None, True),
         (SigningSettings(required=True, open_stops=False), False, None, False),
     ],
 )
 def test_what_the_file_makes_of_a_link(
-    settings: SigningSettings, private: bool, unsigned: Role | None, stops: bool
+    settings: SigningSettings, private: bool, unsigned: SigningRole | None, stops: bool
 ) -> None:
     assert build_policy(settings, private=private) == SigningPolicy(unsigned, open_stops=stops)

@@ -19,7 +19,7 @@ from link.protocol.framer import Framer
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import TICKS
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signing import Signing
 from tests.link.signing.signed import DRIVER as OWNER
 from tests.link.signing.signed import NOW, WATCHER, keep, signed
@@ -44,7 +44,7 @@ class CrowdedLink:
     def __init__(self, signing: Signing | None = None, key: SigningKey | None = None) -> None:
         self.now = 100.0
         self.rover = Rover(Params({}), now=self.now)
-        guard = SigningGuard(signing, SigningPolicy(Role.SET_UP, open_stops=True), 0) if signing else None
+        guard = SigningGuard(signing, SigningPolicy(SigningRole.SET_UP, open_stops=True), 0) if signing else None
         self.channel = Channel("udpin:0.0.0.0:14550", 0, system=1, component=1, wanted=MESSAGE_IDS, guard=guard)
         self._key = key
         self._frames = 0

@@ -13,7 +13,7 @@ from link.core import Outgoing, Received
 from link.services.command.jobs import CommandJob
 from link.services.command.request import CommandRequest
 from link.services.command.server import CommandReply
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.drive.ownership import Ownership
 from vehicle.drive.roles import role_denial
 from vehicle.navigation.geo import Home
@@ -49,11 +49,11 @@ class Access(Enum):
 
 
 NEEDED_ROLES = {
-    Access.ANYONE: Role.WATCH,
-    Access.CONNECTED: Role.WATCH,
-    Access.INTRODUCED: Role.DRIVE,
-    Access.DRIVER: Role.DRIVE,
-    Access.DRIVER_OR_UNCLAIMED: Role.DRIVE,
+    Access.ANYONE: SigningRole.WATCH,
+    Access.CONNECTED: SigningRole.WATCH,
+    Access.INTRODUCED: SigningRole.DRIVE,
+    Access.DRIVER: SigningRole.DRIVE,
+    Access.DRIVER_OR_UNCLAIMED: SigningRole.DRIVE,
 }
 """What the key of a sender must allow, where a row says nothing else."""
 
@@ -77,7 +77,7 @@ class CommandAccess:
         denied = self.reject(request, reason, now)
         return Result.TEMPORARILY_REJECTED if self._ownership.is_barred(request, now) else denied
 
-    def deny_role(self, needed: Role, request: CommandRequest, now: float) -> Result | None:
+    def deny_role(self, needed: SigningRole, request: CommandRequest, now: float) -> Result | None:
         """Return DENIED, after saying why, if the sender's key does not allow this; None if it does."""
         reason = role_denial(request, needed)
         if reason is None:
@@ -87,7 +87,7 @@ class CommandAccess:
 
     def may_set_up(self, received: Received, now: float) -> bool:
         """Return whether a sender may change parameters or files now; it is told if its key does not allow it."""
-        if reason := role_denial(received, Role.SET_UP):
+        if reason := role_denial(received, SigningRole.SET_UP):
             text = f"GCS {received.system}: change refused: {reason}"
             self._texts.reply(received, Severity.WARNING, text, now)
             return False

@@ -17,7 +17,7 @@ import msgspec
 from dialects.enums import Command, Result, Severity
 from link.core import Received
 from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
@@ -86,11 +86,11 @@ class ActuatorTest:
             CommandSpec(Command.DO_MOTOR_TEST, partial(self._handle_command, _parse_motor_test),
                         Access.DRIVER_OR_UNCLAIMED,
                         "disarmed; 1: motor from 1, 2: 0 (percent), 3: percent, 4: s up to 3",
-                        role=Role.SET_UP),
+                        role=SigningRole.SET_UP),
             CommandSpec(Command.ACTUATOR_TEST, partial(self._handle_command, _parse_actuator_test),
                         Access.DRIVER_OR_UNCLAIMED,
                         "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1",
-                        role=Role.SET_UP),
+                        role=SigningRole.SET_UP),
         )  # fmt: skip
 
     def update_liveness(self, received: Received, now: float) -> None:

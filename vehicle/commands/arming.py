@@ -14,7 +14,7 @@ from dialects.modes import Mode
 from link.core import Outgoing, Received
 from link.services.command.request import CommandRequest, value_or_default
 from link.services.command.server import CommandReply
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
@@ -117,7 +117,7 @@ class ArmingCommands:
     def _run_prearm_checks(self, request: CommandRequest, now: float) -> Result:
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
-        denial = role_denial(request, Role.DRIVE)
+        denial = role_denial(request, SigningRole.DRIVE)
         problems = [*([denial] if denial else []), *self._safety.prearm_problems(now)]
         self._report_problems(problems, request, now)
         if not problems:

@@ -12,7 +12,7 @@ import math
 from dialects.enums import Command, Result, Severity
 from link.services.command.jobs import CommandJob
 from link.services.command.request import CommandRequest
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
@@ -36,7 +36,7 @@ class CalibrationCommand:
         return (
             CommandSpec(Command.PREFLIGHT_CALIBRATION, self._calibrate, Access.DRIVER_OR_UNCLAIMED,
                         "disarmed; 1: 1 the gyro, at rest for 3 s, with progress",
-                        role=Role.SET_UP),
+                        role=SigningRole.SET_UP),
         )  # fmt: skip
 
     def _calibrate(self, request: CommandRequest, now: float) -> Result | CommandJob:

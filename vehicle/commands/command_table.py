@@ -13,7 +13,7 @@ import msgspec
 from dialects.messages import CommandInt, CommandLong
 from link.services.command.request import CommandRequest
 from link.services.command.server import CommandHandler, RunCommand
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.autonomy.mission.rules import DoItem
 from vehicle.commands.access import NEEDED_ROLES, Access, CommandAccess, CommandResult
 
@@ -33,7 +33,7 @@ class CommandSpec(msgspec.Struct, frozen=True):
     """Accepted when sent to system 0; where `stops` is given only what stops, so that a broadcast never arms."""
     item: DoItem | None = None
     """The DO item of a mission; None if a mission does not hold this command as a DO item."""
-    role: Role | None = None
+    role: SigningRole | None = None
     """What the key of its sender must allow; None: what `access` needs."""
 
     @property
@@ -43,7 +43,7 @@ class CommandSpec(msgspec.Struct, frozen=True):
         return f"{self._who}{role}"
 
     @property
-    def needed_role(self) -> Role:
+    def needed_role(self) -> SigningRole:
         """What the key of its sender must allow, unless it only stops."""
         return NEEDED_ROLES[self.access] if self.role is None else self.role
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dialects.enums import Command, Result, Severity
 from link.services.command.request import CommandRequest
 from link.services.mission.items import ItemRule, MissionItem
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.autonomy.mission.rules import DoItem
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
@@ -44,7 +44,7 @@ class FenceCommands:
             return self._access.reject(request, self._fence.damage, now)
         if action == DISABLE and self._safety.armed and self._fence.enabled:
             return self._access.reject(request, "disarm first", now)
-        if action == DISABLE and (denied := self._access.deny_role(Role.SET_UP, request, now)):
+        if action == DISABLE and (denied := self._access.deny_role(SigningRole.SET_UP, request, now)):
             return denied
         before = self._fence.enabled
         denial = self._fence.set_enabled(action == ENABLE)

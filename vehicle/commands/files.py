@@ -14,7 +14,7 @@ from link.services.ftp.files import FileTree, Folder, GeneratedFolder, Query
 from link.services.ftp.server import FtpServer
 from link.services.log.server import LogServer
 from link.services.param.pack import pack
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.commands.access import Access
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
@@ -75,7 +75,7 @@ class FileServices:
 
 def _may_write(received: Received, ownership: Ownership, now: float) -> bool | None:
     """Return whether a sender may write; None: it is the driver, but its proof is missing at the moment."""
-    if received.role < Role.SET_UP:
+    if received.role < SigningRole.SET_UP:
         return False
     return None if ownership.missing_proof(received, now) else ownership.denial_reason(received, now) is None
 

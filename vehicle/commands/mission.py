@@ -19,7 +19,7 @@ from link.services.mission.commit import PendingPlanWrite, PlanChange
 from link.services.mission.files import PlanFolder
 from link.services.mission.items import ItemRequest, Items, MissionItem, describe_rejection
 from link.services.mission.server import MissionServer
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.autonomy.mission.item_reached import ItemReachedSender
 from vehicle.autonomy.mission.rules import DoItem, find_unsupported_items, plan_rules
 from vehicle.autonomy.navigator import PlanIds
@@ -143,7 +143,7 @@ class MissionService:
 
     def authorize_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         """Accept a change from the driver only, and of no plan that is in use."""
-        denial = role_denial(received, Role.SET_UP) or self._control.ownership.denial_reason(received, now)
+        denial = role_denial(received, SigningRole.SET_UP) or self._control.ownership.denial_reason(received, now)
         denial = denial or self._in_use(kind)
         if denial is None:
             return MissionResult.ACCEPTED

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects.enums import Command, DriveType, Result, Severity
 from link.services.command.request import CommandRequest
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
@@ -28,7 +28,7 @@ class PreflightCommands:
         return (
             CommandSpec(Command.PREFLIGHT_REBOOT_SHUTDOWN, self._reboot, Access.DRIVER_OR_UNCLAIMED,
                         "disarmed, REBOOT_ENABLE; 1: 1 this program, 2 shut down; 2: 1 reboot, 2 shut down",
-                        role=Role.SET_UP),
+                        role=SigningRole.SET_UP),
             CommandSpec(Command.DO_SEND_BANNER, self._send_banner, Access.CONNECTED,
                         "sends name and version as STATUSTEXT (of ardupilotmega.xml)"),
         )  # fmt: skip

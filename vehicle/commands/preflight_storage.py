@@ -14,7 +14,7 @@ from dialects.enums import Command, MissionResult, Result
 from link.services.command.jobs import CommandJob
 from link.services.command.request import CommandRequest, value_or_default
 from link.services.mission.commit import WRITE_TIMEOUT, PlanChange
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
@@ -45,7 +45,7 @@ class PreflightStorage:
             CommandSpec(Command.PREFLIGHT_STORAGE, self._run, Access.DRIVER_OR_UNCLAIMED,
                         "disarmed; 1: 2 or 4 resets parameters to their defaults, or to the values of this run; "
                         "2: 2 erases the plans; 1 saves either again",
-                        role=Role.SET_UP),
+                        role=SigningRole.SET_UP),
         )  # fmt: skip
 
     def _run(self, request: CommandRequest, now: float) -> Result | CommandJob:

@@ -10,14 +10,14 @@ from dialects.enums import Severity
 from dialects.messages import RadioStatus, SetupSigning
 from link.core import Received
 from link.signing.keys import KeyRing, SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.commands.access import Access
 from vehicle.commands.context import COMPONENT, Context
 from vehicle.commands.inbound import InboundMessage, InboundTable
 from vehicle.storage.store import PendingWrite
 
-CABLE_ROLE = Role.SET_UP
-"""Role of a key that came over a cable: who holds the vehicle in the hand may do anything with it."""
+CABLE_ROLE = SigningRole.SET_UP
+"""SigningRole of a key that came over a cable: who holds the vehicle in the hand may do anything with it."""
 NAME = "cable-{}"
 """Name of such a key, with its fingerprint."""
 OWN_COMPONENTS = (0, COMPONENT)
@@ -116,7 +116,7 @@ class SigningCommands:
 
     def _may_add(self, received: Received) -> bool:
         """Return whether the message is signed with a key that may add others."""
-        return received.signed and received.role >= Role.SET_UP
+        return received.signed and received.role >= SigningRole.SET_UP
 
     def _reply(self, received: Received, text: str, now: float, severity: Severity = Severity.WARNING) -> None:
         self._texts.reply(received, severity, text, now)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from link.protocol.signing_guard import SigningPolicy
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.transport.reach import is_interface_name
 
 
@@ -41,4 +41,4 @@ def build_policy(settings: SigningSettings, *, private: bool) -> SigningPolicy:
     if settings.required:
         return SigningPolicy(unsigned=None, open_stops=settings.open_stops)
     trusted = private or settings.allow_unsigned
-    return SigningPolicy(unsigned=Role.SET_UP if trusted else Role.WATCH, open_stops=True)
+    return SigningPolicy(unsigned=SigningRole.SET_UP if trusted else SigningRole.WATCH, open_stops=True)

@@ -13,7 +13,7 @@ from dialects.axes import FULL_DEFLECTION
 from dialects.enums import DriveType, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from link.core import Received
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.demand import Demand, RcOverride, from_manual_control
 from vehicle.drive.mixer import MIXERS
@@ -57,7 +57,7 @@ class Control:
 
     def hear(self, received: Received, now: float) -> None:
         """Note a message of anybody, before it is handled; those whose key may not drive are not successors."""
-        if not received.introduced or received.role < Role.DRIVE:
+        if not received.introduced or received.role < SigningRole.DRIVE:
             return
         if self.ownership.hear(received, now):
             self._begin_succession(now)
@@ -109,7 +109,7 @@ class Control:
 
     def handle_operator_presence(self, received: Received, message: RoverOperatorPresence, now: float) -> bool:
         """Handle a ROVER_OPERATOR_PRESENCE; return True if it is the demand now. An ignored one is not reported."""
-        if message.target_system != self.system or not received.introduced or received.role < Role.DRIVE:
+        if message.target_system != self.system or not received.introduced or received.role < SigningRole.DRIVE:
             return False
         ownership, conversation = self.ownership, Conversation.of(received)
         proof = parse_proof(message, now - self._boot)

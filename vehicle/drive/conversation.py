@@ -14,7 +14,7 @@ from typing import NamedTuple, Protocol
 import msgspec
 
 from link.core import Peer, Received
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 FRAMES_REMEMBERED = 512
 """Frames of the driver's ids that are remembered: each packet number twice."""
@@ -49,7 +49,7 @@ class Sender(Protocol):
         """Its run of packet numbers."""
 
     @property
-    def role(self) -> Role:
+    def role(self) -> SigningRole:
         """What its key allows."""
 
     @property
@@ -76,9 +76,9 @@ class Conversation(NamedTuple):
         return self.system, self.component
 
     @property
-    def role(self) -> Role:
+    def role(self) -> SigningRole:
         """What is asked of a conversation was checked with its message: a key has a role, an address has none."""
-        return Role.SET_UP
+        return SigningRole.SET_UP
 
     @property
     def signed(self) -> bool:

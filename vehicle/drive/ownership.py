@@ -23,7 +23,7 @@ from dialects import messages as m
 from dialects.enums import Severity
 from dialects.traits import COMMANDS, DEMANDS, only_asks
 from link.core import Received
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.drive.conversation import Conversation, FrameMemory, Newcomer, Sender
 from vehicle.drive.driver import CLASH_PAUSE, Driver
 from vehicle.drive.operator_session import PROOF_VALID, SENDERS_MAX, DrivingSession, Proof, RecentProofs
@@ -78,7 +78,7 @@ class Ownership:
 
     def is_driver(self, sender: Sender, now: float) -> bool:
         """Return whether a message or command is from the driver, with a key that may drive."""
-        return self.driver is not None and sender.role >= Role.DRIVE and self.driver.is_sender(sender, now)
+        return self.driver is not None and sender.role >= SigningRole.DRIVE and self.driver.is_sender(sender, now)
 
     def has_driver_ids(self, sender: Sender) -> bool:
         """Return whether a sender has the ids of the driver, and may yet be another program."""
@@ -118,7 +118,7 @@ class Ownership:
 
     def denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a sender may not command, or None if it is in control or no ground station is."""
-        if denial := role_denial(sender, Role.DRIVE):
+        if denial := role_denial(sender, SigningRole.DRIVE):
             return denial
         if self._is_excluded(sender):
             return f"only GCS {self._params['MAV_GCS_SYSID']:g} may control (MAV_GCS_SYSID)"
@@ -132,13 +132,17 @@ class Ownership:
     def takeover_denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a sender may not take control, or None if it may."""
         reason = self.denial_reason(sender, now)
-        if sender.role < Role.DRIVE or self._is_excluded(sender) or not (self.takeover_allowed or self.is_lost(now)):
+        if (
+            sender.role < SigningRole.DRIVE
+            or self._is_excluded(sender)
+            or not (self.takeover_allowed or self.is_lost(now))
+        ):
             return reason
         return None
 
     def may_be_given_to(self, sender: Sender) -> bool:
         """Return whether the driver may give control to a sender that asks for it."""
-        return sender.role >= Role.DRIVE and not self._is_excluded(sender) and not self.has_driver_ids(sender)
+        return sender.role >= SigningRole.DRIVE and not self._is_excluded(sender) and not self.has_driver_ids(sender)
 
     def setpoint_denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a setpoint does not count, or None: only the driver's do, and only fresh ones."""
@@ -156,7 +160,7 @@ class Ownership:
         It may again with its next good proof, so that its sender need only repeat what it has sent.
         """
         driver = self.driver
-        if driver is None or driver.session is None or sender.role < Role.DRIVE or self._is_excluded(sender):
+        if driver is None or driver.session is None or sender.role < SigningRole.DRIVE or self._is_excluded(sender):
             return None
         link = driver.session.links.get(Conversation.of(sender))
         if link is None or driver.is_sender(sender, now):

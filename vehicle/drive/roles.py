@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 UNSIGNED = "not signed; use a key, see docs/security.md"
-_MAY_ONLY = {Role.WATCH: "its key may only watch", Role.DRIVE: "its key may drive but not set up"}
+_MAY_ONLY = {SigningRole.WATCH: "its key may only watch", SigningRole.DRIVE: "its key may drive but not set up"}
 
 
 class RoleHolder(Protocol):
     """The sender of a message or a command: `link.core.Received` and `CommandRequest` are two."""
 
     @property
-    def role(self) -> Role:
+    def role(self) -> SigningRole:
         """What the sender may do."""
 
     @property
@@ -22,7 +22,7 @@ class RoleHolder(Protocol):
         """Whether it has signed."""
 
 
-def role_denial(sender: RoleHolder, needed: Role) -> str | None:
+def role_denial(sender: RoleHolder, needed: SigningRole) -> str | None:
     """Return why the role of a sender does not suffice, or None."""
     if sender.role >= needed:
         return None

@@ -10,7 +10,7 @@ from link.endpoint import parse_endpoint
 from link.link_signing import LinkSigning
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.keys import KeyRing
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.transport.reach import find_trust, missing_interfaces
 from link.transport.transport import Link
 from vehicle.config.run_settings import SettingsError
@@ -109,7 +109,7 @@ class LinkGuards:
             self._link_signing.close(now)
 
     def _guard(self, link: Link, policy: SigningPolicy) -> SigningGuard | None:
-        if not self._link_signing.signing.ring.keys and policy.unsigned is Role.SET_UP:
+        if not self._link_signing.signing.ring.keys and policy.unsigned is SigningRole.SET_UP:
             return None
         return SigningGuard(self._link_signing.signing, policy, link.channel.index)
 

@@ -16,7 +16,7 @@ from link.core import RECORDER, Outgoing, Received
 from link.services.ftp.files import Content, DirectoryEntry, Folder, MemoryFolder, Query, ReadOnlyFolder
 from link.services.ftp.protocol import FtpError
 from link.services.param.values import REAL32
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.drive.control import Control
 from vehicle.drive.roles import role_denial
 from vehicle.params import Params
@@ -140,7 +140,7 @@ class Logbook:
 
     def handle_log_erase(self, received: Received, now: float) -> None:
         """Handle LOG_ERASE: remove all logs, for the ground station in control and while disarmed."""
-        denial = role_denial(received, Role.SET_UP) or self._control.ownership.denial_reason(received, now)
+        denial = role_denial(received, SigningRole.SET_UP) or self._control.ownership.denial_reason(received, now)
         denial = denial or self._removal_denial_reason()
         if not received.introduced:
             denial = "its HEARTBEAT is missing"

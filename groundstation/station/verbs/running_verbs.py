@@ -67,7 +67,7 @@ class Verb(msgspec.Struct, eq=False):
     """One verb."""
 
     name: str
-    takes_part: bool
+    needs_session: bool
     seat: VerbSeat
     follows: bool = False
     """It keeps the session going that a verb has used just before."""
@@ -245,7 +245,7 @@ class RunningVerbs:
 
     def _keeps(self, verb: Verb) -> bool:
         """Return whether a verb keeps vehicles from missing their ground station."""
-        return verb.takes_part or (verb.follows and not any(each.takes_part for each in self._verbs))
+        return verb.needs_session or (verb.follows and not any(each.needs_session for each in self._verbs))
 
     def _may_demand(self, verb: Verb, message: m.Message, now: float) -> bool:
         """Return whether to send a demand or a proof; refuse one that moves while somebody else drives."""
@@ -268,7 +268,7 @@ class RunningVerbs:
     def _prove(self, verb: Verb, message: m.Message, now: float) -> None:
         """Prove the session before a message that may need control; a live screen does so all the time."""
         contact = self._fleet.get(getattr(message, "target_system", 0))
-        if contact is None or not contact.state.has_rover_dialect or not verb.takes_part or self._operator.live:
+        if contact is None or not contact.state.has_rover_dialect or not verb.needs_session or self._operator.live:
             return
         proof = isinstance(message, m.RoverOperatorPresence)
         if not proof and now - self._proven.get(contact.state.system, -math.inf) >= IDLE_PROOF_PERIOD:

@@ -76,7 +76,7 @@ def emergency_text(vehicle: VehicleView, clear: str) -> str:
     """Return what is known of an emergency stop: only what the vehicle has confirmed is claimed."""
     progress = vehicle.emergency_progress
     request = "on" if progress is None else _PROGRESS[progress]
-    if vehicle.stop_doubt and (vehicle.twins or not vehicle.armed):
+    if vehicle.stop_doubt and (vehicle.duplicates or not vehicle.armed):
         return f"EMERGENCY STOP {request}, but {vehicle.stop_doubt}"
     if vehicle.armed:
         return f"EMERGENCY STOP {request}, but the vehicle {_reports(vehicle)} ARMED"
@@ -207,10 +207,10 @@ def _id_conflict(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, now.snapshot.id_conflict)
 
 
-def _twins(now: DisplayState) -> Iterator[Alert]:
+def _duplicates(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
-    if vehicle is not None and vehicle.twins:
-        text = f"system id {vehicle.system} is used by several vehicles: {vehicle.twins}"
+    if vehicle is not None and vehicle.duplicates:
+        text = f"system id {vehicle.system} is used by several vehicles: {vehicle.duplicates}"
         yield Alert(AlertLevel.DANGER, text)
 
 
@@ -292,8 +292,9 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _breach, _handover, _twins, _state, _key, _gate,
-    _obeys, _operator, _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording, _vehicles,
+    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _breach, _handover, _duplicates, _state, _key,
+    _gate, _obeys, _operator, _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording,
+    _vehicles,
 )  # fmt: skip
 """Most urgent first."""
 

@@ -58,7 +58,18 @@ def style(colour: str = TEXT, on: str = BACKGROUND, *, bold: bool = False) -> St
     return Style(color=_in_use.colours[ink], bgcolor=_in_use.colours[ground], bold=bold or None)
 
 
-_BADGES = frozenset({Role.DANGER, Role.BAD, Role.CAUTION, Role.KEY, Role.GOOD, Role.INFO, Role.EARTH, Role.REPLAY})
+_BADGES = frozenset(
+    {
+        Role.DANGER,
+        Role.BAD,
+        Role.CAUTION,
+        Role.KEY,
+        Role.GOOD,
+        Role.INFO,
+        Role.EARTH,
+        Role.REPLAY,
+    }
+)
 """Grounds that are drawn in reverse without colours, for badges and for the part of a bar in one cell."""
 
 _LOUD = frozenset({Role.BAD, Role.CAUTION, Role.KEY, Role.STRONG})
@@ -67,7 +78,10 @@ _LOUD = frozenset({Role.BAD, Role.CAUTION, Role.KEY, Role.STRONG})
 
 def _attributes(ink: Role, ground: Role, bold: bool) -> Style:
     """Return the style without colours: loud badges in reverse, the selected row and what is bad underlined."""
-    quiet = ink is Role.ON_BADGE and ground in (Role.INFO, Role.GOOD)  # beside ARMED, which must stand out
+    quiet = ink is Role.ON_BADGE and ground in (
+        Role.INFO,
+        Role.GOOD,
+    )  # beside ARMED, which must stand out
     return Style(
         bold=bold or quiet or ink in _LOUD or ground is Role.DANGER or None,
         reverse=(ground in _BADGES and not quiet) or None,

@@ -84,7 +84,15 @@ _COLOUR_BLIND_16 = _DARK_16 | {
     Role.CAUTION: "#ffffff", Role.BAD: "#ffff55",
 }  # fmt: skip
 
-_GROUNDS = (Role.BACKGROUND, Role.PANEL, Role.SELECTED, Role.NOTE, Role.DANGER, Role.ON_BADGE, Role.SKY)
+_GROUNDS = (
+    Role.BACKGROUND,
+    Role.PANEL,
+    Role.SELECTED,
+    Role.NOTE,
+    Role.DANGER,
+    Role.ON_BADGE,
+    Role.SKY,
+)
 
 _NO_COLOUR = {role: "#000000" if role in _GROUNDS else "#ffffff" for role in Role}
 

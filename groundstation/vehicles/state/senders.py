@@ -135,7 +135,7 @@ class Senders:
         """Return whether senders that are heard report differently now, for whatever reason."""
         return any(each.is_live(now) and each.differs_since <= now for each in self._senders.values())
 
-    def describe_twins(self, now: float) -> str:
+    def describe_duplicates(self, now: float) -> str:
         """Return what shows that several vehicles use this id, in words; "" if nothing does."""
         live = [each for each in self._senders.values() if each.is_live(now)]
         for sender, other in _pairs(live):

@@ -28,7 +28,7 @@ VERBS: dict[str, Verb] = {
     "arm": Verb(Group.DRIVE, (
         Example("mavhelm arm --wait 20", "waits until the vehicle is ready, then arms it", Stage.ARMED),
     ), {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
-                             takes_part=True, many=True)}),
+                             needs_session=True, many=True)}),
     "disarm": Verb(Group.DRIVE, (
         Example("mavhelm disarm", "repeated until the heartbeat reports it; so are stop, estop", Stage.STOPPING),
         Example("mavhelm disarm --all",
@@ -55,12 +55,12 @@ VERBS: dict[str, Verb] = {
         "request": VerbAction(
             "take control, or ask the driver for it", control.request,
             (("--takeover", {"action": "store_true", "help": "others may take control without asking"}),),
-            takes_part=True, many=True),
-        "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, takes_part=True,
+            needs_session=True, many=True),
+        "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, needs_session=True,
                               many=True),
         "give": VerbAction(
             "release control once another ground station asks for it, within --wait", control.give,
-            (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), takes_part=True),
+            (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), needs_session=True),
     }, "show, request, release or give control of a vehicle"),
     "drive": Verb(Group.DRIVE, (
         Example("mavhelm drive --throttle 30 --for 2", "by hand: %; then neutral. It must be armed", Stage.ARMED),
@@ -74,7 +74,7 @@ VERBS: dict[str, Verb] = {
          ("--speed", {"type": drive.limit, "metavar": "LIMIT", "help": "of the keys, 0.1 to 1, as for the screen"}),
          ("--arm", {"action": "store_true", "help": "arm first, and disarm at the end"}),
          ("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what --arm has armed"})),
-        takes_part=True, prepare=drive.prepare, guarded=lambda _: True)}),
+        needs_session=True, prepare=drive.prepare, guarded=lambda _: True)}),
     "motor": Verb(Group.VEHICLE, (
         Example("mavhelm motor 1 12 --for 1", "turn motor 1 at 12 % for 1 s, wheels off the ground"),
     ), {ONLY: VerbAction("turn one motor of a disarmed vehicle, wheels off the ground", motor.run,
@@ -90,10 +90,10 @@ VERBS: dict[str, Verb] = {
     "mode": Verb(Group.DRIVE, (
         Example("mavhelm mode HOLD", "done when the heartbeat reports it"),
     ), {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
-                              (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True, many=True)}),
+                              (("name", {"metavar": "MODE"}),), needs_session=True, shows_neutral=True, many=True)}),
     "reboot": Verb(Group.VEHICLE, (
         Example("mavhelm reboot", "the vehicle refuses while it is armed", Stage.AFTERWARDS),
-    ), {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, takes_part=True,
+    ), {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, needs_session=True,
                                 many=True)}),
 }  # fmt: skip
 """Verb -> its row."""

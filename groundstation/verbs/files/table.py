@@ -24,6 +24,7 @@ else:
 
 _PATTERNS = ("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"})
 _REMOTE = ("remote", {"metavar": "REMOTE", "help": "path on the vehicle, e.g. /logs/00000001.tlog"})
+_SURE = ("--yes", {"action": "store_true", "help": "do it: there is no undo"})
 _FORMAT = ("--format", {"choices": [form.value for form in ParamForm], "default": ParamForm.MAVPROXY.value,
                         "help": "MAVProxy (default), QGroundControl or Mission Planner"})  # fmt: skip
 
@@ -45,7 +46,7 @@ VERBS: dict[str, Verb] = {
         "get": VerbAction("print parameters", param.get, (_PATTERNS,), watches=True, many=True),
         "set": VerbAction(
             "set one parameter", param.set_value,
-            (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})), takes_part=True,
+            (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})), needs_session=True,
             many=True),
         "save": VerbAction(
             "write parameters to a file", param_files.save,
@@ -54,13 +55,13 @@ VERBS: dict[str, Verb] = {
         "load": VerbAction(
             "set what differs from a file, all but read-only values and the vehicle's id", param_files.load,
             (FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
-            takes_part=True, many=True, only_reads=param_files.only_prints),
+            needs_session=True, many=True, only_reads=param_files.only_prints),
         "diff": VerbAction("print where a file and the vehicle differ", param_files.diff, (FILE,), watches=True,
                            many=True),
-        "store": VerbAction("have the vehicle store all parameters", param.store, takes_part=True,
+        "store": VerbAction("have the vehicle store all parameters", param.store, needs_session=True,
                             many=True),
         "reset": VerbAction("have the vehicle reset all parameters to their defaults", param.reset,
-                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),), takes_part=True,
+                            (_SURE,), needs_session=True,
                             many=True),
     }, "get, set, save, load, diff, store or reset parameters of a vehicle"),
     "log": Verb(Group.DATA, (
@@ -73,7 +74,7 @@ VERBS: dict[str, Verb] = {
                           (("log", {"metavar": "ID", "help": "number of the log, or latest"}),
                            ("file", {"nargs": "?", "metavar": "FILE"}), YES), watches=True),
         "erase": VerbAction("have the vehicle erase all its logs", log.erase,
-                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),), takes_part=True),
+                            (_SURE,), needs_session=True),
     }, "list, get or erase the logs on the vehicle"),
     "ftp": Verb(Group.DATA, (
         Example("mavhelm ftp ls /logs", "files, where the vehicle has MAVLink FTP", Stage.AFTERWARDS),
@@ -87,8 +88,8 @@ VERBS: dict[str, Verb] = {
         "get": VerbAction("download a file, resume, and compare its checksum", ftp.get,
                           (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}), YES), watches=True),
         "put": VerbAction("upload a file and compare its checksum", ftp.put, (("local", {"metavar": "FILE"}), _REMOTE),
-                          takes_part=True),
-        "rm": VerbAction("remove a file", ftp.rm, (_REMOTE,), takes_part=True),
+                          needs_session=True),
+        "rm": VerbAction("remove a file", ftp.rm, (_REMOTE,), needs_session=True),
         "crc": VerbAction("print the checksum of a file, or compare it with a file here", ftp.crc,
                           (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"})), watches=True),
     }, "ls, get, put, rm or crc files on the vehicle"),

@@ -127,10 +127,10 @@ async def _compare_senders(session: VerbSession, output: Output) -> None:
     """Say if several vehicles use the id of this one; senders that differ are heard until a late link is none."""
     senders = session.vehicle.senders
     await session.wait_until_true(
-        lambda: not senders.differ(session.now) or bool(senders.describe_twins(session.now)), DIFFERS_FOR + PERIOD
+        lambda: not senders.differ(session.now) or bool(senders.describe_duplicates(session.now)), DIFFERS_FOR + PERIOD
     )
-    if twins := senders.describe_twins(session.now):
-        output.error(f"several vehicles use system id {session.vehicle.system}: {twins}")
+    if duplicates := senders.describe_duplicates(session.now):
+        output.error(f"several vehicles use system id {session.vehicle.system}: {duplicates}")
 
 
 class _Asker:
@@ -182,8 +182,8 @@ def _print_short(contact: VehicleContact, now: float, output: Output) -> None:
     output.record(time=clock.isoformat(timespec="milliseconds").replace("+00:00", "Z"), **_fields(contact, now))
     cells = (_state(contact), _battery(view), _speed(view), _position(contact), _gps(view), _failsafes(view))
     heard = "" if view.alive else f"  link lost for {view.silence:.0f} s"
-    twins = contact.state.senders.describe_twins(now)
-    heard += f"  several vehicles use its id: {twins}" if twins else ""
+    duplicates = contact.state.senders.describe_duplicates(now)
+    heard += f"  several vehicles use its id: {duplicates}" if duplicates else ""
     output.line(f"{clock:%H:%M:%SZ} {contact.state.mode:<9} {'  '.join(cells)}{heard}")
     output.flush()
 
@@ -272,7 +272,7 @@ def _fields(contact: VehicleContact, now: float) -> dict[str, Any]:
         "fix_type": view.gps_fix, "satellites_visible": view.gps_satellites,
         "lat": place.latitude if place else None, "lon": place.longitude if place else None,
         "groundspeed": view.speed, "heading": None if view.heading is None else math.degrees(view.heading),
-        "silence": view.silence, "twins": contact.state.senders.describe_twins(now) or None,
+        "silence": view.silence, "duplicates": contact.state.senders.describe_duplicates(now) or None,
     }  # fmt: skip
 
 

@@ -85,7 +85,7 @@ VERBS: dict[str, Verb] = {
          ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"}),
          ("--int", {"action": "store_true",
                     "help": "as COMMAND_INT; 5 and 6 in degrees for a command with a position, else whole numbers"})),
-        takes_part=True, shows_neutral=True, many=True, check=command.check_command)}),
+        needs_session=True, shows_neutral=True, many=True, check=command.check_command)}),
     "send": Verb(Group.DATA, (
         Example("mavhelm send STATUSTEXT severity=INFO text=hello", "any message"),
     ), {ONLY: VerbAction("send a message; what is not given is 0, and what can move the vehicle needs --yes", send.run,

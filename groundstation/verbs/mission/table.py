@@ -28,10 +28,10 @@ def _plan_actions(name: str) -> dict[str, VerbAction]:
         "get": VerbAction(f"download the {name} into a file: .plan or .waypoints", lazy_call(plan.get, kind),
                           (FILE, YES), watches=True),
         "put": VerbAction(f"upload the {name} of a file", lazy_call(plan.put, kind), (FILE,), aliases=("set",),
-                          takes_part=True, many=True),
+                          needs_session=True, many=True),
         "check": VerbAction(f"compare the {name} of the vehicle with a file", lazy_call(mission.check, kind), (FILE,),
                             watches=True, many=True),
-        "clear": VerbAction(f"clear the {name} on the vehicle", lazy_call(plan.clear, kind), takes_part=True,
+        "clear": VerbAction(f"clear the {name} on the vehicle", lazy_call(plan.clear, kind), needs_session=True,
                             many=True),
         **_MORE_PLAN_ACTIONS.get(name, {}),
     }  # fmt: skip
@@ -41,14 +41,14 @@ _ITEM = {"type": mission.item_number, "metavar": "N", "help": "number of the ite
 _MORE_PLAN_ACTIONS: dict[str, dict[str, VerbAction]] = {
     "mission": {
         "start": VerbAction("start the mission, or go on with it", mission.start, (("item", {"nargs": "?", **_ITEM}),),
-                            takes_part=True, shows_neutral=True, many=True),
+                            needs_session=True, shows_neutral=True, many=True),
         "pause": VerbAction("stop where the vehicle is; start goes on", mission.pause, many=True),
-        "jump": VerbAction("make an item the current one", mission.jump, (("item", _ITEM),), takes_part=True,
+        "jump": VerbAction("make an item the current one", mission.jump, (("item", _ITEM),), needs_session=True,
                            shows_neutral=True, many=True),
     },
     "fence": {
-        "on": VerbAction("enable the fence", lazy_call(mission.enable_fence, True), takes_part=True, many=True),
-        "off": VerbAction("disable the fence", lazy_call(mission.enable_fence, False), takes_part=True, many=True),
+        "on": VerbAction("enable the fence", lazy_call(mission.enable_fence, True), needs_session=True, many=True),
+        "off": VerbAction("disable the fence", lazy_call(mission.enable_fence, False), needs_session=True, many=True),
     },
 }  # fmt: skip
 """Plan -> its actions beside those of all plans."""
@@ -64,15 +64,16 @@ VERBS: dict[str, Verb] = {
                         "help": "degrees; or `wp`, and the number of an item of the mission in place of LON"}),
          ("longitude", {"nargs": "?", "type": finite, "metavar": "LON", "help": "degrees"}),
          ("--by", {"nargs": 2, "type": finite, "metavar": ("NORTH", "EAST"), "help": "m from where it is"})),
-        takes_part=True, shows_neutral=True, check=go_to.check_place)}),
+        needs_session=True, shows_neutral=True, check=go_to.check_place)}),
     "home": Verb(Group.DRIVE, (
         Example("mavhelm home", "RTL", Stage.MOVING),
     ), {ONLY: VerbAction("drive home by itself; done when the heartbeat reports RTL", go_to.home,
-                              takes_part=True, shows_neutral=True, many=True)}),
+                              needs_session=True, shows_neutral=True, many=True)}),
     "speed": Verb(Group.DRIVE, (
         Example("mavhelm speed 0.6", "m/s of modes that drive by themselves", Stage.MOVING),
     ), {ONLY: VerbAction("set the speed of modes that drive by themselves", go_to.speed,
-        (("speed", {"type": metres_per_second, "metavar": "M/S"}),), takes_part=True, shows_neutral=True, many=True)}),
+        (("speed", {"type": metres_per_second, "metavar": "M/S"}),), needs_session=True, shows_neutral=True,
+        many=True)}),
     "mission": Verb(Group.PLANS, (
         Example("mavhelm mission put patrol.plan", "upload it; the old one stays until it is accepted"),
         Example("mavhelm mission check patrol.plan", "is it the vehicle's? code 7 if not"),

@@ -92,7 +92,7 @@ class ShellVerb:
             session.core,
             self._name,
             self._flush,
-            takes_part=not action.watches,
+            needs_session=not action.watches,
             follows=self._follows,
             silence=self._silence,
         )

@@ -93,7 +93,7 @@ class KeptSession:
 
 def choose_identity(action: VerbAction, system: int, now: float) -> tuple[tuple[int, int], KeptSession]:
     """Return our ids, and our session: that of the verb before if this one takes part or follows, else a new one."""
-    if action.takes_part:
+    if action.needs_session:
         kept = KeptSession.take(system, now)
     else:
         kept = (KeptSession.follow(system, now) if action.follows else None) or KeptSession(_new_number())

@@ -63,7 +63,7 @@ class StationSeat:
         name: str,
         flush: Callable[[], None],
         *,
-        takes_part: bool = False,
+        needs_session: bool = False,
         follows: bool = False,
         silence: Callable[[float], float] = lambda now: 0.0,
     ) -> None:
@@ -72,7 +72,7 @@ class StationSeat:
         """Has what ends the verb: a mistake in it, or a demand that is refused."""
         self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
-        self._verb = Verb(name, takes_part, self, follows=follows)
+        self._verb = Verb(name, needs_session, self, follows=follows)
 
     def join(self) -> None:
         """Begin: take what the station knows."""

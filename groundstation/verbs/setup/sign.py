@@ -19,9 +19,9 @@ from link.signing.key_file import KeyFileError, load_keys, station_key_file
 from link.signing.key_input import STDIN, SecretForm, SecretInputError, read_secret
 from link.signing.keys import SigningKey
 from link.signing.missing_package import MissingPackageError
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
-ROLE = Role.SET_UP
+ROLE = SigningRole.SET_UP
 """In the file; the vehicle decides by its own."""
 T = TypeVar("T")
 

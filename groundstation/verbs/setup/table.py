@@ -41,7 +41,7 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("calibrate gyros, level or pressure at rest, compass or RC sticks by hand", calibrate.run,
         (("kind", {"choices": calibrate.CHOICES, "metavar": "KIND", "help": "gyro, level, pressure, compass, sticks"}),
          ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "for the sticks (default: 20)"})),
-        check=calibrate.check, takes_part=True, only_reads=calibrate.only_reads,
+        check=calibrate.check, needs_session=True, only_reads=calibrate.only_reads,
     )}),
     "sign": Verb(Group.SETUP, (
         Example("mavhelm sign new rover",

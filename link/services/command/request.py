@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from dialects.messages import CommandInt, CommandLong
 from link.core import Peer, Received
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 PROGRESS_TIMEOUT = 3.0
 """s in which the same command from the same sender is a repeat."""
@@ -41,7 +41,7 @@ class CommandRequest:
     """Its sender's run of packet numbers (link/core.py, Received)."""
     repeated: bool = field(default=False, compare=False)
     """May be a repeat: `confirmation` is above 0, or it is a COMMAND_INT, which has none."""
-    role: Role = field(default=Role.SET_UP, compare=False)
+    role: SigningRole = field(default=SigningRole.SET_UP, compare=False)
     """What the key of its sender allows."""
     signed: bool = field(default=False, compare=False)
 

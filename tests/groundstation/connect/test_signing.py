@@ -14,7 +14,7 @@ from link.protocol.channel import Channel
 from link.protocol.link_events import link_problem
 from link.signing.key_actions import make_key, remove_key, use_key
 from link.signing.key_file import station_key_file
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.link.frames import heartbeat
 from tests.link.signing.signed import HERE, send, signed
 
@@ -34,7 +34,7 @@ def test_without_keys_nothing_is_signed(keys: Path) -> None:
 
 def test_the_named_key_signs_and_a_missing_name_is_told(keys: Path) -> None:
     for name in ("first", "second"):
-        make_key(keys, name, Role.SET_UP)
+        make_key(keys, name, SigningRole.SET_UP)
     for asked, signs in ((None, "first"), ("second", "second")):
         opened = open_signing(0.0, key=asked)
         assert opened is not None
@@ -51,7 +51,7 @@ def test_signing_that_is_required_without_a_key_is_told(keys: Path) -> None:
 
 
 def test_a_key_file_that_others_can_read_is_told(keys: Path) -> None:
-    make_key(keys, "laptop", Role.SET_UP)
+    make_key(keys, "laptop", SigningRole.SET_UP)
     keys.chmod(0o644)
     with pytest.raises(SigningError, match="chmod 600"):
         open_signing(0.0)
@@ -70,10 +70,10 @@ def taken(station: StationSigning, now: float) -> str:
 def test_a_running_station_adopts_keys_made_chosen_and_forgotten(keys: Path) -> None:
     station = StationSigning(0.0)
     assert station.link_signing.guard(0) is None, "without keys nothing is computed"
-    first = make_key(keys, "first", Role.SET_UP)
+    first = make_key(keys, "first", SigningRole.SET_UP)
     assert taken(station, 1.0) == f"keys changed: first ({first.fingerprint}); first signs"
     assert station.link_signing.guard(0) is not None
-    make_key(keys, "second", Role.SET_UP)
+    make_key(keys, "second", SigningRole.SET_UP)
     use_key(keys, "second")
     while not taken(station, 100.0).endswith("second signs"):
         pass
@@ -96,7 +96,7 @@ def break_file(keys: Path) -> None:
 
 def test_a_chosen_key_that_is_gone_and_a_broken_file_are_told(keys: Path) -> None:
     for name in ("first", "second"):
-        make_key(keys, name, Role.SET_UP)
+        make_key(keys, name, SigningRole.SET_UP)
     station = StationSigning(0.0, key="second", required=True)
     remove_key(keys, "second")
     assert taken(station, 1.0).endswith("first signs; --sign-key second is gone")
@@ -112,7 +112,7 @@ def test_a_chosen_key_that_is_gone_and_a_broken_file_are_told(keys: Path) -> Non
 def test_another_process_reads_changed_keys_at_once(keys: Path) -> None:
     """As the watchdog does."""
     watchdog = StationSigning(0.0)
-    make_key(keys, "first", Role.SET_UP)
+    make_key(keys, "first", SigningRole.SET_UP)
     watchdog.reload()
     assert watchdog.link_signing.signing.ring.find("first") is not None
     break_file(keys)
@@ -122,7 +122,7 @@ def test_another_process_reads_changed_keys_at_once(keys: Path) -> None:
 
 @pytest.mark.parametrize("required", [False, True])
 def test_vehicle_that_has_signed_is_trusted_only_while_it_signs(keys: Path, required: bool) -> None:
-    key = make_key(keys, "laptop", Role.SET_UP)
+    key = make_key(keys, "laptop", SigningRole.SET_UP)
     opened = open_signing(0.0, required=required)
     assert opened is not None
     channel = Channel("udpin", 0, system=255, component=190, guard=opened.guard(0))

@@ -15,7 +15,7 @@ from link.endpoint import Side, parse_endpoint
 from link.fleet.config import LEASE, THREADS, THREADS_VARIABLE, load_config, load_zenoh
 from link.fleet.transport import open_fleet
 from link.runtime.install_hint import install_command
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.transport.reach import find_trust
 from link.transport.transport import LinkError
 
@@ -54,7 +54,7 @@ def test_a_bare_router_gets_the_settings_of_a_fleet() -> None:
 
 def test_a_file_says_who_and_what(tmp_path: Path) -> None:
     config = load_config(parse_endpoint(f"zenoh:{write(tmp_path)}/farm"))
-    assert (config.name, config.operator_role, config.routers) == ("alice", Role.DRIVE, (ROUTER,))
+    assert (config.name, config.operator_role, config.routers) == ("alice", SigningRole.DRIVE, (ROUTER,))
 
 
 @pytest.mark.parametrize(

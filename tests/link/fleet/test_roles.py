@@ -14,14 +14,14 @@ from link.fleet.keys import read_frame
 from link.fleet.rights.drive_commands import DRIVE_COMMANDS
 from link.fleet.roles import depends_on_content, file_opcode, needed_role
 from link.protocol.frame import Frame
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.link.frames import frame, heartbeat
 from tests.vehicle.bench import Bench
 
 MORE = {
-    rover.MAV_CMD_DO_FLIGHTTERMINATION: Role.DRIVE,  # ours is open to anyone: what does not stop does nothing
-    rover.MAV_CMD_SET_MESSAGE_INTERVAL: Role.DRIVE,  # of the HEARTBEAT; ours changes it for the sender alone
-    rover.MAV_CMD_DO_FENCE_ENABLE: Role.SET_UP,  # off; the row of ours names what on needs
+    rover.MAV_CMD_DO_FLIGHTTERMINATION: SigningRole.DRIVE,  # ours is open to anyone: what does not stop does nothing
+    rover.MAV_CMD_SET_MESSAGE_INTERVAL: SigningRole.DRIVE,  # of the HEARTBEAT; ours changes it for the sender alone
+    rover.MAV_CMD_DO_FENCE_ENABLE: SigningRole.SET_UP,  # off; the row of ours names what on needs
 }
 """Commands of our vehicle that need more here for a value of parameter 1, because of other autopilots."""
 
@@ -44,49 +44,49 @@ def files(opcode: int) -> Frame:
 @pytest.mark.parametrize(
     ("sent", "role"),
     [
-        (read_frame(heartbeat(0)), Role.WATCH),
-        (read(m.ParamRequestList(1, 1)), Role.WATCH),
-        (command(rover.MAV_CMD_REQUEST_MESSAGE, 148), Role.WATCH),
-        (command(rover.MAV_CMD_COMPONENT_ARM_DISARM, 0), Role.WATCH),
-        (command(rover.MAV_CMD_DO_FLIGHTTERMINATION, 1), Role.WATCH),
-        (read(m.SetMode(1, 1, 4)), Role.DRIVE),  # HOLD of some vehicles only: test_circumstances.py
-        (command(rover.MAV_CMD_DO_SET_MODE, 1, 4), Role.DRIVE),
-        (command(rover.MAV_CMD_DO_SET_MODE, 1, 4, math.nan), Role.DRIVE),
-        (read(m.RequestDataStream(1, 1, 0, 4, 1)), Role.DRIVE),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 0, -1), Role.DRIVE),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, math.nan, -1), Role.DRIVE),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 0.99, -1), Role.DRIVE),  # 0 for ArduPilot
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, -0.5, -1), Role.DRIVE),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 2.0**24, -1), Role.DRIVE),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, math.inf, -1), Role.DRIVE),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 1, 1e5), Role.WATCH),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 30, 1e5), Role.WATCH),
-        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 2.0**24 - 1, 1e5), Role.WATCH),
-        (read(m.MissionAck(1, 1, 0)), Role.DRIVE),
-        (read(m.LogRequestEnd(1, 1)), Role.DRIVE),
-        (files(2), Role.DRIVE),
-        (files(1), Role.WATCH),
-        (files(4), Role.WATCH),
-        (files(0), Role.WATCH),
-        (read(m.SetMode(1, 1, 0)), Role.DRIVE),
-        (command(rover.MAV_CMD_COMPONENT_ARM_DISARM, 1), Role.DRIVE),
-        (command(rover.MAV_CMD_DO_FLIGHTTERMINATION, 0), Role.DRIVE),
-        (read(build_manual_control(Axes(1.0), 1)), Role.DRIVE),
-        (read(m.MissionSetCurrent(1, 1, 0)), Role.DRIVE),
-        (read(m.ParamSet(1, 1, b"MAN_TIMEOUT", 9.0, 9)), Role.SET_UP),
-        (read(m.MissionCount(1, 1, 3)), Role.SET_UP),
-        (files(7), Role.SET_UP),
-        (command(rover.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1), Role.SET_UP),
-        ((61000, 255, 190, 0, b""), Role.SET_UP),
-        (read(rover.MAVLink_serial_control_message(10, 0, 0, 0, 5, [0] * 70)), Role.SET_UP),
-        (read(rover.MAVLink_param_ext_set_message(1, 1, b"CAM_MODE", b"1", 1)), Role.SET_UP),
-        (command(rover.MAV_CMD_DO_FENCE_ENABLE, 1), Role.DRIVE),
-        (command(rover.MAV_CMD_DO_FENCE_ENABLE, 0), Role.SET_UP),
-        (command(rover.MAV_CMD_DO_FENCE_ENABLE, 2), Role.SET_UP),
-        (command(rover.MAV_CMD_DO_FENCE_ENABLE, math.nan), Role.SET_UP),
+        (read_frame(heartbeat(0)), SigningRole.WATCH),
+        (read(m.ParamRequestList(1, 1)), SigningRole.WATCH),
+        (command(rover.MAV_CMD_REQUEST_MESSAGE, 148), SigningRole.WATCH),
+        (command(rover.MAV_CMD_COMPONENT_ARM_DISARM, 0), SigningRole.WATCH),
+        (command(rover.MAV_CMD_DO_FLIGHTTERMINATION, 1), SigningRole.WATCH),
+        (read(m.SetMode(1, 1, 4)), SigningRole.DRIVE),  # HOLD of some vehicles only: test_circumstances.py
+        (command(rover.MAV_CMD_DO_SET_MODE, 1, 4), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_DO_SET_MODE, 1, 4, math.nan), SigningRole.DRIVE),
+        (read(m.RequestDataStream(1, 1, 0, 4, 1)), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 0, -1), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, math.nan, -1), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 0.99, -1), SigningRole.DRIVE),  # 0 for ArduPilot
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, -0.5, -1), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 2.0**24, -1), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, math.inf, -1), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 1, 1e5), SigningRole.WATCH),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 30, 1e5), SigningRole.WATCH),
+        (command(rover.MAV_CMD_SET_MESSAGE_INTERVAL, 2.0**24 - 1, 1e5), SigningRole.WATCH),
+        (read(m.MissionAck(1, 1, 0)), SigningRole.DRIVE),
+        (read(m.LogRequestEnd(1, 1)), SigningRole.DRIVE),
+        (files(2), SigningRole.DRIVE),
+        (files(1), SigningRole.WATCH),
+        (files(4), SigningRole.WATCH),
+        (files(0), SigningRole.WATCH),
+        (read(m.SetMode(1, 1, 0)), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_COMPONENT_ARM_DISARM, 1), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_DO_FLIGHTTERMINATION, 0), SigningRole.DRIVE),
+        (read(build_manual_control(Axes(1.0), 1)), SigningRole.DRIVE),
+        (read(m.MissionSetCurrent(1, 1, 0)), SigningRole.DRIVE),
+        (read(m.ParamSet(1, 1, b"MAN_TIMEOUT", 9.0, 9)), SigningRole.SET_UP),
+        (read(m.MissionCount(1, 1, 3)), SigningRole.SET_UP),
+        (files(7), SigningRole.SET_UP),
+        (command(rover.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1), SigningRole.SET_UP),
+        ((61000, 255, 190, 0, b""), SigningRole.SET_UP),
+        (read(rover.MAVLink_serial_control_message(10, 0, 0, 0, 5, [0] * 70)), SigningRole.SET_UP),
+        (read(rover.MAVLink_param_ext_set_message(1, 1, b"CAM_MODE", b"1", 1)), SigningRole.SET_UP),
+        (command(rover.MAV_CMD_DO_FENCE_ENABLE, 1), SigningRole.DRIVE),
+        (command(rover.MAV_CMD_DO_FENCE_ENABLE, 0), SigningRole.SET_UP),
+        (command(rover.MAV_CMD_DO_FENCE_ENABLE, 2), SigningRole.SET_UP),
+        (command(rover.MAV_CMD_DO_FENCE_ENABLE, math.nan), SigningRole.SET_UP),
     ],
 )
-def test_what_each_frame_needs(sent: Frame, role: Role) -> None:
+def test_what_each_frame_needs(sent: Frame, role: SigningRole) -> None:
     assert needed_role(sent) is role
 
 
@@ -95,7 +95,7 @@ READING = {0, 1, 3, 4, 5, 14, 15}
 
 @pytest.mark.parametrize("opcode", range(20))
 def test_only_file_operations_that_read_are_a_watchers(opcode: int) -> None:
-    expected = Role.WATCH if opcode in READING else Role.DRIVE if opcode == 2 else Role.SET_UP
+    expected = SigningRole.WATCH if opcode in READING else SigningRole.DRIVE if opcode == 2 else SigningRole.SET_UP
     assert needed_role(files(opcode)) is expected
     assert file_opcode(files(opcode)) == opcode
 
@@ -134,7 +134,7 @@ SET_UP_BY_ANOTHER_NAME = {
 @pytest.mark.parametrize("number", SET_UP_BY_ANOTHER_NAME, ids=SET_UP_BY_ANOTHER_NAME.get)
 def test_set_up_by_another_name_needs_setup(number: int) -> None:
     for first in (0.0, 1.0, 42.0):
-        assert needed_role(command(number, first)) is Role.SET_UP
+        assert needed_role(command(number, first)) is SigningRole.SET_UP
 
 
 def test_each_command_that_drive_may_send_is_known() -> None:
@@ -148,7 +148,7 @@ def test_each_command_that_drive_may_send_is_known() -> None:
 def test_a_compass_calibration_of_ardupilot_needs_setup(number: int) -> None:
     """Its start, its acceptance and its end are of ArduPilot's dialect, which is not read here."""
     for first in (0.0, 1.0, 7.0):
-        assert needed_role(command(number, first)) is Role.SET_UP
+        assert needed_role(command(number, first)) is SigningRole.SET_UP
 
 
 def test_no_command_of_our_vehicle_needs_another_role_than_here() -> None:

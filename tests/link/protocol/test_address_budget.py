@@ -10,14 +10,14 @@ from link.core import Outgoing
 from link.protocol.address_budget import AddressBudget
 from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningPolicy
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.link.frames import frame, heartbeat, version_1
 from tests.link.signing import signed as signing
 
 VICTIM = ("192.0.2.7", 14550)
 BEAT = m.Heartbeat(10, 0, 81, 0, 3, 3)
 STATUS = m.SysStatus(*(1,) * 13)
-OPEN = SigningPolicy(unsigned=Role.WATCH)
+OPEN = SigningPolicy(unsigned=SigningRole.WATCH)
 
 
 def vehicle(*, stream: bool = False, target: tuple[str, int] | None = None, bounded: bool = True) -> Channel:

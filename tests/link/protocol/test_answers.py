@@ -11,7 +11,7 @@ from link.protocol.channel import Channel
 from link.protocol.link_events import link_problem
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import link_and_stamp
 from link.signing.signing import Signing
 from link.signing.verifier import Refusal
@@ -228,7 +228,7 @@ def test_clock_behind_is_not_followed_and_largest_lead_is_kept() -> None:
 
 
 def test_clocks_of_16_keys_are_kept_at_an_address() -> None:
-    keys = [SigningKey(f"k{n}", Role.DRIVE, hashlib.sha256(bytes([n])).digest()) for n in range(17)]
+    keys = [SigningKey(f"k{n}", SigningRole.DRIVE, hashlib.sha256(bytes([n])).digest()) for n in range(17)]
     signing = keep(*keys[:16])
     channel = vehicle(signing)
     for n, key in enumerate(keys[:16]):

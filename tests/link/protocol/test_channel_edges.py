@@ -14,7 +14,7 @@ from link.protocol.log_tap import LogTap
 from link.protocol.peer_table import MAX_PEERS
 from link.protocol.sent_frames import SentFrames
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import SecretHash, link_and_stamp
 from tests.link.frames import demand, frame, heartbeat, version_1
 from tests.link.signing.signed import (
@@ -59,7 +59,9 @@ def test_a_channel_that_heard_nothing_reports_nothing() -> None:
 
 def test_each_field_of_a_report_is_filled() -> None:
     sent = SentFrames()
-    channel = guarded(keep(DRIVER), SigningPolicy(Role.WATCH), 3, stream=True, capacity=5760.0, sent=sent, places=1)
+    channel = guarded(
+        keep(DRIVER), SigningPolicy(SigningRole.WATCH), 3, stream=True, capacity=5760.0, sent=sent, places=1
+    )
     numbers = count()
     bad = bytearray(demand(0))
     bad[-1] ^= 0x55
@@ -103,17 +105,17 @@ def test_each_message_comes_with_its_sender() -> None:
         (254, 25, 0, True, True, 1, False),
     ]
     assert len({each.digest for each in found}) == 4
-    assert [(each.role, each.signed) for each in found] == [(Role.SET_UP, False)] * 4, "nothing is verified here"
+    assert [(each.role, each.signed) for each in found] == [(SigningRole.SET_UP, False)] * 4, "nothing is verified here"
     assert describe(vehicle(target=HERE).receive(demand(7), HERE, 0.0)) == [(255, 190, 7, False, True, 1, False)]
 
 
 def test_the_verdicts_of_signing_belong_to_their_frames() -> None:
-    channel = guarded(keep(DRIVER), SigningPolicy(Role.WATCH))
+    channel = guarded(keep(DRIVER), SigningPolicy(SigningRole.WATCH))
     data = heartbeat(0, system=0) + heartbeat(0, system=9) + signed(ARM) + heartbeat(1, system=9)
     assert [(each.system, each.role, each.signed) for each in channel.receive(data, HERE, 0.0)] == [
-        (9, Role.WATCH, False),
-        (255, Role.SET_UP, True),
-        (9, Role.WATCH, False),
+        (9, SigningRole.WATCH, False),
+        (255, SigningRole.SET_UP, True),
+        (9, SigningRole.WATCH, False),
     ]
 
 

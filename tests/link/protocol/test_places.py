@@ -13,14 +13,14 @@ from link.core import Outgoing
 from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningPolicy
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import link_and_stamp
 from tests.link.frames import frame, heartbeat
 from tests.link.signing.signed import DISARM, DRIVER, HEARTBEAT, HERE, NOW, THERE, WATCHER, keep, signed, vehicle
 
-OPEN = SigningPolicy(unsigned=Role.WATCH, open_stops=True)
-OTHER = SigningKey("other", Role.DRIVE, hashlib.sha256(b"another driver's").digest())
-SECOND_WATCHER = SigningKey("phone", Role.WATCH, hashlib.sha256(b"the phone's").digest())
+OPEN = SigningPolicy(unsigned=SigningRole.WATCH, open_stops=True)
+OTHER = SigningKey("other", SigningRole.DRIVE, hashlib.sha256(b"another driver's").digest())
+SECOND_WATCHER = SigningKey("phone", SigningRole.WATCH, hashlib.sha256(b"the phone's").digest())
 PLACES = 24
 ATTITUDE = Attitude(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -126,7 +126,7 @@ def test_a_verified_sender_without_heartbeat_keeps_its_place() -> None:
 
 
 def watch_keys(count: int) -> list[SigningKey]:
-    return [SigningKey(f"w{n}", Role.WATCH, hashlib.sha256(bytes([n])).digest()) for n in range(count)]
+    return [SigningKey(f"w{n}", SigningRole.WATCH, hashlib.sha256(bytes([n])).digest()) for n in range(count)]
 
 
 @pytest.mark.parametrize(("newcomer", "admitted"), [(DRIVER, True), (OTHER, True), (SECOND_WATCHER, False)])

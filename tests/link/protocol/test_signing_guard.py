@@ -11,7 +11,7 @@ from link.protocol.log_tap import LogTap
 from link.protocol.peer_table import MAX_PEERS
 from link.protocol.signing_guard import LANES, SigningGuard, SigningPolicy, lane_of
 from link.signing.keys import SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import is_signed, link_and_stamp
 from link.signing.verifier import Refusal, Verified
 from tests.link.frames import frame, heartbeat, version_1
@@ -35,7 +35,7 @@ from tests.link.signing.signed import (
 )
 
 OPEN_STOPS = SigningPolicy(unsigned=None, open_stops=True)
-WATCHED = SigningPolicy(unsigned=Role.WATCH, open_stops=True)
+WATCHED = SigningPolicy(unsigned=SigningRole.WATCH, open_stops=True)
 GREETS = SigningPolicy(unsigned=None, greets_late=True)
 RADIO = RadioStatus(200, 200, 10, 50, 50, 0, 0)
 
@@ -44,8 +44,8 @@ def test_the_key_gives_the_role() -> None:
     channel = vehicle(keep(DRIVER, WATCHER))
     first = channel.receive(signed(ARM), HERE, 0.0)[0]
     other = channel.receive(signed(ARM, WATCHER, ids=(254, 190)), THERE, 0.0)[0]
-    assert (first.role, first.signed) == (Role.SET_UP, True)
-    assert (other.role, other.signed) == (Role.WATCH, True)
+    assert (first.role, first.signed) == (SigningRole.SET_UP, True)
+    assert (other.role, other.signed) == (SigningRole.WATCH, True)
 
 
 def test_unsigned_frames_are_refused_counted_and_get_no_place() -> None:
@@ -66,7 +66,7 @@ def test_10_mavlink_1_has_no_signatures_and_is_refused() -> None:
 
 @pytest.mark.parametrize(("keys", "is_old"), [((DRIVER,), False), ((), True)])
 def test_mavlink_1_is_answered_in_it_if_nothing_is_signed(keys: tuple[SigningKey, ...], is_old: bool) -> None:
-    channel = station(keep(*keys), SigningPolicy(unsigned=Role.SET_UP))
+    channel = station(keep(*keys), SigningPolicy(unsigned=SigningRole.SET_UP))
     assert channel.receive(version_1(HEARTBEAT, 0, 1, 1), HERE, 0.0)
     [answer] = send(channel, ARM)
     assert (answer[0] == MAGIC_V1, is_signed(answer)) == (is_old, not is_old)
@@ -77,12 +77,12 @@ def test_mavlink_1_is_answered_in_it_if_nothing_is_signed(keys: tuple[SigningKey
 def test_unsigned_frames_have_the_role_that_the_link_grants() -> None:
     channel = vehicle(keep(DRIVER), WATCHED)
     found = channel.receive(frame(ARM), HERE, 0.0)[0]
-    assert (found.role, found.signed) == (Role.WATCH, False)
+    assert (found.role, found.signed) == (SigningRole.WATCH, False)
 
 
 def test_nobody_unsigned_has_the_ids_of_a_sender_who_signs() -> None:
     """Else the numbers of a forger would clash with those of the driver, and stop the vehicle."""
-    channel = vehicle(keep(DRIVER), SigningPolicy(unsigned=Role.SET_UP))
+    channel = vehicle(keep(DRIVER), SigningPolicy(unsigned=SigningRole.SET_UP))
     channel.receive(signed(), HERE, 0.0)
     assert channel.receive(frame(ARM, 1), HERE, 0.1) == []
     assert channel.receive(frame(ARM, 1), THERE, 0.1) == []
@@ -216,7 +216,7 @@ def test_signed_frame_behind_forged_header_is_verified_in_end() -> None:
     assert channel.receive(forged + signed(ARM, stamp=NOW + 1) + frame(ARM, 2), HERE, 0.1) == []
     assert channel.tick(0.11) == []
     (found,) = channel.tick(0.3)
-    assert (found.role, found.signed) == (Role.SET_UP, True)
+    assert (found.role, found.signed) == (SigningRole.SET_UP, True)
     assert channel.report().refused == SigningCounts(unsigned=1)
 
 

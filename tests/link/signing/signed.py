@@ -11,7 +11,7 @@ from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import to_stamp
 from link.signing.keys import KeyRing, SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import SecretHash
 from link.signing.signing import Signing, SigningMemory
 
@@ -21,9 +21,9 @@ NOW = to_stamp(NOON)
 """The same as a timestamp."""
 DAY = 86_400 * 100_000
 """Timestamps a day."""
-DRIVER = SigningKey("laptop", Role.SET_UP, hashlib.sha256(b"the laptop's").digest())
-WATCHER = SigningKey("tablet", Role.WATCH, hashlib.sha256(b"the tablet's").digest())
-STRANGER = SigningKey("laptop", Role.SET_UP, hashlib.sha256(b"a stranger's").digest())
+DRIVER = SigningKey("laptop", SigningRole.SET_UP, hashlib.sha256(b"the laptop's").digest())
+WATCHER = SigningKey("tablet", SigningRole.WATCH, hashlib.sha256(b"the tablet's").digest())
+STRANGER = SigningKey("laptop", SigningRole.SET_UP, hashlib.sha256(b"a stranger's").digest())
 SIGNED_ONLY = SigningPolicy(unsigned=None)
 HERE, THERE = ("192.0.2.1", 5001), ("192.0.2.2", 5002)
 ARM = CommandLong(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)

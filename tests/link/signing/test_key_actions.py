@@ -24,10 +24,10 @@ from link.signing.key_actions import (
 from link.signing.key_file import load_keys
 from link.signing.key_qr import draw_qr
 from link.signing.keys import KeyRing, SigningKey, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 SECRET = bytes(range(32))
-LAPTOP = SigningKey("laptop", Role.DRIVE, SECRET)
+LAPTOP = SigningKey("laptop", SigningRole.DRIVE, SECRET)
 
 
 class Screen(io.StringIO):
@@ -57,24 +57,24 @@ def error_of(path: Path, name: str | None) -> str:
 
 
 def test_each_way_to_add_a_key_stores_and_returns_it(path: Path) -> None:
-    made = make_key(path, "made", Role.WATCH)
-    installed = install_key(path, "installed", Role.SET_UP, SECRET)
-    stored = store_key(path, new_key("stored", Role.DRIVE))
-    assert (made.name, made.role, len(made.secret)) == ("made", Role.WATCH, 32)
-    assert (installed.name, installed.role, installed.secret) == ("installed", Role.SET_UP, SECRET)
+    made = make_key(path, "made", SigningRole.WATCH)
+    installed = install_key(path, "installed", SigningRole.SET_UP, SECRET)
+    stored = store_key(path, new_key("stored", SigningRole.DRIVE))
+    assert (made.name, made.role, len(made.secret)) == ("made", SigningRole.WATCH, 32)
+    assert (installed.name, installed.role, installed.secret) == ("installed", SigningRole.SET_UP, SECRET)
     assert load_keys(path).keys == (made, installed, stored)
 
 
 def test_a_key_that_cannot_be_added_changes_nothing(path: Path) -> None:
     store_key(path, LAPTOP)
     with pytest.raises(KeyActionError, match="there is a key laptop already"):
-        make_key(path, "laptop", Role.WATCH)
+        make_key(path, "laptop", SigningRole.WATCH)
     with pytest.raises(KeyActionError, match="this secret is there already, as laptop"):
-        install_key(path, "tablet", Role.WATCH, SECRET)
+        install_key(path, "tablet", SigningRole.WATCH, SECRET)
     with pytest.raises(KeyActionError, match="a key's name is 1 to 24 letters"):
-        make_key(path, "a b", Role.WATCH)
+        make_key(path, "a b", SigningRole.WATCH)
     with pytest.raises(KeyActionError, match="this one has 3"):
-        install_key(path, "tablet", Role.WATCH, b"abc")
+        install_key(path, "tablet", SigningRole.WATCH, b"abc")
     assert load_keys(path).keys == (LAPTOP,)
 
 
@@ -84,7 +84,7 @@ def test_a_key_is_found_by_name_by_fingerprint_or_alone(path: Path) -> None:
     assert find_key(path, None) == LAPTOP
     assert find_key(path, "laptop") == LAPTOP
     assert error_of(path, "desk") == "there is no key 'desk'; there are laptop"
-    tablet = make_key(path, "tablet", Role.WATCH)
+    tablet = make_key(path, "tablet", SigningRole.WATCH)
     assert find_key(path, tablet.fingerprint.upper()) == tablet
     assert find_key(path, "laptop") == LAPTOP
     assert error_of(path, None) == "name a key: laptop, tablet"
@@ -94,7 +94,7 @@ def test_a_key_is_found_by_name_by_fingerprint_or_alone(path: Path) -> None:
 
 def test_the_named_key_signs_and_the_named_key_goes(path: Path) -> None:
     store_key(path, LAPTOP)
-    tablet = make_key(path, "tablet", Role.WATCH)
+    tablet = make_key(path, "tablet", SigningRole.WATCH)
     assert load_keys(path).sign_with == "laptop"
     assert use_key(path, tablet.fingerprint) == tablet
     assert load_keys(path).sign_with == "tablet"
@@ -105,7 +105,7 @@ def test_the_named_key_signs_and_the_named_key_goes(path: Path) -> None:
 
 
 def test_a_list_marks_the_key_that_signs(path: Path) -> None:
-    tablet = SigningKey("tablet", Role.SET_UP, b"\x01" * 32)
+    tablet = SigningKey("tablet", SigningRole.SET_UP, b"\x01" * 32)
     ring = KeyRing((LAPTOP, tablet), "tablet")
     first, second = LAPTOP.fingerprint, tablet.fingerprint
     assert list(format_list(ring, roles=False)) == [
@@ -148,6 +148,6 @@ def test_a_qr_code_goes_to_a_terminal_only(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_a_mistake_of_a_key_is_not_chained_to_the_secret(path: Path) -> None:
     with pytest.raises(KeyActionError) as caught:
-        install_key(path, "a b", Role.WATCH, SECRET)
+        install_key(path, "a b", SigningRole.WATCH, SECRET)
     assert caught.value.__cause__ is None
     assert caught.value.__suppress_context__

@@ -18,7 +18,7 @@ from link.signing.key_file import (
     station_key_file,
 )
 from link.signing.keys import KeyRing, SigningKey, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 SECRET = "ab" * 32
 
@@ -44,7 +44,7 @@ def problem(path: Path) -> str:
 
 
 def test_keys_come_back_as_they_were_saved(tmp_path: Path) -> None:
-    ring = KeyRing().add(new_key("laptop", Role.SET_UP)).add(new_key("tablet", Role.WATCH), sign=True)
+    ring = KeyRing().add(new_key("laptop", SigningRole.SET_UP)).add(new_key("tablet", SigningRole.WATCH), sign=True)
     path = tmp_path / "new" / "keys.toml"
     save_keys(path, ring)
     assert load_keys(path) == ring
@@ -63,7 +63,7 @@ def test_an_empty_ring_is_saved_and_no_file_is_an_empty_ring(tmp_path: Path) -> 
 def test_a_file_is_private_whatever_the_umask(tmp_path: Path) -> None:
     before = os.umask(0)
     try:
-        save_keys(tmp_path / "keys.toml", KeyRing().add(new_key("a", Role.WATCH)))
+        save_keys(tmp_path / "keys.toml", KeyRing().add(new_key("a", SigningRole.WATCH)))
     finally:
         os.umask(before)
     assert (tmp_path / "keys.toml").stat().st_mode & 0o777 == 0o600
@@ -92,7 +92,7 @@ def test_a_file_of_another_user_is_refused_and_root_keeps_owners(tmp_path: Path)
     assert "belongs to user 4242" in problem(path)
     os.chown(tmp_path, 4242, -1)
     assert load_keys(path).find("laptop") is not None
-    save_keys(tmp_path / "new.toml", KeyRing().add(new_key("a", Role.WATCH)))
+    save_keys(tmp_path / "new.toml", KeyRing().add(new_key("a", SigningRole.WATCH)))
     assert (tmp_path / "new.toml").stat().st_uid == 4242
 
 
@@ -103,7 +103,7 @@ def test_root_gives_away_no_file_that_another_user_has_linked(tmp_path: Path) ->
     folder.mkdir()
     os.chown(folder, 4242, -1)
     os.link(tmp_path / "secret", folder / ".keys.toml.lock")
-    change_keys(folder / "keys.toml", lambda ring: ring.add(new_key("a", Role.WATCH)))
+    change_keys(folder / "keys.toml", lambda ring: ring.add(new_key("a", SigningRole.WATCH)))
     assert (tmp_path / "secret").stat().st_uid == 0
     assert (folder / "keys.toml").stat().st_uid == 4242
 
@@ -145,7 +145,7 @@ def test_a_folder_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
 
 
 def test_the_text_of_a_file_names_the_key_that_signs() -> None:
-    ring = KeyRing().add(SigningKey("laptop", Role.SET_UP, bytes.fromhex(SECRET)))
+    ring = KeyRing().add(SigningKey("laptop", SigningRole.SET_UP, bytes.fromhex(SECRET)))
     head, _, text = format_keys(ring).partition("\n")
     assert (
         head
@@ -163,7 +163,7 @@ def test_the_file_of_a_user_is_in_the_config_folder(tmp_path: Path, monkeypatch:
 def test_new_folders_are_private_and_nothing_is_left_open(tmp_path: Path) -> None:
     opened = len(os.listdir("/proc/self/fd"))
     save_keys(tmp_path / "a/b/keys.toml", KeyRing())
-    change_keys(tmp_path / "c/d/keys.toml", lambda ring: ring.add(new_key("a", Role.WATCH)))
+    change_keys(tmp_path / "c/d/keys.toml", lambda ring: ring.add(new_key("a", SigningRole.WATCH)))
     assert load_keys(tmp_path / "c/d/keys.toml").find("a") is not None
     assert [path.stat().st_mode & 0o777 for path in (tmp_path / "a/b", tmp_path / "c/d")] == [0o700, 0o700]
     assert (tmp_path / "c/d/.keys.toml.lock").stat().st_mode & 0o777 == 0o600
@@ -181,7 +181,7 @@ def test_a_change_returns_and_writes_the_keys_under_a_lock(tmp_path: Path) -> No
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         finally:
             os.close(descriptor)
-        return ring.add(new_key("a", Role.WATCH))
+        return ring.add(new_key("a", SigningRole.WATCH))
 
     after = change_keys(path, change)
     assert [key.name for key in after.keys] == ["a"]
@@ -192,7 +192,7 @@ def test_a_change_returns_and_writes_the_keys_under_a_lock(tmp_path: Path) -> No
 
 def test_a_change_that_fails_leaves_the_keys_and_no_lock(tmp_path: Path) -> None:
     path = tmp_path / "keys.toml"
-    change_keys(path, lambda ring: ring.add(new_key("a", Role.WATCH)))
+    change_keys(path, lambda ring: ring.add(new_key("a", SigningRole.WATCH)))
     before = path.read_bytes()
 
     def refuse(ring: KeyRing) -> KeyRing:

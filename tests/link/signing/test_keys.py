@@ -9,10 +9,10 @@ import pickle
 import pytest
 
 from link.signing.keys import MAX_KEYS, KeyRing, PassphraseKind, SigningKey, key_from_passphrase, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 SECRET = bytes(range(1, 33))
-KEY = SigningKey("laptop", Role.DRIVE, SECRET)
+KEY = SigningKey("laptop", SigningRole.DRIVE, SECRET)
 
 
 def test_no_text_form_contains_the_secret() -> None:
@@ -31,11 +31,11 @@ def test_a_key_is_neither_pickled_nor_copied(leak: object) -> None:
 def test_fingerprint_is_stable_and_not_the_hash_of_the_secret() -> None:
     assert KEY.fingerprint == "d5669a9a"
     assert not hashlib.sha256(SECRET).hexdigest().startswith(KEY.fingerprint)
-    assert SigningKey("other", Role.WATCH, SECRET).fingerprint == KEY.fingerprint
+    assert SigningKey("other", SigningRole.WATCH, SECRET).fingerprint == KEY.fingerprint
 
 
 def test_new_keys_differ() -> None:
-    first, second = new_key("a", Role.SET_UP), new_key("b", Role.SET_UP)
+    first, second = new_key("a", SigningRole.SET_UP), new_key("b", SigningRole.SET_UP)
     assert len(first.secret) == 32
     assert first.secret != second.secret
 
@@ -49,12 +49,12 @@ def test_new_keys_differ() -> None:
 )  # fmt: skip
 def test_what_is_no_key_is_refused(name: str, secret: bytes, problem: str) -> None:
     with pytest.raises(ValueError, match=problem):
-        SigningKey(name, Role.WATCH, secret)
+        SigningKey(name, SigningRole.WATCH, secret)
 
 
 def test_roles_include_each_other() -> None:
-    assert Role.WATCH < Role.DRIVE < Role.SET_UP
-    assert [role.word for role in Role] == ["watch", "drive", "setup"]
+    assert SigningRole.WATCH < SigningRole.DRIVE < SigningRole.SET_UP
+    assert [role.word for role in SigningRole] == ["watch", "drive", "setup"]
 
 
 def test_a_passphrase_gives_the_key_of_mavproxy_and_old_qgc() -> None:
@@ -75,16 +75,16 @@ def test_a_passphrase_gives_the_key_of_newer_qgroundcontrol() -> None:
 def test_the_first_key_signs_until_another_is_chosen() -> None:
     ring = KeyRing().add(KEY)
     assert ring.signing_key is KEY
-    tablet = new_key("tablet", Role.WATCH)
+    tablet = new_key("tablet", SigningRole.WATCH)
     ring = ring.add(tablet)
     assert ring.signing_key is KEY
     assert ring.choose("tablet").signing_key is tablet
-    assert ring.add(new_key("desk", Role.DRIVE), sign=True).sign_with == "desk"
+    assert ring.add(new_key("desk", SigningRole.DRIVE), sign=True).sign_with == "desk"
     assert ring.find_fingerprint(tablet.fingerprint.upper()) is tablet
 
 
 def test_after_the_removal_of_the_key_that_signs_the_newest_does() -> None:
-    tablet = new_key("tablet", Role.WATCH)
+    tablet = new_key("tablet", SigningRole.WATCH)
     ring = KeyRing().add(KEY).add(tablet)
     assert ring.remove("laptop") == KeyRing((tablet,), "tablet")
     assert ring.remove("tablet") == KeyRing((KEY,), "laptop")
@@ -93,12 +93,12 @@ def test_after_the_removal_of_the_key_that_signs_the_newest_does() -> None:
 
 def test_a_name_or_secret_is_in_a_ring_once_and_there_is_a_limit() -> None:
     ring = KeyRing().add(KEY)
-    assert "already" in (ring.refuse(new_key("laptop", Role.WATCH)) or "")
-    assert ring.refuse(SigningKey("copy", Role.WATCH, SECRET)) == "this secret is there already, as laptop"
+    assert "already" in (ring.refuse(new_key("laptop", SigningRole.WATCH)) or "")
+    assert ring.refuse(SigningKey("copy", SigningRole.WATCH, SECRET)) == "this secret is there already, as laptop"
     for number in range(MAX_KEYS - 1):
-        ring = ring.add(new_key(f"k{number}", Role.WATCH))
+        ring = ring.add(new_key(f"k{number}", SigningRole.WATCH))
     with pytest.raises(ValueError, match="remove one first"):
-        ring.add(new_key("more", Role.WATCH))
+        ring.add(new_key("more", SigningRole.WATCH))
     with pytest.raises(ValueError, match="no key none"):
         ring.choose("none")
 
@@ -106,10 +106,10 @@ def test_a_name_or_secret_is_in_a_ring_once_and_there_is_a_limit() -> None:
 def test_the_newest_of_the_keys_that_are_left_signs() -> None:
     ring = KeyRing()
     for name in ("one", "two", "three"):
-        ring = ring.add(new_key(name, Role.DRIVE), sign=True)
+        ring = ring.add(new_key(name, SigningRole.DRIVE), sign=True)
     assert ring.remove("three").sign_with == "two"
     assert ring.remove("one").sign_with == "three"
 
 
 def test_roles_rise_from_1() -> None:
-    assert [int(role) for role in Role] == [1, 2, 3]
+    assert [int(role) for role in SigningRole] == [1, 2, 3]

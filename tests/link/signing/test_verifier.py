@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from link.signing.clock import TICKS, to_stamp
 from link.signing.keys import KeyRing, SigningKey
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.signing.signature import STAMP_MAX
 from link.signing.signing import Signing, SigningMemory
 from link.signing.streams import MAX_STREAMS, SignedStream
@@ -28,7 +28,7 @@ def test_a_genuine_frame_names_its_key_and_role() -> None:
     signing = keep(DRIVER, WATCHER)
     assert check(signing, signed()) is DRIVER
     assert check(signing, signed(key=WATCHER)) is WATCHER
-    assert WATCHER.role is Role.WATCH
+    assert WATCHER.role is SigningRole.WATCH
 
 
 @pytest.mark.parametrize("stamp", [STAMP_MAX, NOW, NOW - DAY, 0])
@@ -183,7 +183,7 @@ def test_a_key_named_like_a_removed_one_is_another_key() -> None:
 
 def test_a_key_whose_name_or_role_has_changed_signs_as_before() -> None:
     signing = keep(DRIVER)
-    signing.set_ring(KeyRing((SigningKey("renamed", Role.WATCH, DRIVER.secret),), "renamed"))
+    signing.set_ring(KeyRing((SigningKey("renamed", SigningRole.WATCH, DRIVER.secret),), "renamed"))
     found = signing.hash_of(DRIVER)
     assert found is not None
     assert found.matches(signed())
@@ -227,12 +227,12 @@ def test_other_keys_do_not_unpin_a_sender_whose_key_stays() -> None:
     assert isinstance(verifier.check(signed(), 255, 190, 0.0), Verified)
     verifier.set_keys([DRIVER, WATCHER])
     assert verifier.is_pinned(255, 190, 1.0)
-    less = SigningKey(DRIVER.name, Role.WATCH, DRIVER.secret)
+    less = SigningKey(DRIVER.name, SigningRole.WATCH, DRIVER.secret)
     verifier.set_keys([less, WATCHER])
     assert not verifier.is_pinned(255, 190, 1.0)
     again = verifier.check(signed(stamp=NOW + 1), 255, 190, 1.0)
     assert isinstance(again, Verified)
-    assert again.key.role is Role.WATCH
+    assert again.key.role is SigningRole.WATCH
 
 
 def test_of_many_senders_the_oldest_is_forgotten() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from link.signing.key_file import load_keys
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.cli.main import main
 
 
@@ -48,7 +48,7 @@ def test_a_new_key_is_stored_and_not_shown(shell: Shell) -> None:
     assert code == 0
     key = load_keys(shell.state / "keys.toml").find("laptop")
     assert key is not None
-    assert key.role is Role.SET_UP
+    assert key.role is SigningRole.SET_UP
     assert key.fingerprint in err
     assert out == ""
     assert key.secret.hex() not in err

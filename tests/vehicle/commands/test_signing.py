@@ -9,14 +9,14 @@ import pytest
 from dialects import codec
 from dialects import messages as m
 from link.signing.keys import KeyRing, SigningKey, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from link.tlog.tlog import encode_record, read_records
 from tests.vehicle.bench import Bench
 from vehicle.commands.signing import Pairing
 from vehicle.storage.store import PendingWrite
 
 SECRET = bytes(range(1, 33))
-PRINT = SigningKey("a", Role.WATCH, SECRET).fingerprint
+PRINT = SigningKey("a", SigningRole.WATCH, SECRET).fingerprint
 
 
 @dataclass
@@ -49,7 +49,7 @@ def give(bench: Bench, secret: bytes = SECRET, target: int = 1, component: int =
 def test_a_key_over_a_cable_is_stored_with_the_role_setup() -> None:
     store = Store()
     assert give(bench_with(store, 0)) == [f"Signing: key {PRINT} stored as cable-{PRINT}"]
-    assert store.ring.keys == (SigningKey(f"cable-{PRINT}", Role.SET_UP, SECRET),)
+    assert store.ring.keys == (SigningKey(f"cable-{PRINT}", SigningRole.SET_UP, SECRET),)
 
 
 def test_the_answer_comes_once_the_key_is_on_the_disk() -> None:
@@ -91,7 +91,7 @@ def test_without_a_folder_for_keys_it_is_refused() -> None:
 
 
 def test_a_vehicle_with_keys_takes_no_unsigned_one() -> None:
-    store = Store(KeyRing().add(new_key("laptop", Role.SET_UP)))
+    store = Store(KeyRing().add(new_key("laptop", SigningRole.SET_UP)))
     before = store.ring
     assert give(bench_with(store, 0)) == ["Signing: refused: 'mavhelm vehicle key install'"]
     assert give(bench_with(store, 0), bytes(32)) == ["Signing: to remove: 'mavhelm vehicle key revoke'"]

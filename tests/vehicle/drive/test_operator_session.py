@@ -1,4 +1,4 @@
-"""Operator sessions: demands that prove their age, beside copies, late links and twins (the same system id)."""
+"""Operator sessions: demands that prove their age, beside copies, late links and duplicates (the same system id)."""
 
 from __future__ import annotations
 

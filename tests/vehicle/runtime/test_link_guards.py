@@ -10,7 +10,7 @@ from link.links import open_links
 from link.signing.key_actions import make_key
 from link.signing.key_file import FILE
 from link.signing.memory_file import load_memory
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.link.frames import heartbeat
 from tests.link.signing.signed import ARM, HERE, STRANGER, signed
 from tests.ports import free_port
@@ -77,8 +77,8 @@ def test_what_it_says_to_do_closes_the_network(tmp_path: Path) -> None:
         assert [
             build_policy(SigningSettings(allow_unsigned=each), private=False).unsigned for each in (True, False)
         ] == [
-            Role.SET_UP,
-            Role.WATCH,
+            SigningRole.SET_UP,
+            SigningRole.WATCH,
         ]
     finally:
         keys.close()
@@ -112,13 +112,13 @@ def test_a_trusted_link_is_free_until_the_first_key_guards_it(tmp_path: Path) ->
         made.attach(links)
         channel = links[0].channel
         assert channel.guard is None
-        key = make_key(tmp_path / FILE, "laptop", Role.DRIVE)
+        key = make_key(tmp_path / FILE, "laptop", SigningRole.DRIVE)
         keys.listeners[0](keys.ring.add(key))
         assert channel.guard is not None
         assert channel.receive(heartbeat(0), HERE, 0.0), "this computer needs no key"
         stamp = made._link_signing.signing.clock.stamp(0.0)
         assert channel.receive(signed(ARM, STRANGER, stamp), HERE, 0.0) == []
-        assert channel.receive(signed(ARM, key, stamp), HERE, 0.0)[0].role is Role.DRIVE
+        assert channel.receive(signed(ARM, key, stamp), HERE, 0.0)[0].role is SigningRole.DRIVE
         made.close(1.0)
         assert load_memory(tmp_path / "signing.json").newest
     finally:

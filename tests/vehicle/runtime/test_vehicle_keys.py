@@ -11,7 +11,7 @@ import pytest
 from link.signing.key_actions import make_key, remove_key
 from link.signing.key_file import KeyFileError
 from link.signing.keys import KeyRing, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from vehicle.runtime.vehicle_keys import VehicleKeys
 
 PATIENCE = 10.0
@@ -31,7 +31,7 @@ def test_a_key_made_beside_it_is_adopted_and_a_revoked_one_ends(tmp_path: Path) 
     vehicle_keys = VehicleKeys(path)
     heard: list[KeyRing] = []
     vehicle_keys.listeners.append(heard.append)
-    key = make_key(path, "laptop", Role.DRIVE)
+    key = make_key(path, "laptop", SigningRole.DRIVE)
     until(vehicle_keys, lambda: vehicle_keys.ring.find("laptop") == key)
     remove_key(path, "laptop")
     until(vehicle_keys, lambda: not vehicle_keys.ring.keys)
@@ -41,7 +41,7 @@ def test_a_key_made_beside_it_is_adopted_and_a_revoked_one_ends(tmp_path: Path) 
 
 def test_a_key_is_added_and_a_second_time_refused(tmp_path: Path) -> None:
     vehicle_keys = VehicleKeys(tmp_path / "keys.toml")
-    key = new_key("cable", Role.SET_UP)
+    key = new_key("cable", SigningRole.SET_UP)
     first = vehicle_keys.add(key)
     until(vehicle_keys, lambda: first.done)
     assert first.problem is None
@@ -56,7 +56,7 @@ def test_keys_of_a_file_that_is_broken_meanwhile_stay_in_force(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     path = tmp_path / "keys.toml"
-    make_key(path, "laptop", Role.DRIVE)
+    make_key(path, "laptop", SigningRole.DRIVE)
     vehicle_keys = VehicleKeys(path)
     path.write_text("[[key]\n")
     until(vehicle_keys, lambda: "stay in force" in caplog.text)

@@ -14,7 +14,7 @@ from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.views.requests import RequestsRequest
 from link.fleet.keys import read_frame
 from link.fleet.roles import needed_role
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.fakes.vehicle import QUERIES, FakeVehicle
 from tests.fakes.verb_seat import SeatLog, verb_of
 from tests.groundstation.cockpits import Cockpit
@@ -32,7 +32,7 @@ class RoleHost(Host):
             for data, _, sequence in self.channel.send(outgoing, now=now):
                 frame = read_frame(data)
                 assert frame is not None
-                if needed_role(frame) > Role.WATCH:
+                if needed_role(frame) > SigningRole.WATCH:
                     self.core.handle_refused(outgoing.message, WHY, now)  # type: ignore[attr-defined]
                     continue
                 frames.append(data)
@@ -87,7 +87,7 @@ def test_a_request_ends_as_refused(cockpit: Cockpit) -> None:
 
 def test_a_verb_is_told_of_its_own_messages_only(cockpit: Cockpit) -> None:
     told, verbs = (seat := SeatLog()).refused, cockpit.station.verbs
-    verb = verb_of("arm", takes_part=True, seat=seat)
+    verb = verb_of("arm", needs_session=True, seat=seat)
     verbs.join(verb, cockpit.now)
     arm = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
     verbs.handle(verb, arm, cockpit.now)

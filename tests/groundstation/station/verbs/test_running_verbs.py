@@ -22,18 +22,18 @@ STEP = 0.05
 class Ashore:
     """A station without a screen, with an armed vehicle, and one verb that runs."""
 
-    def __init__(self, vehicle: FakeVehicle | None = None, *, takes_part: bool = True) -> None:
+    def __init__(self, vehicle: FakeVehicle | None = None, *, needs_session: bool = True) -> None:
         self.cockpit = armed_cockpit(vehicle)
         self.cockpit.leasing = False
         self.cockpit.run(2.0)
         self.began = self.cockpit.now
         self.seat = SeatLog()
         self.heard, self.refusals = self.seat.heard, self.seat.refusals
-        self.verb = self.add("mavhelm send", takes_part=takes_part)
+        self.verb = self.add("mavhelm send", needs_session=needs_session)
         self.alive = True
 
-    def add(self, name: str, *, takes_part: bool = True, follows: bool = False) -> Verb:
-        verb = verb_of(name, takes_part=takes_part, follows=follows, seat=self.seat)
+    def add(self, name: str, *, needs_session: bool = True, follows: bool = False) -> Verb:
+        verb = verb_of(name, needs_session=needs_session, follows=follows, seat=self.seat)
         self.verbs.join(verb, self.cockpit.now)
         return verb
 
@@ -71,9 +71,9 @@ FULL = m.ManualControl(1, 1000, INVALID_AXIS, INVALID_AXIS, 0, 0)
 CENTRE = m.ManualControl(1, 0, INVALID_AXIS, INVALID_AXIS, 0, 0)
 
 
-@pytest.mark.parametrize(("takes_part", "count"), [(True, 1), (False, 0)])
-def test_a_verb_that_looks_keeps_no_vehicle_from_its_failsafe(takes_part: bool, count: int) -> None:
-    ashore = Ashore(takes_part=takes_part)
+@pytest.mark.parametrize(("needs_session", "count"), [(True, 1), (False, 0)])
+def test_a_verb_that_looks_keeps_no_vehicle_from_its_failsafe(needs_session: bool, count: int) -> None:
+    ashore = Ashore(needs_session=needs_session)
     ashore.run(1.0)
     assert ashore.of(m.Heartbeat) == []
     ashore.send(BEAT)
@@ -200,7 +200,7 @@ def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:
 def test_arming_by_verb_is_control_of_a_vehicle_that_tells_none() -> None:
     cockpit = Cockpit(FakeArduPilot())
     cockpit.run(1.5)
-    verb = verb_of("mavhelm arm", takes_part=True)
+    verb = verb_of("mavhelm arm", needs_session=True)
     cockpit.station.verbs.join(verb, cockpit.now)
     command = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
     cockpit.station.verbs.handle(verb, command, cockpit.now)
@@ -231,13 +231,13 @@ def test_the_key_of_setup_signing_reaches_no_verb() -> None:
     assert not any(byte for message in heard for byte in message.secret_key)
 
 
-@pytest.mark.parametrize("takes_part", [True, False])
-def test_the_session_is_proven_before_what_may_need_control(takes_part: bool) -> None:
-    ashore = Ashore(takes_part=takes_part)
+@pytest.mark.parametrize("needs_session", [True, False])
+def test_the_session_is_proven_before_what_may_need_control(needs_session: bool) -> None:
+    ashore = Ashore(needs_session=needs_session)
     ashore.send(m.ParamSet(1, 1, b"WP_RADIUS", 2.0, 9))
     ashore.cockpit.run(0.1)
     kinds = [type(message) for at, message in ashore.cockpit.vehicle.received if at >= ashore.began]
-    expected = [m.RoverOperatorPresence, m.ParamSet] if takes_part else [m.ParamSet]
+    expected = [m.RoverOperatorPresence, m.ParamSet] if needs_session else [m.ParamSet]
     assert [kind for kind in kinds if kind in (m.RoverOperatorPresence, m.ParamSet)] == expected
 
 
@@ -248,7 +248,7 @@ def test_verb_that_follows_keeps_the_session_of_the_former_verb() -> None:
     ashore = Ashore()
     assert not ashore.verbs.may_follow(ashore.cockpit.now)  # the last driver was a screen
     ashore.run(0.5)
-    watch = ashore.add("mavhelm watch", takes_part=False, follows=ashore.verbs.may_follow(ashore.cockpit.now))
+    watch = ashore.add("mavhelm watch", needs_session=False, follows=ashore.verbs.may_follow(ashore.cockpit.now))
     assert ashore.passed(BEAT, PROOF, verb=watch) == [0, 0]  # the verb before still runs
     ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     assert ashore.passed(BEAT, PROOF, verb=watch) == [1, 1]
@@ -260,14 +260,14 @@ def test_what_follows_begins_soon_and_a_verb_that_looks_is_none() -> None:
     ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     assert ashore.verbs.may_follow(ashore.cockpit.now + KEEP - STEP)
     assert not ashore.verbs.may_follow(ashore.cockpit.now + KEEP + STEP)
-    assert ashore.passed(BEAT, PROOF, verb=ashore.add("mavhelm status", takes_part=False)) == [0, 0]
+    assert ashore.passed(BEAT, PROOF, verb=ashore.add("mavhelm status", needs_session=False)) == [0, 0]
 
 
 def test_a_screen_that_drove_since_then_leaves_nothing_to_follow() -> None:
     """Else the vehicle of a screen that was killed would drive on for as long as a verb looks."""
     ashore = Ashore()
     ashore.run(0.5)
-    watch = ashore.add("mavhelm watch", takes_part=False, follows=True)
+    watch = ashore.add("mavhelm watch", needs_session=False, follows=True)
     ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
     ashore.cockpit.leasing = True
     ashore.cockpit.run(0.5)

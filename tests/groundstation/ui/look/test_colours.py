@@ -56,7 +56,11 @@ def test_with_16_colours_text_on_the_selected_row_has_one_colour() -> None:
 
 def test_without_colours_states_differ_by_attributes() -> None:
     use_theme(ThemeName.NO_COLOUR)
-    armed, stopped, disarmed = badge(Role.DANGER), badge(Role.BAD), style(Role.TEXT, Role.SELECTED, bold=True)
+    armed, stopped, disarmed = (
+        badge(Role.DANGER),
+        badge(Role.BAD),
+        style(Role.TEXT, Role.SELECTED, bold=True),
+    )
     looks = [(each.bold, each.reverse, each.underline) for each in (armed, stopped, disarmed, style())]
     assert len(set(looks)) == 4
     assert armed.reverse

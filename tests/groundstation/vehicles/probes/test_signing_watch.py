@@ -9,12 +9,12 @@ from groundstation.vehicles.probes.signing_watch import WINDOW
 from groundstation.vehicles.state.message_log import MessageLog
 from link.protocol.signing_guard import SigningPolicy
 from link.signing.clock import TICKS
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.link.frames import frame
 from tests.link.signing.signed import DRIVER, HERE, NOW, STRANGER, keep, signed, station
 
 BEAT = Heartbeat(10, 3, 0, 0, 3, 3)
-TAKES_UNSIGNED = SigningPolicy(unsigned=Role.SET_UP, pinned_for=float("inf"), greets_late=True)
+TAKES_UNSIGNED = SigningPolicy(unsigned=SigningRole.SET_UP, pinned_for=float("inf"), greets_late=True)
 
 
 class Heard:

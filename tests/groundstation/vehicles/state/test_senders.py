@@ -50,16 +50,16 @@ def test_vehicle_that_changed_its_address_is_known_by_boot_time() -> None:
     take(senders, beat(HERE, ARMED), booted(HERE, 10_000), now=1.0)
     take(senders, beat(THERE, DISARMED), booted(THERE, 15_200), now=6.0)
     assert senders.find_doubt(6.0) == ""
-    assert senders.describe_twins(6.0) == ""
+    assert senders.describe_duplicates(6.0) == ""
 
 
 def test_another_boot_time_shows_two_vehicles_at_once() -> None:
     senders = Senders()
     take(senders, beat(HERE, DISARMED), beat(THERE, DISARMED), now=1.0)
-    assert senders.describe_twins(1.0) == ""
+    assert senders.describe_duplicates(1.0) == ""
     take(senders, booted(HERE, 10_000), booted(THERE, 60_000), now=1.1)
-    twins = "10.0.0.1:14550 (disarmed in HOLD) and 10.0.0.2:14550 (disarmed in HOLD)"
-    assert senders.describe_twins(1.1) == twins
+    duplicates = "10.0.0.1:14550 (disarmed in HOLD) and 10.0.0.2:14550 (disarmed in HOLD)"
+    assert senders.describe_duplicates(1.1) == duplicates
 
 
 def test_senders_that_differ_for_longer_than_a_late_link_are_two() -> None:
@@ -67,7 +67,7 @@ def test_senders_that_differ_for_longer_than_a_late_link_are_two() -> None:
     for second in range(5):
         take(senders, beat(HERE, ARMED, AUTO), beat(THERE, DISARMED), now=1.0 + second)
         assert senders.differ(1.0 + second)
-        assert bool(senders.describe_twins(1.0 + second)) == (second >= 4)
+        assert bool(senders.describe_duplicates(1.0 + second)) == (second >= 4)
 
 
 def test_a_link_that_is_late_shows_no_second_vehicle() -> None:
@@ -75,7 +75,7 @@ def test_a_link_that_is_late_shows_no_second_vehicle() -> None:
     for second in range(8):
         take(senders, beat(HERE, ARMED if second < 3 else DISARMED), now=1.0 + second)
         take(senders, beat(THERE, ARMED if second < 5 else DISARMED), now=1.5 + second)
-        assert senders.describe_twins(1.5 + second) == ""
+        assert senders.describe_duplicates(1.5 + second) == ""
     assert not senders.differ(8.5)
 
 
@@ -84,7 +84,7 @@ def test_two_unique_ids_show_two_vehicles() -> None:
     for peer, uid in ((HERE, 7), (THERE, 8)):
         version = m.AutopilotVersion(0, 0, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, uid)
         take(senders, beat(peer, DISARMED), Received(version, 1, 1, 0, peer, introduced=True), now=1.0)
-    assert senders.describe_twins(1.0)
+    assert senders.describe_duplicates(1.0)
 
 
 def test_two_vehicles_behind_a_bridge_are_told_apart_by_numbers() -> None:
@@ -92,7 +92,7 @@ def test_two_vehicles_behind_a_bridge_are_told_apart_by_numbers() -> None:
     take(senders, beat(HERE, DISARMED), now=1.0)
     take(senders, beat(HERE, ARMED, AUTO, numbering=1), beat(HERE, DISARMED, numbering=2), now=2.0)
     assert "(numbering 1)" in senders.find_doubt(2.0)
-    assert senders.describe_twins(2.0)
+    assert senders.describe_duplicates(2.0)
 
 
 def test_each_component_that_claims_the_autopilot_must_report_it() -> None:

@@ -155,7 +155,7 @@ def test_the_verb_of_a_shell_that_stands_still_sends_nothing() -> None:
     async def use(shells: Shells) -> None:
         core = StationCore(shells.station, 1)
         station, flush = shells.station, shells.flush
-        seat = StationSeat(station, core, "a shell", flush, takes_part=True, silence=lambda now: silence[0])
+        seat = StationSeat(station, core, "a shell", flush, needs_session=True, silence=lambda now: silence[0])
         seat.join()
         await shells.see(lambda: core.chosen is not None)
         silence[0] = STILL_WITHIN + 0.01
@@ -179,7 +179,7 @@ def test_the_demand_of_a_shell_that_stands_still_ends() -> None:
     async def use(shells: Shells) -> None:
         core = StationCore(shells.station, 1)
         station, flush = shells.station, shells.flush
-        seat = StationSeat(station, core, "a shell", flush, takes_part=True, silence=lambda now: silence[0])
+        seat = StationSeat(station, core, "a shell", flush, needs_session=True, silence=lambda now: silence[0])
         seat.join()
         await shells.see(lambda: core.chosen is not None)
         core.outbox.append(ahead)

@@ -14,7 +14,7 @@ from dialects.enums import Autopilot
 from groundstation.verbs.common.exit_codes import ExitCode
 from link.signing.key_file import load_keys, save_keys, station_key_file
 from link.signing.keys import KeyRing, SigningKey, new_key
-from link.signing.role import Role
+from link.signing.role import SigningRole
 from tests.e2e.cable import SerialCable
 from tests.e2e.programs import Vehicle
 from tests.fakes.lines import on_line
@@ -105,7 +105,7 @@ def assert_keys_are_added_by_a_holder_only(capsys: Capture, cable: SerialCable, 
     rotated = run_until_answered(capsys, "sign", "setup", "second", "-e", cable.two)
     assert (rotated.code, len(load_keys(state / "keys.toml").keys)) == (ExitCode.DONE, 2), rotated.err
     mine = load_keys(station_key_file())
-    save_keys(station_key_file(), KeyRing().add(new_key("stranger", Role.SET_UP)))
+    save_keys(station_key_file(), KeyRing().add(new_key("stranger", SigningRole.SET_UP)))
     refused = run_until_answered(capsys, "sign", "setup", "--unsigned", "-e", cable.two)
     assert refused.code == ExitCode.REFUSED
     assert "refused: 'mavhelm vehicle key install'" in refused.err
@@ -139,7 +139,7 @@ def test_a_vehicle_gets_its_first_key_over_a_cable_and_alone(
         assert (run.code, run.out) == (0, "")
         assert f"has the key rover ({key.fingerprint})" in run.err
         stored = load_keys(state / "keys.toml").keys
-        assert stored == (SigningKey(f"cable-{key.fingerprint}", Role.SET_UP, key.secret),)
+        assert stored == (SigningKey(f"cable-{key.fingerprint}", SigningRole.SET_UP, key.secret),)
         assert_keys_are_added_by_a_holder_only(capsys, cable, state)
         params = run_verb(capsys, "param", "get", "-e", cable.two)
         doctor = run_verb(capsys, "doctor", "-e", cable.two, "--report", str(tmp_path / "report.txt"))

@@ -19,7 +19,7 @@ from link.bridge.fleet.router_command import run as run_router
 from link.endpoint import parse_endpoint
 from link.fleet.config import load_config
 from link.runtime.toml_file import TomlError
-from link.signing.role import Role
+from link.signing.role import SigningRole
 
 FILE = """
 fleet = "farm"
@@ -61,7 +61,7 @@ def test_keys_are_for_their_user_only(farm: Path) -> None:
 
 def test_the_file_of_a_member_is_all_that_it_needs(farm: Path) -> None:
     config = load_config(parse_endpoint(f"zenoh:{farm.parent}/alice.b.json5/farm"))
-    assert (config.name, config.operator_role, config.is_proven) == ("alice.b", Role.DRIVE, True)
+    assert (config.name, config.operator_role, config.is_proven) == ("alice.b", SigningRole.DRIVE, True)
     assert list(config.routers) == read_fleet_file(farm).routers
 
 
