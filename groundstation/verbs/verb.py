@@ -27,11 +27,11 @@ class Stage(IntEnum):
     DISARMED = 0
     ARMED = 1
     MOVING = 2
-    UNDERWAY = 3
-    """While it moves."""
-    STOPPING = 4
-    AFTERWARDS = 5
+    STOPPING = 3
+    AFTERWARDS = 4
     """Disarmed again: erases, clears, restarts."""
+    KEYS = 5
+    """Changes the key that signs, so that the vehicles before are not heard any more."""
     OTHER_VEHICLE = 6
     """Needs an autopilot with a compass, a radio control receiver or a file system to write to."""
 

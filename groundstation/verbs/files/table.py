@@ -64,18 +64,6 @@ VERBS: dict[str, Verb] = {
                             (_SURE,), needs_session=True,
                             many=True),
     }, "get, set, save, load, diff, store or reset parameters of a vehicle"),
-    "log": Verb(Group.DATA, (
-        Example("mavhelm log list", "the logs on the vehicle", Stage.AFTERWARDS),
-        Example("mavhelm log get latest", "download the newest", Stage.AFTERWARDS),
-        Example("mavhelm log erase --yes", "all logs of the vehicle; there is no undo", Stage.AFTERWARDS),
-    ), {
-        "list": VerbAction("print the logs on the vehicle", log.list_logs, watches=True),
-        "get": VerbAction("download a log, or resume", log.get,
-                          (("log", {"metavar": "ID", "help": "number of the log, or latest"}),
-                           ("file", {"nargs": "?", "metavar": "FILE"}), YES), watches=True),
-        "erase": VerbAction("have the vehicle erase all its logs", log.erase,
-                            (_SURE,), needs_session=True),
-    }, "list, get or erase the logs on the vehicle"),
     "ftp": Verb(Group.DATA, (
         Example("mavhelm ftp ls /logs", "files, where the vehicle has MAVLink FTP", Stage.AFTERWARDS),
         Example("mavhelm ftp get /logs/00000001.tlog", "download, resume, compare the checksum", Stage.AFTERWARDS),
@@ -93,6 +81,18 @@ VERBS: dict[str, Verb] = {
         "crc": VerbAction("print the checksum of a file, or compare it with a file here", ftp.crc,
                           (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"})), watches=True),
     }, "ls, get, put, rm or crc files on the vehicle"),
+    "log": Verb(Group.DATA, (
+        Example("mavhelm log list", "the logs on the vehicle", Stage.AFTERWARDS),
+        Example("mavhelm log get latest", "download the newest", Stage.AFTERWARDS),
+        Example("mavhelm log erase --yes", "all logs of the vehicle; there is no undo", Stage.AFTERWARDS),
+    ), {
+        "list": VerbAction("print the logs on the vehicle", log.list_logs, watches=True),
+        "get": VerbAction("download a log, or resume", log.get,
+                          (("log", {"metavar": "ID", "help": "number of the log, or latest"}),
+                           ("file", {"nargs": "?", "metavar": "FILE"}), YES), watches=True),
+        "erase": VerbAction("have the vehicle erase all its logs", log.erase,
+                            (_SURE,), needs_session=True),
+    }, "list, get or erase the logs on the vehicle"),
     "export": Verb(Group.DATA, (
         Example("mavhelm export f.tlog --mcap out.mcap --from 0:31 --to 0:44",
                 "a part of a log, for Foxglove and ROS 2; no vehicle needed", Stage.AFTERWARDS),

@@ -61,7 +61,7 @@ VERBS: dict[str, Verb] = {
     "watch": Verb(Group.DATA, (
         Example("mavhelm watch ATTITUDE --csv", "or --json"),
         Example("mavhelm watch VFR_HUD.groundspeed --until '>0.5' --timeout 30",
-                "code 7 if it is not so within 30 s", Stage.UNDERWAY),
+                "code 7 if it is not so within 30 s", Stage.MOVING),
     ), {ONLY: VerbAction("print each message of a kind, until a condition holds or --timeout is over", messages.watch,
         (("what", {"metavar": "MESSAGE[.FIELD]", "help": "e.g. VFR_HUD.groundspeed"}),
          ("--until", {"metavar": "EXPR", "help": "end when it holds: '>0.5' for a field, else 'field>0.5'"}),

@@ -56,7 +56,7 @@ _MORE_PLAN_ACTIONS: dict[str, dict[str, VerbAction]] = {
 
 VERBS: dict[str, Verb] = {
     "goto": Verb(Group.DRIVE, (
-        Example("mavhelm goto -35.36287 149.16599", "drive there by itself; degrees", Stage.MOVING),
+        Example("mavhelm goto -35.36287 149.16599", "drive there by itself; degrees", Stage.ARMED),
         Example("mavhelm goto --by 10 -5", "m north and east from where it is", Stage.MOVING),
         Example("mavhelm goto wp 4", "to the place of item 4, as `mission show` counts", Stage.MOVING),
     ), {ONLY: VerbAction("drive to a place by itself; done when the heartbeat reports such a mode", go_to.go_to,

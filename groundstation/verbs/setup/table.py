@@ -45,16 +45,16 @@ VERBS: dict[str, Verb] = {
     )}),
     "sign": Verb(Group.SETUP, (
         Example("mavhelm sign new rover",
-                "a key for MAVLink signing; docs/keys.md pairs in a minute", Stage.AFTERWARDS),
+                "a key for MAVLink signing; docs/keys.md pairs in a minute", Stage.KEYS),
         Example("mavhelm sign setup rover -e serial:/dev/ttyACM0:115200",
-                "give it to a disarmed vehicle over a cable", Stage.AFTERWARDS),
+                "give it to a disarmed vehicle over a cable", Stage.KEYS),
         Example("mavhelm sign install boat --words",
-                "enter a key that the vehicle shows; also --passphrase, --hex FILE", Stage.AFTERWARDS),
+                "enter a key that the vehicle shows; also --passphrase, --hex FILE", Stage.KEYS),
         Example("mavhelm sign show rover --qr",
-                "the secret, for another device; without --qr the fingerprint", Stage.AFTERWARDS),
-        Example("mavhelm sign list", "without the secrets; > marks the one that signs", Stage.AFTERWARDS),
-        Example("mavhelm sign use rover", "sign with this one from now on", Stage.AFTERWARDS),
-        Example("mavhelm sign forget rover", "remove it here; revoke it on the vehicle as well", Stage.AFTERWARDS),
+                "the secret, for another device; without --qr the fingerprint", Stage.KEYS),
+        Example("mavhelm sign list", "without the secrets; > marks the one that signs", Stage.KEYS),
+        Example("mavhelm sign use rover", "sign with this one from now on", Stage.KEYS),
+        Example("mavhelm sign forget rover", "remove it here; revoke it on the vehicle as well", Stage.KEYS),
     ), {
         "new": VerbAction("make a key for MAVLink signing", sign.new, (_KEY, *SHOWN.items()), offline=True),
         "show": VerbAction(
