@@ -12,7 +12,7 @@ from groundstation.verbs.ros.table import VERBS as ROS
 from groundstation.verbs.setup.table import VERBS as SETUP
 from groundstation.verbs.verb import Example, Stage, Verb
 
-VERBS: dict[str, Verb] = {**MESSAGES, **SETUP, **FILES, **CONTROL, **MISSION, **ROS}
+VERBS: dict[str, Verb] = {**MESSAGES, **SETUP, **CONTROL, **FILES, **MISSION, **ROS}
 """Verb -> its row. Examples of one stage run in this order."""
 
 

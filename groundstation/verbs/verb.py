@@ -28,11 +28,12 @@ class Stage(IntEnum):
     ARMED = 1
     MOVING = 2
     STOPPING = 3
-    AFTERWARDS = 4
-    """Disarmed again: erases, clears, restarts."""
-    KEYS = 5
+    IN_CONTROL = 4
+    """Disarmed again, and in control: erases and clears."""
+    AFTERWARDS = 5
+    KEYS = 6
     """Changes the key that signs, so that the vehicles before are not heard any more."""
-    OTHER_VEHICLE = 6
+    OTHER_VEHICLE = 7
     """Needs an autopilot with a compass, a radio control receiver or a file system to write to."""
 
 

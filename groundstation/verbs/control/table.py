@@ -47,7 +47,7 @@ VERBS: dict[str, Verb] = {
         finds=False, many=True, stops=True)}),
     "control": Verb(Group.DRIVE, (
         Example("mavhelm control show", "who is in control", Stage.ARMED),
-        Example("mavhelm control request", "take control, or ask the driver for it", Stage.AFTERWARDS),
+        Example("mavhelm control request", "take control, or ask the driver for it", Stage.IN_CONTROL),
         Example("mavhelm control release", "our own vehicle changes to HOLD", Stage.AFTERWARDS),
         Example("mavhelm control give 255", "release control once 255 asks for it; show, release", Stage.AFTERWARDS),
     ), {

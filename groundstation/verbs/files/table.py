@@ -65,9 +65,9 @@ VERBS: dict[str, Verb] = {
                             many=True),
     }, "get, set, save, load, diff, store or reset parameters of a vehicle"),
     "ftp": Verb(Group.DATA, (
-        Example("mavhelm ftp ls /logs", "files, where the vehicle has MAVLink FTP", Stage.AFTERWARDS),
-        Example("mavhelm ftp get /logs/00000001.tlog", "download, resume, compare the checksum", Stage.AFTERWARDS),
-        Example("mavhelm ftp crc /logs/00000001.tlog", "the checksum of a file there", Stage.AFTERWARDS),
+        Example("mavhelm ftp ls /logs", "files, where the vehicle has MAVLink FTP"),
+        Example("mavhelm ftp get /logs/00000001.tlog", "download, resume, compare the checksum"),
+        Example("mavhelm ftp crc /logs/00000001.tlog", "the checksum of a file there"),
         Example("mavhelm ftp put a.lua /scripts/a.lua", "upload and compare the checksum", Stage.OTHER_VEHICLE),
         Example("mavhelm ftp rm /logs/00000001.tlog", "remove a file there", Stage.OTHER_VEHICLE),
     ), {
@@ -82,9 +82,9 @@ VERBS: dict[str, Verb] = {
                           (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"})), watches=True),
     }, "ls, get, put, rm or crc files on the vehicle"),
     "log": Verb(Group.DATA, (
-        Example("mavhelm log list", "the logs on the vehicle", Stage.AFTERWARDS),
-        Example("mavhelm log get latest", "download the newest", Stage.AFTERWARDS),
-        Example("mavhelm log erase --yes", "all logs of the vehicle; there is no undo", Stage.AFTERWARDS),
+        Example("mavhelm log list", "the logs on the vehicle"),
+        Example("mavhelm log get latest", "download the newest"),
+        Example("mavhelm log erase --yes", "all logs of the vehicle; there is no undo", Stage.IN_CONTROL),
     ), {
         "list": VerbAction("print the logs on the vehicle", log.list_logs, watches=True),
         "get": VerbAction("download a log, or resume", log.get,

@@ -82,7 +82,7 @@ VERBS: dict[str, Verb] = {
         Example("mavhelm mission start", "drive it, or go on; with a number from that item", Stage.MOVING),
         Example("mavhelm mission pause", "stop where it is", Stage.MOVING),
         Example("mavhelm mission jump 2", "go on with item 2, as show prints it", Stage.MOVING),
-        Example("mavhelm mission clear", "remove the mission on the vehicle", Stage.AFTERWARDS),
+        Example("mavhelm mission clear", "remove the mission on the vehicle", Stage.IN_CONTROL),
     ), _plan_actions("mission"), "show, get, put, check or clear the mission; start, pause or jump"),
     "fence": Verb(Group.PLANS, (
         Example("mavhelm fence put patrol.plan", "the fence of the same file; also for rally"),
@@ -90,15 +90,15 @@ VERBS: dict[str, Verb] = {
         Example("mavhelm fence show", "print it"),
         Example("mavhelm fence get fence.plan", "download it"),
         Example("mavhelm fence on", "off: turn the fence off"),
-        Example("mavhelm fence off", "disable it", Stage.AFTERWARDS),
-        Example("mavhelm fence clear", "remove it", Stage.AFTERWARDS),
+        Example("mavhelm fence off", "disable it", Stage.IN_CONTROL),
+        Example("mavhelm fence clear", "remove it", Stage.IN_CONTROL),
     ), _plan_actions("fence"), "show, get, put, check or clear the fence; on or off"),
     "rally": Verb(Group.PLANS, (
         Example("mavhelm rally put patrol.plan", "upload them"),
         Example("mavhelm rally check patrol.plan", "as for a mission"),
         Example("mavhelm rally show", "print them"),
         Example("mavhelm rally get rally.plan", "download them"),
-        Example("mavhelm rally clear", "remove the rally points on the vehicle", Stage.AFTERWARDS),
+        Example("mavhelm rally clear", "remove the rally points on the vehicle", Stage.IN_CONTROL),
     ), _plan_actions("rally"), "show, get, put, check or clear the rally points"),
 }  # fmt: skip
 """Verb -> its row."""
