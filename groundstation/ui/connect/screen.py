@@ -27,6 +27,7 @@ from groundstation.ui.widgets.row_table import RowTable
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.connect import ConnectRequest, ConnectView
 from link.endpoint import EndpointError, parse_endpoint
+from link.runtime.wsl import is_wsl
 
 WIDE = 120
 """Columns from which on the lists stand beside each other, with the logs that are here."""
@@ -63,6 +64,7 @@ class ConnectScreen(ConsoleScreen):
         self._simulators = RowTable(simulators_value(None, None), id="simulators")
         self._logs = RowTable(logs_value((), None), id="logs")
         self._typed = ""
+        self._wsl = is_wsl()
         self._disk = context.keep(FilesModel, context.numbers.take, context.folder).disk
 
     # ---- what all screens define ----
@@ -253,7 +255,8 @@ class ConnectScreen(ConsoleScreen):
         opened = model.view.endpoints if model.view else ()
         self._heard.show(heard_value(model.view, model.shown_cursor(ConnectPanel.HEARD)))
         self._recent.show(recent_value(model.entries, opened, model.shown_cursor(ConnectPanel.RECENT)))
-        self._ports.show(ports_value(model.ports, opened, model.baud, model.shown_cursor(ConnectPanel.PORTS)))
+        port = model.shown_cursor(ConnectPanel.PORTS)
+        self._ports.show(ports_value(model.ports, opened, model.baud, port, wsl=self._wsl))
         self._simulators.show(simulators_value(model.shown_cursor(ConnectPanel.SIMULATORS), snapshot.simulator))
         self._heard.border_subtitle = plain("asked nobody, sent nothing yet" if not opened else f"{len(opened)} open")
         self._recent.border_subtitle = "* pinned · p pins · x forgets"
@@ -262,7 +265,9 @@ class ConnectScreen(ConsoleScreen):
             table.set_class(panel is model.chosen, "-chosen")
         turn, endpoints = 0 if self._state.still else int(snapshot.uptime * 4), snapshot.endpoints
         self._welcome.show(
-            WelcomeValue(self._describe_state(), len(model.heard), turn, endpoints, tuple(snapshot.addresses))
+            WelcomeValue(
+                self._describe_state(), len(model.heard), turn, endpoints, tuple(snapshot.addresses), self._wsl
+            )
         )
 
     def _describe_state(self) -> str:

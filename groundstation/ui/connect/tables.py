@@ -14,6 +14,7 @@ from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, TEXT, WHITE, 
 from groundstation.ui.widgets.columns import Column
 from groundstation.ui.widgets.row_table import Cell, RowTableValue, dim
 from groundstation.views.connect import ConnectView, HeardRow, PortRow
+from link.runtime.wsl import SERIAL_HINT
 
 HEARD_COLUMNS = (
     Column("id", 3, right=True),
@@ -135,10 +136,15 @@ def used_text(used: float, now: float | None = None) -> str:
     return time.strftime("%b %d" if then.tm_year == today.tm_year else "%Y-%m-%d", then)
 
 
-def ports_value(ports: Sequence[PortRow], opened: Sequence[str], baud: int, cursor: int | None) -> RowTableValue:
-    """Return the table of the serial ports; ENTER opens the one under the cursor with this baud rate."""
+def ports_value(
+    ports: Sequence[PortRow], opened: Sequence[str], baud: int, cursor: int | None, *, wsl: bool = False
+) -> RowTableValue:
+    """Return the table of the serial ports; ENTER opens the one under the cursor with this baud rate.
+
+    `wsl`: Windows has the ports until one is attached.
+    """
     rows = tuple(_port(each, opened, baud if number == cursor else None) for number, each in enumerate(ports))
-    notes = [dim("plug one in: it appears here")]
+    notes = [dim(SERIAL_HINT if wsl else "plug one in: it appears here")]
     if cursor is not None and cursor < len(ports):
         notes = [*_port_notes(ports[cursor]), dim("b changes the baud rate")]
     return RowTableValue(PORT_COLUMNS, rows, cursor, tuple(notes), titled=False)

@@ -17,6 +17,7 @@ MAX_ADDRESSES = 3
 """Addresses that are shown: of a wired and a wireless network, and one more."""
 NO_ADDRESS = "ADDRESS"
 """In commands while this machine has none."""
+WSL_STEPS = "UDP: networkingMode=mirrored; USB: usbipd; docs/windows.md"
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
 
 
@@ -30,6 +31,8 @@ class WelcomeValue(msgspec.Struct, frozen=True):
     endpoints: tuple[str, ...] = ()
     addresses: tuple[str, ...] = ()
     """Of this machine; a vehicle sends to one of them."""
+    wsl: bool = False
+    """This machine is in Windows, where UDP and serial ports need a step before."""
 
 
 class Welcome(Instrument[WelcomeValue]):
@@ -67,6 +70,7 @@ class Welcome(Instrument[WelcomeValue]):
             _advice("on a rover of ours", f"mavhelm vehicle --config rover.toml udpout:{address}:14550"),
             _advice("on ArduPilot or PX4", f"send to {address}:14550; a radio shows below"),
             _advice("let the network in", "udpin:0.0.0.0:14550"),
+            *([_advice("in WSL, before that", WSL_STEPS)] if value.wsl else []),
             _advice("from any shell", "mavhelm --help"),
         ]
 

@@ -12,6 +12,7 @@ from groundstation.verbs.session.doctor_session import DoctorSession
 from groundstation.verbs.session.session import NUMBERS
 from groundstation.views.doctor import DoctorView
 from link.runtime.diagnosis import MARKS, Health
+from link.runtime.wsl import wsl_hints
 
 SETTLE = 3.5
 """s for the vehicle to answer: settings that it does not have are requested for 3 s, the checks for 2 s."""
@@ -35,6 +36,8 @@ async def run(session: DoctorSession, options: argparse.Namespace, output: Outpu
         log = (f"{line.label}: {line.text}" for line in session.snapshot.texts)
         await session.files.write_text(options.report, format_report(view, log=log))
         output.note(f"report saved to {options.report}")
+    for hint in () if found else wsl_hints():
+        output.note(hint)
     return _finish(view, output, None if found else session.describe_links())
 
 

@@ -25,3 +25,10 @@ def test_without_an_address_it_says_what_to_do() -> None:
     shown = welcome(msgspec.structs.replace(VALUE, addresses=()))
     assert "this machine         no address yet: connect it to the network of the vehicle" in shown
     assert "udpout:ADDRESS:14550" in shown
+
+
+def test_in_wsl_it_says_what_comes_before_a_link() -> None:
+    assert "WSL" not in welcome(VALUE)
+    shown = welcome(msgspec.structs.replace(VALUE, wsl=True))
+    assert "in WSL, before that  UDP: networkingMode=mirrored; USB: usbipd; docs/windows.md" in shown
+    assert "mavhelm --help" in shown, "nothing falls off the end"
