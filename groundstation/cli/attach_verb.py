@@ -12,6 +12,7 @@ from groundstation.cli.local_verb import UsageError, load_settings, run_local
 from groundstation.cli.options import add_config, add_settings
 from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationClient, StationError
+from groundstation.gamepad.tab_stick import inherit_stick
 from groundstation.station_socket.about import describe_stations
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
@@ -49,13 +50,14 @@ def run(arguments: Sequence[str]) -> int:
 
 def _attach(options: argparse.Namespace) -> int:
     settings = load_settings(options).settings
+    stick = inherit_stick()
     pid = choose_station(options.pid)
 
     def connect(log_file: Path | None) -> StationClient:
         return StationClient.attach(pid, f"screen on {_terminal_name()}", watches=options.watch)
 
     with guard_terminal(terminal_path()):  # the watchdog of the station knows the terminal of its first screen only
-        return open_screen(settings, connect, "drive")
+        return open_screen(settings, connect, "drive", stick=stick)
 
 
 def choose_station(wanted: int | None) -> int:

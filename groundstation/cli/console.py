@@ -22,6 +22,7 @@ from groundstation.client import StationClient
 from groundstation.config.effective import Effective, build_keymap, resolve_endpoints
 from groundstation.config.settings import Settings, ThemeName
 from groundstation.gamepad.child import GamepadChild, missing_package
+from groundstation.gamepad.tab_stick import TabStick
 from groundstation.host_process import HostProcess
 from groundstation.input.pad_mapping import OFF, add_buttons, build_mapping
 from groundstation.input.style import Style
@@ -87,17 +88,23 @@ def _run(options: argparse.Namespace, names: Sequence[str], process: HostProcess
 
 
 def open_screen(
-    settings: Settings, connect: Callable[[Path | None], StationClient], first: str, opened: Sequence[str] = ()
+    settings: Settings,
+    connect: Callable[[Path | None], StationClient],
+    first: str,
+    opened: Sequence[str] = (),
+    *,
+    stick: TabStick | None = None,
 ) -> int:
     """Run the UI to its end with a station; return the exit code. `connect` gets the log file.
 
-    `first` is the screen that is shown at first; `opened` are the endpoints to remember.
+    `first` is the screen that is shown at first; `opened` are the endpoints to remember. `stick` takes the place of a
+    gamepad.
 
     Raises UsageError, KeymapError, StationError.
     """
     keymap = build_keymap(settings)
     check_terminal()
-    gamepad = _gamepad(settings)
+    gamepad = stick or _gamepad(settings)
     if gamepad is not None:
         keymap = add_buttons(keymap, gamepad.mapping)
     log_file = find_log_file(settings.log_file)

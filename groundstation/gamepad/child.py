@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import importlib.util
 import socket
 import subprocess
-import threading
-import time
-from collections.abc import Callable
 
 import msgspec
 
+from groundstation.gamepad.frame_pipe import FramePipe, TakeFrame
 from groundstation.input.pad import IDLE_PERIOD, PadFrame
 from groundstation.input.pad_mapping import PadMapping
 from link.runtime.child_process import end_process, start_module
@@ -25,12 +22,9 @@ PACKAGES = ("sdl2", "sdl2dll")
 NEXT = b"n"
 """To the reader: choose the next gamepad."""
 
-MAX_FRAME = 4096
 SILENT_AFTER = 3 * IDLE_PERIOD
 """s without a frame after which the reader counts as hanging; what it held was neutral long before."""
 CLOSE_TIMEOUT = 1.0
-
-TakeFrame = Callable[[PadFrame], None]
 
 
 def missing_package() -> str | None:
@@ -41,17 +35,21 @@ def missing_package() -> str | None:
 
 
 class GamepadChild:
-    """One reader process. Frames are passed on in a thread of its own, so that drawing delays none."""
+    """One reader process."""
+
+    touch, awake = False, True
 
     def __init__(self, mapping: PadMapping, wanted: str) -> None:
         """`wanted`: part of the name of the gamepad, or `any`."""
         self.mapping = mapping
-        self.frame = PadFrame(time.monotonic())
-        """The newest one; without names when there is no gamepad."""
         self._wanted = wanted
-        self._pipe: socket.socket | None = None
+        self._frames = FramePipe()
         self._process: subprocess.Popen[bytes] | None = None
-        self._ended = False
+
+    @property
+    def frame(self) -> PadFrame:
+        """The newest frame; without names when there is no gamepad."""
+        return self._frames.frame
 
     def start(self, take: TakeFrame) -> None:
         """Start the process; `take` is called with each frame, in another thread. Raises OSError."""
@@ -60,40 +58,20 @@ class GamepadChild:
             options = [f"--fd={theirs.fileno()}", f"--wanted={self._wanted}"]
             options.append(f"--mapping={msgspec.json.encode(self.mapping).decode()}")
             self._process = start_module(READER, options, pass_fds=[theirs.fileno()])
-        self._pipe = ours
-        threading.Thread(target=self._run, args=(ours, take), name="gamepad", daemon=True).start()
+        self._frames.start(ours, take)
 
     def stop(self) -> None:
         """End the process: it ends with its end of the pipe."""
-        if self._pipe is not None and self._process is not None:
-            with contextlib.suppress(OSError):
-                self._pipe.shutdown(socket.SHUT_RDWR)
+        if self._process is not None:
+            self._frames.stop()
             end_process(self._process, CLOSE_TIMEOUT)
 
     def choose_next(self) -> None:
         """Let the next gamepad drive."""
-        with contextlib.suppress(OSError):
-            if self._pipe is not None:
-                self._pipe.send(NEXT)
+        self._frames.send(NEXT)
 
     def problem(self, now: float) -> str:
         """Return why no gamepad can drive, "" if nothing is known to be wrong."""
-        if self._ended:
+        if self._frames.ended:
             return "its reader has ended: restart to drive with it"
         return "its reader does not respond" if now - self.frame.read_at > SILENT_AFTER else ""
-
-    def _run(self, pipe: socket.socket, take: TakeFrame) -> None:
-        with pipe:
-            while packet := _receive(pipe):
-                with contextlib.suppress(msgspec.DecodeError):
-                    self.frame = msgspec.msgpack.decode(packet, type=PadFrame)
-                    take(self.frame)
-        self.frame, self._ended = PadFrame(time.monotonic()), True
-        take(self.frame)
-
-
-def _receive(pipe: socket.socket) -> bytes:
-    try:
-        return pipe.recv(MAX_FRAME)
-    except OSError:
-        return b""

@@ -5,11 +5,8 @@ from __future__ import annotations
 import math
 
 from dialects.axes import NEUTRAL, Axes
+from groundstation.input.pad import PAD_WINDOW
 from groundstation.intents.driving import DrivePad
-
-PAD_WINDOW = 0.25
-"""s after which a demand of the gamepad is neutral unless a newer one follows. Its reader sends 20 a second, so that a
-reader that is killed or hangs is neutral within this time, and three late ones are not."""
 
 
 class PadStick:

@@ -39,7 +39,7 @@ class DrivePad(Intent, frozen=True):
     """-1..1, as steering."""
     steering: float
     read_at: float
-    """When the gamepad was read, CLOCK_MONOTONIC, s: what is older than PAD_WINDOW is neutral (input/pad_stick.py)."""
+    """When the gamepad was read, CLOCK_MONOTONIC, s: what is older than PAD_WINDOW is neutral (input/pad.py)."""
     repeat: bool = False
     """The button was held in the reading before, too."""
 

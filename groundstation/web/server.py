@@ -8,21 +8,23 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
-import json
 import logging
 import os
 import socket
 import sys
+import time
 from collections.abc import Awaitable, Callable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from aiohttp import WSMsgType, web
+from aiohttp import WSCloseCode, WSMsgType, web
 from aiohttp.http import HttpProcessingError
 
+from groundstation.input.touch_stick import TouchStick
 from groundstation.web.door import REQUEST_WITHIN, Door, FewLines
 from groundstation.web.guard import HEADERS, TOKEN, Guard, WebRequest
+from groundstation.web.messages import Resized, TabMessage, TabMessageError, TabMessages, Touched, Typed
 from groundstation.web.tab import Tab, screen_command
 
 MAX_TABS = 7
@@ -34,8 +36,20 @@ MAX_MESSAGE = 1 << 16
 HEARTBEAT = 4.0
 """s between pings of a socket. A lost tab ends within 6 s; its screen was neutral 0.5 s after the loss."""
 
+CLOCK_PERIOD = 1.0
+"""s between two times that a page with a thumb stick is told, by which its demands have an age."""
+
 SHUTDOWN = 1.0
 """s for the screens to end when the server ends, before they are killed."""
+
+FILES = {
+    "page.js": "text/javascript",
+    "page.css": "text/css",
+    "screen_socket.js": "text/javascript",
+    "keys.js": "text/javascript",
+    "stick.js": "text/javascript",
+}
+"""What our page loads beside the front end -> its type."""
 
 DEFAULT_SIZE, DEFAULT_FONT = (80, 24), 16
 """Columns and rows, and pixels of the letters, where the address does not say."""
@@ -60,9 +74,9 @@ class WebServer:
         self._tabs: set[Tab] = set()
         self.door: Door | None = None
         """Bounds who has connected and asks nothing; None: nobody waits there."""
-        self._page, self._script = (
-            (Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("page.html", "page.js")
-        )
+        folder = Path(__file__).parent / "page"
+        self._page, *texts = ((folder / name).read_text(encoding="utf-8") for name in ("page.html", *FILES))
+        self._files = dict(zip(FILES, texts, strict=True))
 
     def build(self) -> web.Application:
         """Return the application."""
@@ -80,7 +94,7 @@ class WebServer:
         app.add_routes(
             [
                 web.get("/", self._show_page),
-                web.get("/page.js", self._show_script),
+                *(web.get(f"/{name}", self._show_file) for name in FILES),
                 web.get(self._guard.socket_path, self._run_tab),
                 web.static("/static", str(files("textual_serve") / "static")),
             ]
@@ -114,8 +128,9 @@ class WebServer:
         page = self._page.replace("@HOST@", request.host).replace("@SIZE@", str(size))
         return web.Response(text=page, content_type="text/html")
 
-    async def _show_script(self, request: web.Request) -> web.StreamResponse:
-        return web.Response(text=self._script, content_type="text/javascript")
+    async def _show_file(self, request: web.Request) -> web.StreamResponse:
+        name = request.path.removeprefix("/")
+        return web.Response(text=self._files[name], content_type=FILES[name])
 
     async def _run_tab(self, request: web.Request) -> web.StreamResponse:
         """Run one screen as long as its socket is open, or until it ends."""
@@ -150,32 +165,49 @@ class WebServer:
 
 
 async def _join(tab: Tab, sock: web.WebSocketResponse) -> None:
-    """Pass both ways until one of them ends."""
+    """Pass both ways until one of them ends. A tab that sends what it must not is closed, which means neutral."""
 
     async def show() -> None:
         with contextlib.suppress(ConnectionError):
             await tab.show(sock.send_bytes)
         await sock.close()
 
-    drawing = asyncio.create_task(show())
+    messages, stick = TabMessages(), TouchStick(time.monotonic())
+    tasks = [asyncio.create_task(show())]
     try:
         async for message in sock:
-            if message.type == WSMsgType.TEXT:
-                _take(tab, message.data)
+            found = messages.read(message.data if message.type == WSMsgType.TEXT else "", time.monotonic())
+            if isinstance(found, Touched) and len(tasks) == 1:
+                tasks.append(asyncio.create_task(_tell_time(stick, sock)))
+            _take(tab, stick, found)
+    except TabMessageError as error:
+        log.warning("a tab is closed: %s", error)
+        tab.hang_up()  # neutral before the browser answers
+        await sock.close(code=WSCloseCode.POLICY_VIOLATION, message=str(error).encode())
     finally:
-        drawing.cancel()
-        with contextlib.suppress(asyncio.CancelledError):
-            await drawing
+        for task in tasks:
+            task.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await task
 
 
-def _take(tab: Tab, text: str) -> None:
-    """Carry out a message of textual.js, a list of a name and a value. Any other text does nothing."""
-    with contextlib.suppress(ValueError, TypeError, OverflowError, RecursionError):
-        match json.loads(text):
-            case ["stdin", str(keys)]:
-                tab.type(keys)
-            case ["resize", {"width": width, "height": height}]:
-                tab.resize((int(width), int(height)))
+def _take(tab: Tab, stick: TouchStick, message: TabMessage) -> None:
+    """Carry out a message."""
+    match message:
+        case Typed(text):
+            tab.type(text)
+        case Resized(size):
+            tab.resize((size.width, size.height))
+        case Touched(reading) if (frame := stick.take(reading, time.monotonic())) is not None:
+            tab.touch(frame)
+
+
+async def _tell_time(stick: TouchStick, sock: web.WebSocketResponse) -> None:
+    """Tell a page the time again and again, until its socket ends."""
+    with contextlib.suppress(ConnectionError):
+        while not sock.closed:
+            await sock.send_json(["clock", stick.clock(time.monotonic())])
+            await asyncio.sleep(CLOCK_PERIOD)
 
 
 def _number(text: str | None, default: int) -> int:
@@ -225,7 +257,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not token:  # it has ended before it said one; an empty cookie must not be right
         return 1
     sock = socket.socket(fileno=options.fd)
-    for name in ("aiohttp.server", "asyncio"):
+    for name in ("aiohttp.server", "asyncio", log.name):
         logging.getLogger(name).addFilter(FewLines(brief=(HttpProcessingError,)))
     guard = Guard(sock.getsockname()[1], token)
     asyncio.run(serve(sock, WebServer(guard, screen_command(options.rest)), parent))

@@ -1,4 +1,4 @@
-"""One tab: a pseudo-terminal with `mavhelm attach` in it, as a terminal window has.
+"""One tab: a pseudo-terminal with `mavhelm attach` in it, as a terminal window has, and a socket for its thumb stick.
 
 The screen cannot tell a tab from a terminal: the same keys, timers and pings. The end of the tab closes the terminal,
 which means neutral at once.
@@ -12,11 +12,17 @@ import fcntl
 import os
 import pty
 import signal
+import socket
 import struct
 import subprocess
 import sys
 import termios
 from collections.abc import Awaitable, Callable, Mapping, Sequence
+
+import msgspec
+
+from groundstation.input.pad import PadFrame
+from groundstation.input.touch_stick import PIPE_VARIABLE
 
 READ_SIZE = 1 << 16
 """Bytes of output in one message."""
@@ -43,8 +49,10 @@ def screen_command(arguments: Sequence[str]) -> list[str]:
 class Tab:
     """A screen in a pseudo-terminal."""
 
-    def __init__(self, terminal: int, process: subprocess.Popen[bytes]) -> None:
+    def __init__(self, terminal: int, pipe: socket.socket, process: subprocess.Popen[bytes]) -> None:
+        """`pipe` takes the frames of the thumb stick."""
         self._terminal = terminal
+        self._pipe = pipe
         self._process = process
         self._unread = bytearray()
 
@@ -52,6 +60,8 @@ class Tab:
     def open(cls, command: Sequence[str], size: tuple[int, int]) -> Tab:
         """Start a program in a terminal of this size. Raises OSError."""
         ours, theirs = pty.openpty()
+        pipe, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        pipe.setblocking(False)
         try:
             _set_size(ours, size)
             os.set_blocking(ours, False)
@@ -60,15 +70,18 @@ class Tab:
                 stdin=theirs,
                 stdout=theirs,
                 stderr=theirs,
+                pass_fds=[its.fileno()],
                 start_new_session=True,
-                env=_environment(os.environ),
+                env=_environment(os.environ) | {PIPE_VARIABLE: str(its.fileno())},
             )
         except OSError:
             os.close(ours)
+            pipe.close()
             raise
         finally:
             os.close(theirs)
-        return cls(ours, process)
+            its.close()
+        return cls(ours, pipe, process)
 
     async def show(self, send: Callable[[bytes], Awaitable[None]]) -> None:
         """Send all that the screen draws, until it ends. A tab that does not read makes it wait, and it notices."""
@@ -81,6 +94,11 @@ class Tab:
         if len(self._unread) + len(data) <= MAX_UNREAD:
             self._unread += data
             self._write()
+
+    def touch(self, frame: PadFrame) -> None:
+        """Pass on a frame of the thumb stick. Of a screen that does not read it is dropped: the next one is newer."""
+        with contextlib.suppress(OSError):
+            self._pipe.send(msgspec.msgpack.encode(frame))
 
     def resize(self, size: tuple[int, int]) -> None:
         """Change the size in columns and rows."""
@@ -99,6 +117,7 @@ class Tab:
         """Close the terminal, and wait for the end of the screen; kill it after `within` s."""
         asyncio.get_running_loop().remove_writer(self._terminal)
         os.close(self._terminal)
+        self._pipe.close()
         try:
             async with asyncio.timeout(within):
                 await asyncio.to_thread(self._process.wait)

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import json
+import os
 import shutil
+import signal
 import subprocess
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import aiohttp
 
+from tests.groundstation.screen import children
 from tests.waits import PATIENCE
 
 PROGRAM = shutil.which("chromium")
@@ -27,12 +32,12 @@ GAP = 0.033
 class Browser:
     """One page. Use `async with`. A small one draws faster without a graphics card, so that keys repeat evenly."""
 
-    def __init__(self, folder: Path, size: tuple[int, int] = (640, 420)) -> None:
+    def __init__(self, folder: Path, size: tuple[int, int] = (640, 420), *options: str) -> None:
         assert PROGRAM is not None
         self._folder = folder / "profile"
         window = f"--window-size={size[0]},{size[1]}"
         self.process = subprocess.Popen(
-            [PROGRAM, *OPTIONS, window, f"--user-data-dir={self._folder}", "about:blank"],
+            [PROGRAM, *OPTIONS, *options, window, f"--user-data-dir={self._folder}", "about:blank"],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -45,8 +50,17 @@ class Browser:
         """Requests that failed or were forbidden, and exceptions."""
 
     async def __aenter__(self) -> Browser:
+        try:
+            await self._connect()
+        except BaseException:
+            self.kill()
+            await self._session.close()
+            raise
+        return self
+
+    async def _connect(self) -> None:
         marker = self._folder / "DevToolsActivePort"
-        await eventually(marker.exists, self.process)
+        await eventually(lambda: marker.exists() and marker.read_text(), self.process)
         port = marker.read_text().split()[0]
         async with self._session.get(f"http://127.0.0.1:{port}/json/list") as answer:
             [page] = [each for each in await answer.json() if each["type"] == "page"]
@@ -55,7 +69,6 @@ class Browser:
         for domain in ("Page", "Network", "Runtime", "Log"):
             await self.call(f"{domain}.enable")
         await self.call("Emulation.setFocusEmulationEnabled", enabled=True)
-        return self
 
     async def __aexit__(self, *_: object) -> None:
         self._reading.cancel()
@@ -64,9 +77,13 @@ class Browser:
         await self._session.close()
 
     def kill(self) -> None:
-        """Kill it with -9, as far as it is one process; its children follow."""
+        """Kill it with -9; its children follow, also those that are stopped."""
+        children = _descendants(self.process.pid)
         self.process.kill()
         self.process.wait()
+        for pid in children:
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
 
     async def call(self, method: str, **parameters: Any) -> dict[str, Any]:
         """Call a method of the protocol; return its result."""
@@ -81,7 +98,7 @@ class Browser:
     async def evaluate(self, expression: str) -> Any:
         """Return the value of a JavaScript expression."""
         result = await self.call("Runtime.evaluate", expression=expression, returnByValue=True)
-        return result["result"].get("value")
+        return result.get("result", {}).get("value")  # none while the page is replaced
 
     async def open(self, url: str) -> None:
         """Open an address and wait until its terminal has drawn."""
@@ -107,6 +124,55 @@ class Browser:
             await self.press(key, repeat=True)
         return until()
 
+    async def become_a_phone(self, size: tuple[int, int] = (390, 844)) -> None:
+        """Have a touch screen of this size in place of a mouse; before a page is opened."""
+        width, height = size
+        await self.call(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=0, mobile=True
+        )
+        await self.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
+
+    async def touch(self, what: str, *, right: float = 0.0, up: float = 0.0) -> None:
+        """Touch the middle of an element (a CSS selector), then draw the finger so many pixels away, and keep it there.
+
+        Nobody waits for a page that does not answer.
+        """
+        box = json.loads(
+            await self.evaluate(f"JSON.stringify(document.querySelector({what!r}).getBoundingClientRect())")
+        )
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        await self._touch("touchStart", [{"x": x, "y": y}])
+        if right or up:
+            for share in (0.3, 0.6, 1.0):
+                await self._touch("touchMove", [{"x": x + right * share, "y": y - up * share}])
+
+    async def lift(self) -> None:
+        """Lift the finger."""
+        await self._touch("touchEnd", [])
+
+    async def lose_focus(self) -> None:
+        """Tell the page what another window that takes the focus tells it: without a display there is none."""
+        await self.evaluate("dispatchEvent(new Event('blur'))")
+
+    async def hide(self) -> None:
+        """Open another tab in front of the page."""
+        await self.call("Emulation.setFocusEmulationEnabled", enabled=False)
+        await self._send("Target.createTarget", {"url": "about:blank"})
+
+    async def freeze(self) -> None:
+        """Freeze the page, as browsers do with a tab that nobody sees."""
+        await self.call("Emulation.setFocusEmulationEnabled", enabled=False)
+        await self._send("Page.setWebLifecycleState", {"state": "frozen"})
+
+    def signal_pages(self, number: signal.Signals) -> None:
+        """Send a signal to the processes of its pages."""
+        for pid in _descendants(self.process.pid):
+            if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                os.kill(pid, number)
+
+    async def _touch(self, kind: str, points: list[dict[str, float]]) -> None:
+        await self._send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
     async def picture(self) -> bytes:
         """Return a PNG of the page."""
         return base64.b64decode((await self.call("Page.captureScreenshot"))["data"])
@@ -129,6 +195,11 @@ class Browser:
                     self.problems.append(str(told["exceptionDetails"]))
                 case "Log.entryAdded" if told["entry"]["level"] == "error":
                     self.problems.append(f"{told['entry'].get('url')}: {told['entry']['text']}")
+
+
+def _descendants(pid: int) -> list[int]:
+    found = children(pid)
+    return [*found, *(each for child in found for each in _descendants(child))]
 
 
 def _key(kind: str, key: str) -> dict[str, Any]:

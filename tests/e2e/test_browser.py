@@ -12,7 +12,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -38,6 +38,8 @@ needs_chromium = pytest.mark.skipif(
 )
 
 ROOT = Path(__file__).parents[2]
+LONGER_THAN_TIMERS = 1.6
+"""s: without reported releases a press would end after 1.1 s at most."""
 RAMP, SLACK, TRY = 0.4, 0.25, 4.0
 """s of our rover from full to neutral, of the programs between, and for one try to arm or drive."""
 
@@ -74,14 +76,21 @@ class Rig:
         self.process.wait()
         self.process.stderr.close()
 
-    async def stops(self, act: Callable[[], object]) -> None:
-        """Act while the wheels turn, and see them stop."""
+    async def stops(self, act: Callable[[], object], within: float = 0.0) -> None:
+        """Act while the wheels turn, and see the demand end `within` s, and the wheels stop.
+
+        `act` may return what is waited for.
+        """
+        assert self.vehicle.turning()
         waits = Waits(self.process.pid, self.server, self.vehicle.process.pid)
         at = time.monotonic()
-        act()
+        doing = act()
+        if isinstance(doing, Awaitable):
+            await doing
         await eventually(self.vehicle.stands)
-        _, stopped = self.vehicle.falls_and_stops_after(at)
-        assert stopped < RAMP + SLACK + waits.total()
+        fell, stopped = self.vehicle.falls_and_stops_after(at)
+        assert fell < within + SLACK + waits.total()
+        assert stopped < within + RAMP + SLACK + waits.total()
         assert running(self.process.pid), "the station goes on"
 
 
@@ -189,6 +198,8 @@ async def test_who_is_let_in_and_what_a_lost_socket_means(rig: Rig) -> None:
 async def test_a_browser_tab_drives_offline_and_stops_when_it_dies(rig: Rig, tmp_path: Path) -> None:
     async with Browser(tmp_path) as browser:
         await browser.open(rig.url)
+        assert not await browser.evaluate("matchMedia('(pointer: coarse)').matches")
+        assert await browser.evaluate("document.getElementById('touch').hidden"), "no stick without a touch screen"
         assert await browser.evaluate("location.href") == f"{rig.base}/", "the token is not in the address"
         await pause(1.0)
         await browser.press("g")
@@ -199,3 +210,56 @@ async def test_a_browser_tab_drives_offline_and_stops_when_it_dies(rig: Rig, tmp
         assert any(url.endswith("RobotoMono-VariableFont_wght.ttf") for url in browser.requests)
         assert browser.problems == []
         await rig.stops(browser.kill)
+
+
+PINGS = 0.85
+"""s until a screen knows that its terminal is silent: two pings of 0.25 s after one that was answered, and a tick."""
+
+
+async def drive_exactly(rig: Rig, browser: Browser) -> None:
+    """Arm, then press the drive key once, and see the wheels turn for longer than any timer without a repeat."""
+    await drive(rig, browser)
+    await browser.release("i")
+    await eventually(rig.vehicle.stands)
+    patience = Patience(PATIENCE, rig.process.pid, rig.vehicle.process.pid)
+    while True:
+        await browser.press("i")
+        await pause(LONGER_THAN_TIMERS)
+        if rig.vehicle.at_full():
+            return
+        assert not patience.ended, rig.vehicle.errors.read_text()
+        await browser.release("i")
+        await pause(1.2)
+
+
+async def freeze_by_signal(browser: Browser) -> None:
+    browser.signal_pages(signal.SIGSTOP)
+
+
+KEY_STOPS = [
+    ("released", lambda browser: browser.release("i"), 0.0),
+    ("focus lost", Browser.lose_focus, 0.0),
+    ("hidden", Browser.hide, 0.0),
+    ("asleep", Browser.freeze, 0.0),
+    ("frozen", freeze_by_signal, PINGS),
+]
+
+
+@needs_chromium
+@pytest.mark.parametrize(("how", "act", "within"), KEY_STOPS, ids=[row[0] for row in KEY_STOPS])
+async def test_a_key_of_a_tab_drives_exactly_until(
+    rig: Rig, tmp_path: Path, how: str, act: Callable[[Browser], Awaitable[None]], within: float
+) -> None:
+    async with Browser(tmp_path) as browser:
+        await browser.open(rig.url)
+        await pause(1.0)
+        await browser.press("g")
+        await browser.release("g")
+        await drive_exactly(rig, browser)
+        assert browser.problems == []
+        await rig.stops(lambda: act(browser), within)
+        if how == "frozen":
+            at = time.monotonic()
+            browser.signal_pages(signal.SIGCONT)
+            await pause(1.5)
+            assert not rig.vehicle.moved_since(at), "a key of before drives no more"

@@ -18,7 +18,6 @@ from textual.filter import LineFilter
 from textual.screen import Screen
 
 from groundstation.actions import OperatorAction
-from groundstation.gamepad.child import GamepadChild
 from groundstation.input.keymap import KeyEvent, Keymap
 from groundstation.intents.session import QUITTING, REST_PERIOD, RenewLease
 from groundstation.intents.union import AnyIntent
@@ -37,7 +36,7 @@ from groundstation.ui.drive.screen import DriveScreen
 from groundstation.ui.keys.gate_checks import AppCondition, find_closure
 from groundstation.ui.keys.key_gate import LENT, OTHER_SCREEN, GateClosure, KeyGate, StationConnection
 from groundstation.ui.keys.key_hint import KeyHint
-from groundstation.ui.keys.pad_input import PadInput
+from groundstation.ui.keys.pad_input import PadInput, PadSource
 from groundstation.ui.keys.pressed_keys import PressedKeys
 from groundstation.ui.look.appearance import PLAIN, Appearance, Look
 from groundstation.ui.replay.follower import ReplayFollower
@@ -81,7 +80,7 @@ class ConsoleApp(App[int]):
         first_request: int = 1,
         dialect: str | None = None,
         replay_options: Sequence[str] = (),
-        gamepad: GamepadChild | None = None,
+        gamepad: PadSource | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`first` is the id of the screen that is shown at first, `first_request` the number of its first request.
@@ -292,7 +291,7 @@ class ConsoleApp(App[int]):
 
     def _adapt_ticks(self) -> None:
         """Tick seldom while the station rests, no key is lit and no gamepad is read; renew the lease when that ends."""
-        rests = self._snapshot.rests and not self._pressed.names and self.gate.hold is None and self._gamepad is None
+        rests = self._snapshot.rests and not self._pressed.names and self.gate.hold is None and not self._pad_is_read
         begins = rests != (self._ticks.period == REST_PERIOD)
         if not begins:
             return
@@ -315,7 +314,11 @@ class ConsoleApp(App[int]):
         if not unchanged:
             return MIN_FRAME_TIME
         armed = vehicle is not None and vehicle.armed
-        return WITHOUT_SNAPSHOT if armed or self._gamepad is not None else AT_REST
+        return WITHOUT_SNAPSHOT if armed or self._pad_is_read else AT_REST
+
+    @property
+    def _pad_is_read(self) -> bool:
+        return self._gamepad is not None and self._gamepad.child.awake
 
     def _ping(self) -> None:
         driver, lent = self._driver, self._log_child.running  # a ping would go unanswered

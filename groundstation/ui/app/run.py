@@ -6,11 +6,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from groundstation.gamepad.child import GamepadChild
 from groundstation.input.keymap import Keymap
 from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.app.exit import exit_on_signals
 from groundstation.ui.keys.key_gate import StationConnection
+from groundstation.ui.keys.pad_input import PadSource
 from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.terminal.tty_output import redirect_output
 
@@ -26,7 +26,7 @@ def run(
     first_request: int = 1,
     dialect: str | None = None,
     replay_options: Sequence[str] = (),
-    gamepad: GamepadChild | None = None,
+    gamepad: PadSource | None = None,
 ) -> int:
     """Run the UI to its end. Return 0 after a quit, 128 + n after signal n, 1 after an internal error.
 

@@ -21,7 +21,8 @@ def _gamepad_hint(now: DisplayState) -> str:
     if now.gamepad is None or vehicle is None or vehicle.undriven or now.snapshot.lease.driver:
         return ""
     drivable = vehicle.in_control and vehicle.mode == "MANUAL" and not vehicle.obeys
-    return f" · {now.gamepad.hint(armed=vehicle.armed)}" if drivable or not vehicle.armed else ""
+    pad = now.gamepad.hint(armed=vehicle.armed) if drivable or not vehicle.armed else ""
+    return f" · {pad}" if pad else ""
 
 
 def _replay_hint(now: DisplayState, replay: ReplayStatus) -> str:

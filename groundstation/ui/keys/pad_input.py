@@ -6,15 +6,15 @@ Called by the thread that reads the frames. Buttons pass the same gate as keys, 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 from textual import events
 from textual.message import Message
 
 from groundstation.actions import ACTIONS
-from groundstation.gamepad.child import GamepadChild
 from groundstation.input.keymap import KeyEvent
 from groundstation.input.pad import PadFrame
-from groundstation.input.pad_mapping import KEY_PREFIX
+from groundstation.input.pad_mapping import KEY_PREFIX, PadMapping
 from groundstation.intents.driving import DrivePad, ReleasePad
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.keys.key_gate import KeyGate
@@ -22,12 +22,43 @@ from groundstation.ui.keys.pad_state import PadState
 from groundstation.ui.terminal.key_parser import KeyUp
 
 
+class PadSource(Protocol):
+    """What reads frames: GamepadChild of a gamepad, or TabStick of a browser's tab."""
+
+    touch: bool
+    """It is a thumb stick on a touch screen."""
+
+    @property
+    def awake(self) -> bool:
+        """The screen must follow it at once: it renews its lease as often as while it drives."""
+
+    @property
+    def mapping(self) -> PadMapping:
+        """What sticks and buttons do."""
+
+    @property
+    def frame(self) -> PadFrame:
+        """The newest frame; without names while there is no gamepad."""
+
+    def start(self, take: Callable[[PadFrame], None]) -> None:
+        """Start to read; `take` is called with each frame, in another thread. Raises OSError."""
+
+    def stop(self) -> None:
+        """Read no longer."""
+
+    def choose_next(self) -> None:
+        """Let the next gamepad drive, of several."""
+
+    def problem(self, now: float) -> str:
+        """Return why no gamepad can drive, "" if nothing is known to be wrong."""
+
+
 class PadInput:
-    """One gamepad process behind one key gate. `post` takes messages for the app, `send` intents, from any thread."""
+    """One gamepad behind one key gate. `post` takes messages for the app, `send` intents, from any thread."""
 
     def __init__(
         self,
-        child: GamepadChild,
+        child: PadSource,
         gate: KeyGate,
         send: Callable[[AnyIntent], None],
         post: Callable[[Message], object],
@@ -44,7 +75,13 @@ class PadInput:
     def state(self, now: float) -> PadState:
         """Return what the Drive screen shows of it."""
         frame = self.child.frame
-        return PadState(frame, self.child.mapping, self.child.problem(now), lost=self._seen and not frame.names)
+        return PadState(
+            frame,
+            self.child.mapping,
+            self.child.problem(now),
+            lost=self._seen and not frame.names,
+            touch=self.child.touch,
+        )
 
     def take(self, frame: PadFrame) -> None:
         """Handle a frame: the sticks first, which may stop."""

@@ -19,6 +19,8 @@ class PadState(msgspec.Struct, frozen=True):
     """Why none can drive."""
     lost: bool = False
     """There was one, and there is none now."""
+    touch: bool = False
+    """It is the thumb stick of a page, where what to press is written."""
 
     @property
     def alert(self) -> str:
@@ -32,7 +34,9 @@ class PadState(msgspec.Struct, frozen=True):
         return ""
 
     def hint(self, *, armed: bool) -> str:
-        """Return which button drives, or arms: short, because it follows what the keys do."""
+        """Return which button drives, or arms: short, because it follows what the keys do. "" if that is known."""
+        if self.touch:
+            return ("push the stick" if armed else "hold ARM") if self.frame.names else ""
         if not self.frame.names:
             return "no gamepad yet"
         arm = next((name for name, action in self.mapping.buttons.items() if action == ARM), self.mapping.deadman)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import os
 import re
 import socket
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 
@@ -17,29 +17,16 @@ pytest.importorskip("aiohttp", reason="the extra [web] is not installed")
 import aiohttp
 
 from groundstation.web import server as serving
-from groundstation.web.server import _number, _take, main
+from groundstation.web.server import FILES, _number, main
 from tests.groundstation.screen import running
 from tests.groundstation.web.served import PATIENCE, TOKEN, Served, end_of, read_until, rest_of, served
 from tests.waits import until
 
-PAGES = ("/", "/page.js", "/static/js/textual.js", "/static/css/xterm.css")
+PAGES = ("/", *(f"/{name}" for name in FILES), "/static/js/textual.js", "/static/css/xterm.css")
 PASTE = (
     "sh", "-c", "stty raw -echo; echo ready; head -c 60000 | tr -d x | wc -c; cat",
 )  # fmt: skip
 """A program that counts what is not "x" among 60000 characters."""
-
-
-class Terminal:
-    """Keeps what reaches it."""
-
-    def __init__(self) -> None:
-        self.got: list[object] = []
-
-    def type(self, text: str) -> None:
-        self.got.append(text)
-
-    def resize(self, size: tuple[int, int]) -> None:
-        self.got.append(size)
 
 
 @pytest.mark.parametrize(
@@ -47,29 +34,6 @@ class Terminal:
 )
 def test_a_bound_is_this_number(name: str, value: float) -> None:
     assert getattr(serving, name) == value
-
-
-def test_keys_and_sizes_reach_the_terminal() -> None:
-    terminal = Terminal()
-    for message in (["stdin", "i"], ["resize", {"width": 100, "height": 30}], ["ping", "1"], ["focus"], ["blur"]):
-        _take(terminal, json.dumps(message))  # type: ignore[arg-type]
-    assert terminal.got == ["i", (100, 30)]
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "", "{}", "[]", "null", "1", '"stdin"', '["resize"]', '["resize", 3]', '["resize", {"width": "wide"}]',
-        '["resize", {"width": Infinity, "height": 3}]', '["resize", {"width": NaN, "height": 3}]', "[" * 100_000,
-        '["resize", {"width": 30}]', '["resize", {"width": null, "height": 3}]', '["stdin"]', '["stdin", null]',
-        '["stdin", 1]', '["stdin", ["i"]]', '["stdin", "i", "k"]', '{"stdin": "i", "r": "r"}',
-        f'["resize", {{"width": {"9" * 5000}, "height": 3}}]',
-    ],
-)  # fmt: skip
-def test_anything_else_does_nothing(text: str) -> None:
-    terminal = Terminal()
-    _take(terminal, text)  # type: ignore[arg-type]
-    assert terminal.got == []
 
 
 def test_numbers_of_an_address() -> None:
@@ -149,6 +113,12 @@ async def test_first_address_gives_a_cookie_and_leaves_the_token() -> None:
     [
         ("/", 200, "text/html"),
         ("/page.js", 200, "text/javascript"),
+        ("/keys.js", 200, "text/javascript"),
+        ("/stick.js", 200, "text/javascript"),
+        ("/screen_socket.js", 200, "text/javascript"),
+        ("/page.css", 200, "text/css"),
+        ("/page.html", 404, "text/plain"),
+        ("/page/page.js", 404, "text/plain"),
         ("/static/images/background.png", 200, "image/png"),
         ("/static/css/xterm.css", 200, "text/css"),
         ("/static", 403, "text/plain"),
@@ -248,11 +218,9 @@ async def test_who_may_open_a_tab(headers: dict[str, str], status: int) -> None:
 async def test_a_tab_has_its_size_and_passes_both_ways(query: str, size: str) -> None:
     async with served() as server:
         tab = await server.tab(query)
-        await tab.send_bytes(b'["stdin", "no keys\\r"]')
         await tab.send_json(["stdin", "häh\r"])
         drawn = await read_until(tab, size)
         assert "got häh" in drawn
-        assert "no keys" not in drawn
         await tab.send_json(["resize", {"width": 90, "height": 25}])
         await tab.send_json(["stdin", "\r"])
         await read_until(tab, "25 90")
@@ -318,17 +286,89 @@ async def test_a_pasted_text_arrives_whole() -> None:
         await read_until(tab, "1000")
 
 
-@pytest.mark.parametrize(("size", "code"), [(60_000, None), (70_000, 1009)])
+@pytest.mark.parametrize(("size", "code"), [(65_500, None), (65_537, 1009)])
 async def test_a_message_has_65536_bytes_at_most(size: int, code: int | None) -> None:
     async with served() as server:
         tab = await server.tab()
         await read_until(tab, "ready")
-        await tab.send_str("x" * size)
+        await tab.send_json(["ping", "x" * size])
         if code is not None:
             assert await end_of(tab) == code
             tab = await server.tab()
         await tab.send_json(["stdin", "here\r"])
         await read_until(tab, "got here")
+
+
+MALFORMED = [
+    ("", ""), ("{}", ""), ("[]", ""), ("null", ""), ("1", ""), ('"stdin"', ""), ('["other"]', ": $[0]"),
+    ('["stdin"]', ""), ('["stdin", null]', ": $[1]"), ('["stdin", 1]', ": $[1]"), ('["stdin", "i", "k"]', ""),
+    ('{"stdin": "i"}', ""), ("[" * 60_000, ""), ('["focus", 1]', ""), ('["stdin", "\\ud800"]', ""),
+    ('["resize"]', ""), ('["resize", 3]', ": $[1]"), ('["resize", {"width": 30}]', ": $[1]"),
+    ('["resize", {"width": "wide", "height": 3}]', ": $[1].width"),
+    ('["resize", {"width": Infinity, "height": 3}]', ""),
+    ('["pad", {}]', ": $[1]"),
+    ('["pad", {"at": 1, "held": true, "x": 0, "y": 1.01, "buttons": []}]', ": $[1].y"),
+    ('["pad", {"at": 1, "held": true, "x": 0, "y": NaN, "buttons": []}]', ""),
+    ('["pad", {"at": -1, "held": true, "x": 0, "y": 1, "buttons": []}]', ": $[1].at"),
+    ('["pad", {"at": 1, "held": 1, "x": 0, "y": 1, "buttons": []}]', ": $[1].held"),
+    ('["pad", {"at": 1, "held": true, "x": 0, "y": 1, "buttons": ["rightshoulder"]}]', ": $[1].buttons"),
+    ('["pad", {"at": 1, "held": true, "x": 0, "y": 1, "buttons": [], "arm": true}]', ": $[1]"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "where"), MALFORMED)
+async def test_a_malformed_message_ends_its_tab_with_a_reason(
+    text: str, where: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    async with served("sh", "-c", "echo pid=$$.; exec cat") as server:
+        other, tab = await server.tab(), await server.tab()
+        pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
+        await tab.send_str(text)
+        async with asyncio.timeout(PATIENCE):
+            while (ended := await tab.receive()).type is not aiohttp.WSMsgType.CLOSE:
+                pass
+        reason = f"malformed message from this tab{where}"
+        assert ended.data == 1008
+        assert ended.extra is not None
+        assert ended.extra == reason or ended.extra.startswith(f"{reason}["), "an index, where there is one"
+        assert caplog.messages == [f"a tab is closed: {ended.extra}"]
+        await until(lambda: not running(pid))
+        await other.send_json(["stdin", "still here\r"])
+        await read_until(other, "still here")
+
+
+async def test_a_message_of_bytes_ends_its_tab() -> None:
+    async with served() as server:
+        tab = await server.tab()
+        await read_until(tab, "ready")
+        await tab.send_bytes(b'["stdin", "no keys\\r"]')
+        assert await end_of(tab) == 1008
+
+
+async def test_a_tab_that_floods_ends_and_others_go_on() -> None:
+    async with served() as server:
+        other, tab = await server.tab(), await server.tab()
+        with suppress(ConnectionError):
+            for _ in range(5000):
+                await tab.send_str('["ping","1"]')
+        assert await end_of(tab) == 1008
+        await other.send_json(["stdin", "here\r"])
+        await read_until(other, "got here")
+
+
+async def test_a_page_with_a_stick_is_told_the_time() -> None:
+    async with served() as server:
+        tab = await server.tab()
+        await read_until(tab, "ready")
+        await tab.send_json(["pad", {"at": 0, "held": False, "x": 0, "y": 0, "buttons": []}])
+        times: list[float] = []
+        async with asyncio.timeout(PATIENCE):
+            while len(times) < 2:
+                if (message := await tab.receive()).type is aiohttp.WSMsgType.TEXT:
+                    name, at = message.json()
+                    assert name == "clock"
+                    times.append(at)
+        assert 0 <= times[0] < times[1] - 900
 
 
 async def test_a_tab_that_answers_no_ping_ends() -> None:
