@@ -51,11 +51,18 @@ class StationError(RuntimeError):
 class StationClient:
     """One station process, and the pipe to it. `send` may be called from any thread, the rest from one."""
 
-    def __init__(self, pipe: socket.socket, process: subprocess.Popen[bytes] | None, ready: StationReady) -> None:
-        """`process`: None for a station that was there before."""
+    def __init__(
+        self,
+        pipe: socket.socket,
+        watchdog: socket.socket | None,
+        process: subprocess.Popen[bytes] | None,
+        ready: StationReady,
+    ) -> None:
+        """`watchdog` leads to that of the station. It and `process` are None for a station that was there before."""
         self.endpoints = ready.endpoints
         self.first_request = ready.first_request
         self._pipe = pipe
+        self._watchdog = watchdog
         self._buffer = ReceiveBuffer(MAX_PACKET)
         self._process = process
         self._keep = False
@@ -153,7 +160,8 @@ class StationClient:
         except BaseException:
             process.end(CLOSE_TIMEOUT)
             raise
-        process.pipe.setblocking(False)
+        for pipe in filter(None, (process.pipe, process.watchdog)):
+            pipe.setblocking(False)
         return cls(*process.release(), ready)
 
     @classmethod
@@ -172,7 +180,7 @@ class StationClient:
             pipe.close()
             raise
         pipe.setblocking(False)
-        return cls(pipe, None, ready)
+        return cls(pipe, None, None, ready)
 
     @property
     def pid(self) -> int:
@@ -194,17 +202,18 @@ class StationClient:
             except OSError:  # the station has exited; `alive` is False from now on
                 self._open = False
 
-    def fileno(self) -> int:
-        """Return the descriptor of the pipe, for the screen's loop to wait on."""
-        return self._pipe.fileno()
+    def filenos(self) -> list[int]:
+        """Return the descriptors for the screen's loop to wait on: of the station and its watchdog while they run."""
+        ends = (self._pipe if self._open else None, self._watchdog)
+        return [end.fileno() for end in ends if end is not None]
 
     def receive(self) -> Snapshot | None:
         """Return the newest snapshot received, or None. Never blocks; `alive` is False once the station has exited.
 
-        The watchdog writes to the same pipe; its newest report becomes `outage`.
+        The newest report of the watchdog becomes `outage`.
         """
         snapshot: Snapshot | None = None
-        while (packet := self._read_packet()) is not None:
+        while self._open and (packet := self._read_packet(self._pipe)) is not None:
             if not packet:
                 self._open = False
                 break
@@ -212,23 +221,33 @@ class StationClient:
                 message = decode_from_station(packet)
                 if isinstance(message, View):
                     self._views[type(message)] = message
-                elif isinstance(message, StationOutage):
-                    self.outage = message
                 elif isinstance(message, Snapshot):
                     snapshot = message
                     if message.recording is not None and message.recording.path:
                         self._logs[message.recording.path] = None
+        self._read_watchdog()
         self._newest = snapshot or self._newest
         return snapshot
 
-    def _read_packet(self) -> bytes | None:
+    def _read_watchdog(self) -> None:
+        while self._watchdog is not None and (packet := self._read_packet(self._watchdog)) is not None:
+            if not packet:
+                self._watchdog.close()
+                self._watchdog = None
+                break
+            with contextlib.suppress(msgspec.DecodeError):
+                message = decode_from_station(packet)
+                if isinstance(message, StationOutage):
+                    self.outage = message
+
+    def _read_packet(self, pipe: socket.socket) -> bytes | None:
         """Return the next packet, b"" at the end, None if none has arrived."""
         try:
-            return self._buffer.recv(self._pipe)
+            return self._buffer.recv(pipe)
         except BlockingIOError:
             return None
-        except ConnectionResetError:  # raised once, if intents were unread at the end; the last report follows
-            return self._read_packet()
+        except ConnectionResetError:  # raised once, if intents were unread at the end; what was sent before follows
+            return self._read_packet(pipe)
         except OSError:
             return b""
 
@@ -236,11 +255,6 @@ class StationClient:
         """Return the newest view of each kind that `receive` has read since the last call."""
         views, self._views = self._views, {}
         return list(views.values())
-
-    @property
-    def open(self) -> bool:
-        """Packets may still arrive: the station or its watchdog runs."""
-        return self._open
 
     @property
     def left_armed(self) -> tuple[str, ...]:
@@ -277,12 +291,18 @@ class StationClient:
         (negative: signal), None while it runs.
         """
         self.send(Quit() if quits else Detach())
+        if self._watchdog is not None:
+            with contextlib.suppress(OSError):  # it has ended
+                self._watchdog.send(encode(IntentBatch(clock(), (Quit(),))))  # the terminal is in order
         self._goes_on = self._process is None or (self._keep and not quits)
         code = None if self._goes_on or self._process is None else end_process(self._process, CLOSE_TIMEOUT)
         self.receive()
         with self._lock:
             self._open = False
             self._pipe.close()
+        if self._watchdog is not None:
+            self._watchdog.close()
+            self._watchdog = None
         return code
 
 

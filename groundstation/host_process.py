@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import socket
 import subprocess
 from collections.abc import Sequence
 
 from link.runtime.child_process import end_process, start_module
+from link.runtime.local_socket import open_pair
 
 STATION, REPLAY = "groundstation.host.station_process", "groundstation.host.replay_process"
 """The modules that run as such a process."""
@@ -22,18 +24,30 @@ class ArgumentsError(ValueError):
 
 
 class HostProcess:
-    """The process and our end of the pipe to it, which is closed by end() unless release() was called before."""
+    """The process and our ends of the pipes to it, which are closed by end() unless release() was called before.
+
+    `watchdog` leads to the watchdog of a station. It is a pipe of its own: on a stream, two processes that write to one
+    screen could break the packets of each other.
+    """
 
     def __init__(self, module: str) -> None:
         """Start it. Raises OSError."""
         self._released = False
-        self.pipe, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        try:
-            with theirs:
-                self.process = start_module(module, [f"--fd={theirs.fileno()}"], pass_fds=[theirs.fileno()])
-        except OSError:
-            self.pipe.close()
-            raise
+        with contextlib.ExitStack() as stack:
+            self.pipe, theirs = open_pair()
+            stack.enter_context(theirs)
+            descriptors = {"--fd": theirs.fileno()}
+            self.watchdog = None
+            if module == STATION:
+                self.watchdog, guards = open_pair()
+                stack.enter_context(guards)
+                descriptors["--watchdog-fd"] = guards.fileno()
+            try:
+                options = [f"{name}={number}" for name, number in descriptors.items()]
+                self.process = start_module(module, options, pass_fds=list(descriptors.values()))
+            except OSError:
+                self._close()
+                raise
 
     def send_arguments(self, arguments: Sequence[str]) -> None:
         """Send its command line, the first packet. Raises ArgumentsError; OSError if the process has ended."""
@@ -45,17 +59,22 @@ class HostProcess:
             raise ArgumentsError(f"the settings and endpoints have {len(packet)} bytes, more than {MAX_ARGUMENTS}")
         self.pipe.send(packet)
 
-    def release(self) -> tuple[socket.socket, subprocess.Popen[bytes]]:
-        """Return the pipe and the process, which are the caller's from now on."""
+    def release(self) -> tuple[socket.socket, socket.socket | None, subprocess.Popen[bytes]]:
+        """Return the pipe, that to the watchdog and the process, which are the caller's from now on."""
         self._released = True
-        return self.pipe, self.process
+        return self.pipe, self.watchdog, self.process
 
     def end(self, timeout: float = 0.0) -> None:
         """Close the pipe; kill the process if it still runs after `timeout` s."""
         if not self._released:
             self._released = True
-            self.pipe.close()
+            self._close()
             end_process(self.process, timeout)
+
+    def _close(self) -> None:
+        self.pipe.close()
+        if self.watchdog is not None:
+            self.watchdog.close()
 
 
 def read_arguments(pipe: socket.socket) -> list[str] | None:

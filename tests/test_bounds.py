@@ -40,7 +40,7 @@ DAY = 86_400 * 100_000
         ("groundstation.watchdog.terminal_reset.LAST_TRY", 2.0),
         ("groundstation.watchdog.neutral.SEQUENCE_LEAD", 40),
         ("groundstation.station_socket.connect.SOCKET_BUFFER", 1_048_576),
-        ("groundstation.station_socket.folder.LONGEST_ADDRESS", 107),
+        ("link.runtime.local_socket.LONGEST_ADDRESS", 107),
         ("groundstation.station_socket.hello.MAX_HELLO", 4096),
         ("groundstation.station_socket.hello.HELLO_WITHIN", 2.0),
         ("groundstation.station_socket.names.ANSWER_WITHIN", 0.05),

@@ -74,7 +74,7 @@ def _serve(options: argparse.Namespace) -> int:
         if launch is not None:
             launch.start(["attach", str(os.getpid()), *TAB_OPTIONS, *option_words(settings, TAB_SETTINGS)])
         given = _station_options(settings, endpoints, sitl=options.sitl)
-        return run_station(given, None, lambda opened: _announce(opened, launch))
+        return run_station(given, lambda opened: _announce(opened, launch))
     except StartError as error:
         raise StationError(str(error)) from error
     finally:

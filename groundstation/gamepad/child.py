@@ -13,6 +13,7 @@ from groundstation.input.pad import IDLE_PERIOD, PadFrame
 from groundstation.input.pad_mapping import PadMapping
 from link.runtime.child_process import end_process, start_module
 from link.runtime.install_hint import install_command
+from link.runtime.local_socket import open_pair
 
 READER = "groundstation.gamepad.reader"
 """Module of the process."""
@@ -53,7 +54,7 @@ class GamepadChild:
 
     def start(self, take: TakeFrame) -> None:
         """Start the process; `take` is called with each frame, in another thread. Raises OSError."""
-        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        ours, theirs = open_pair()
         with theirs:
             options = [f"--fd={theirs.fileno()}", f"--wanted={self._wanted}"]
             options.append(f"--mapping={msgspec.json.encode(self.mapping).decode()}")

@@ -20,6 +20,7 @@ from groundstation.gamepad.child import NEXT
 from groundstation.gamepad.sdl import Gamepads, SdlError
 from groundstation.input.pad import PadCore
 from groundstation.input.pad_mapping import ANY, PadMapping
+from link.runtime.local_socket import take_over
 
 POLL, IDLE_POLL = 0.01, 0.25
 """s between two readings, and while there is no gamepad: 10 ms is what USB gamepads send at most."""
@@ -30,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = build_parser().parse_args(arguments)
     for number in (signal.SIGINT, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)  # keys of the terminal are for the screen
-    with socket.socket(fileno=options.fd) as pipe:
+    with take_over(options.fd) as pipe:
         pipe.setblocking(False)
         mapping = msgspec.json.decode(options.mapping, type=PadMapping)
         try:

@@ -12,9 +12,10 @@ from pathlib import Path
 
 import msgspec
 
-from groundstation.station_socket.connect import SOCKET_BUFFER, peer_credentials
+from groundstation.station_socket.connect import SOCKET_BUFFER
 from groundstation.station_socket.folder import FolderError, make_folder, socket_address, socket_path
 from groundstation.station_socket.hello import HELLO_WITHIN, MAX_HELLO, Hello, StationFailed, decode_hello, encode
+from link.runtime.local_socket import open_socket, peer_credentials
 
 log = logging.getLogger(__name__)
 
@@ -41,7 +42,8 @@ class ProgramListener:
 
     def start(self) -> str | None:
         """Listen; the loop runs. Return why that is not possible."""
-        sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET | socket.SOCK_NONBLOCK)
+        sock = open_socket()
+        sock.setblocking(False)
         try:
             path = socket_path(make_folder(), os.getpid())
             _listen(sock, path)
@@ -71,8 +73,12 @@ class ProgramListener:
         except OSError:
             return
         sock.setblocking(False)
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
-        pid, user = peer_credentials(sock)
+        try:
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
+            pid, user = peer_credentials(sock)
+        except OSError:  # macOS, of one that has ended already
+            sock.close()
+            return
         if user != os.getuid():
             log.warning("process %d of user %d was refused", pid, user)
             _refuse(sock, f"this station belongs to another user (uid {os.getuid()})")

@@ -13,25 +13,31 @@ from groundstation.host_process import STATION, read_arguments
 from groundstation.input.style import Style
 from groundstation.station_socket.connect import SOCKET_BUFFER
 from link.runtime import stdio
+from link.runtime.local_socket import take_over
 
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
 
-def open_screen_pipe(parser: argparse.ArgumentParser) -> tuple[socket.socket, argparse.Namespace | None]:
-    """Return the socket of --fd to the screen's process, and the arguments that come through it; None: it has ended.
+def open_screen_pipes(
+    parser: argparse.ArgumentParser,
+) -> tuple[socket.socket, socket.socket | None, argparse.Namespace | None]:
+    """Return the sockets of --fd and --watchdog-fd to the screen's process, and the arguments; None: it has ended.
 
-    The keys of the terminal are left to the screen from now on.
+    The arguments come through the first. The keys of the terminal are left to the screen from now on.
     """
     for number in (signal.SIGINT, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
     given = argparse.ArgumentParser(prog=parser.prog, description="Started by `mavhelm`, not by hand.")
     given.add_argument("--fd", type=int, required=True, help="our end of the pipe, which brings all other arguments")
-    pipe = socket.socket(fileno=given.parse_args().fd)
+    given.add_argument("--watchdog-fd", type=int, help="the watchdog's end of its own pipe to the screen")
+    descriptors = given.parse_args()
+    pipe = take_over(descriptors.fd)
+    watchdog = None if descriptors.watchdog_fd is None else take_over(descriptors.watchdog_fd)
     pipe.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
     arguments = read_arguments(pipe)
     pipe.setblocking(False)
-    return pipe, None if arguments is None else parser.parse_args(arguments)
+    return pipe, watchdog, None if arguments is None else parser.parse_args(arguments)
 
 
 def log_to(path: Path | None) -> None:

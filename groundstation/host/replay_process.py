@@ -14,7 +14,7 @@ from pathlib import Path
 from dialects.extra.errors import DialectError
 from dialects.extra.option import use_dialect
 from groundstation.disk.texts_folder import load_texts
-from groundstation.host.options import log_to, open_screen_pipe
+from groundstation.host.options import log_to, open_screen_pipes
 from groundstation.host.screen_port import ScreenPort
 from groundstation.host_process import REPLAY
 from groundstation.intents.session import Quit
@@ -174,7 +174,7 @@ class ReplayProcess:
 
 def main() -> int:
     """Replay a log for the screen at the other end of --fd. Returns 2 if it cannot be, after sending why."""
-    pipe, options = open_screen_pipe(_parser())
+    pipe, _, options = open_screen_pipes(_parser())
     if options is None:
         return 0
     try:

@@ -22,6 +22,7 @@ from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, Side, parse_endpoint
 from link.links import open_links
 from link.protocol.sent_frames import SentFrames
+from link.runtime.local_socket import open_pair
 from link.transport.transport import Link, LinkError
 
 
@@ -42,13 +43,16 @@ class StartedStation(msgspec.Struct, frozen=True):
     """For the log: on the dialect file, and on a simulator that did not start."""
 
 
-def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedStation:
-    """Start the watchdog and the simulator, and open the links. Raises StartError."""
+def start(options: argparse.Namespace, pipe: socket.socket | None, watchdog: socket.socket | None) -> StartedStation:
+    """Start the watchdog and the simulator, and open the links. Raises StartError.
+
+    `pipe` and `watchdog` lead to the screen; the second is for the watchdog alone.
+    """
     try:
         signing = StationSigning(time.monotonic(), key=options.sign_key, required=options.require_signing)
     except SigningError as error:
         raise StartError(str(error)) from error
-    watchdog = _start_watchdog(options, pipe, signing)  # before the links: it inherits none
+    feed = _start_watchdog(options, pipe, watchdog, signing)  # before the links: it inherits none
     endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
     try:
         log_to(options.log_file)
@@ -58,7 +62,7 @@ def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedSta
         links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent, places=PLACES, side=side)
         known = tuple(parse_endpoint(text).text for text in endpoints)
     except (DialectError, EndpointError, LinkError, OSError) as error:
-        watchdog.close()
+        feed.close()
         from groundstation.station_socket.about import ATTACH, explain_taken
 
         raise StartError(explain_taken(_one_line(error), ATTACH)) from error
@@ -66,15 +70,18 @@ def start(options: argparse.Namespace, pipe: socket.socket | None) -> StartedSta
     problem = simulators.start([link.endpoint for link in links]) if options.sitl else None
     if problem is not None:
         notes = (*notes, Note(problem, Severity.WARNING))
-    return StartedStation(known, links, watchdog, sent, signing, simulators, notes)
+    return StartedStation(known, links, feed, sent, signing, simulators, notes)
 
 
-def _start_watchdog(options: argparse.Namespace, pipe: socket.socket | None, signing: StationSigning) -> WatchdogFeed:
-    """Start the watchdog; without a screen its end of the pipe leads nowhere."""
+def _start_watchdog(
+    options: argparse.Namespace, pipe: socket.socket | None, watchdog: socket.socket | None, signing: StationSigning
+) -> WatchdogFeed:
+    """Start the watchdog; without a screen its socket leads nowhere."""
     ids, keys = (options.system, COMPONENT), (signing.link_signing.signing, signing.reload)
-    if pipe is not None:
-        return WatchdogFeed.start(pipe, options.terminal, ids, *keys)
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    if watchdog is not None:
+        with watchdog:
+            return WatchdogFeed.start(watchdog, options.terminal, ids, *keys, of_station=pipe)
+    ours, theirs = open_pair()
     with ours, theirs:
         return WatchdogFeed.start(theirs, None, ids, *keys)
 

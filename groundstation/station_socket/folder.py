@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import os
 import stat
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from link.runtime.local_socket import LONGEST_ADDRESS
 
 FOLDER = "mavhelm"
 PREFIX, SUFFIX = "station-", ".sock"
 
 MODE = 0o700
 
-LONGEST_ADDRESS = 107
-"""Bytes of a path in a socket address (unix(7)). A runtime folder may be deeper."""
+OPEN_FOLDERS = "/proc/self/fd"
+"""The folders that this process has open have short paths there, on Linux."""
 
 
 class FolderError(Exception):
@@ -60,13 +63,19 @@ def socket_path(folder: Path, pid: int) -> Path:
 
 @contextmanager
 def socket_address(path: Path) -> Iterator[str]:
-    """Yield a path of the same socket that fits into an address. Raises OSError."""
+    """Yield a path of the same socket that fits into an address: a runtime folder may be deep. Raises OSError."""
     if len(os.fsencode(path)) <= LONGEST_ADDRESS:
         yield str(path)
         return
-    folder = os.open(path.parent, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
+    if not os.path.isdir(OPEN_FOLDERS):
+        with tempfile.TemporaryDirectory(prefix="mh-", dir="/tmp") as short:  # nobody else can look into it
+            link = Path(short) / "d"
+            link.symlink_to(path.parent.absolute())
+            yield str(link / path.name)
+        return
+    folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        yield f"/proc/self/fd/{folder}/{path.name}"
+        yield f"{OPEN_FOLDERS}/{folder}/{path.name}"
     finally:
         os.close(folder)
 

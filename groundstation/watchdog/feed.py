@@ -54,12 +54,14 @@ class WatchdogFeed:
         ids: tuple[int, int],
         signing: Signing | None = None,
         read_keys: Callable[[], None] | None = None,
+        of_station: socket.socket | None = None,
     ) -> WatchdogFeed:
         """Start the watchdog, which signs with the same keys. Raises OSError.
 
+        `screen` leads to the screen for the watchdog alone, `of_station` for the station alone.
         `read_keys` reads other keys into `signing` in the watchdog's process, when `set_flags(keys_version=)` says so.
         """
-        return cls(*fork_watchdog(screen, terminal, signing, read_keys), ids)
+        return cls(*fork_watchdog(screen, terminal, signing, read_keys, of_station), ids)
 
     def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
         """Record a frame that was sent, and with a demand the way to its vehicle."""

@@ -24,11 +24,12 @@ from groundstation.watchdog.outlets import Outlets
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
 from groundstation.watchdog.terminal_reset import LAST_TRY, TerminalReset
 from groundstation.watchdog.watchdog import Watchdog
+from link.runtime.local_socket import open_pair
 from link.signing.signing import Signing
 
 
 class WatchdogProcess:
-    """Runs the core. `station` is the socket to the station, `screen` the station's end of the pipe to the screen."""
+    """Runs the core. `station` is the socket to the station, `screen` that to the screen; neither blocks."""
 
     def __init__(
         self,
@@ -62,7 +63,7 @@ class WatchdogProcess:
         if not self._station_gone:
             waiting.register(self._station, select.POLLIN)
         if not self._screen_gone:
-            waiting.register(self._screen, 0)
+            waiting.register(self._screen, select.POLLIN)
         for descriptor in self._reading:
             waiting.register(descriptor, select.POLLIN)
         return [descriptor for descriptor, _ in waiting.poll(None if timeout is None else 1000 * timeout)]
@@ -83,9 +84,7 @@ class WatchdogProcess:
 
     def finish(self) -> None:
         """Reset the terminal if the screen is gone by now: both processes may have been killed together."""
-        look = select.poll()
-        look.register(self._screen, 0)
-        self._screen_gone = bool(look.poll(0))
+        self._read_screen()
         if self._needs_reset():
             self._terminal.insist(LAST_TRY)
 
@@ -93,7 +92,7 @@ class WatchdogProcess:
         if descriptor == self._station.fileno():
             self._read_reports(now)
         elif descriptor == self._screen.fileno():
-            self._screen_gone = True
+            self._read_screen()
         else:
             self._read_vehicle(descriptor, now)
 
@@ -150,21 +149,23 @@ class WatchdogProcess:
 
     def _needs_reset(self) -> bool:
         """Return whether the screen is gone and has not left the terminal in order."""
-        return self._screen_gone and not self._screen_has_quit and not self._finds_quit()
+        return self._screen_gone and not self._screen_has_quit
 
-    def _finds_quit(self) -> bool:
-        """Return whether the screen has quit, by what the station did not read any more."""
-        while True:
+    def _read_screen(self) -> None:
+        """Read whether the screen quits, and whether its process has ended."""
+        while not self._screen_gone:
             try:
                 packet = self._screen.recv(MAX_PACKET)
+            except BlockingIOError:
+                return
+            except ConnectionResetError:  # raised once, if it has not read all that it was sent
+                continue
             except OSError:
-                return False
-            if not packet:
-                return False
+                packet = b""
+            self._screen_gone = not packet
             with contextlib.suppress(msgspec.DecodeError):
-                if any(isinstance(each, Quit) for each in decode_from_screen(packet).intents):
+                if packet and any(isinstance(each, Quit) for each in decode_from_screen(packet).intents):
                     self._screen_has_quit = True
-                    return True
 
 
 def fork_watchdog(
@@ -172,10 +173,14 @@ def fork_watchdog(
     terminal: str | None,
     signing: Signing | None = None,
     read_keys: Callable[[], None] | None = None,
+    of_station: socket.socket | None = None,
 ) -> tuple[int, socket.socket]:
-    """Start the process; return its id and the socket to it. Call before there is any thread. Raises OSError."""
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    for half in (ours, theirs):
+    """Start the process; return its id and the socket to it. Call before there is any thread. Raises OSError.
+
+    `of_station`, the station's own socket to the screen, is closed in the process: the screen sees the station's end.
+    """
+    ours, theirs = open_pair()
+    for half in (ours, theirs, screen):
         half.setblocking(False)
     reset = TerminalReset(terminal)
     gc.freeze()  # memory that no collection touches stays shared
@@ -185,6 +190,8 @@ def fork_watchdog(
         return process, ours
     try:
         ours.close()
+        if of_station is not None:
+            of_station.close()
         _run(WatchdogProcess(theirs, screen, reset, signing, read_keys))
     finally:
         os._exit(0)

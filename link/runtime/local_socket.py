@@ -26,6 +26,9 @@ KEEPS_PACKETS = sys.platform != "darwin"
 LONGEST_ADDRESS = 107 if sys.platform == "linux" else 103
 """Bytes of a path in a socket address: sun_path of unix(7) and of unix(4), less the zero behind it."""
 
+REFUSES_WHEN_FULL = sys.platform == "darwin"
+"""A socket that listens, and whose queue is full, refuses (ECONNREFUSED) like one that nobody has open any more."""
+
 BUFFER = 1 << 20
 """Bytes requested each way of a stream, whose default on macOS is 8 kB; the kernel may grant less."""
 LARGEST = 1 << 20

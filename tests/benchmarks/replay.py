@@ -110,7 +110,7 @@ def _jump(client: StationClient, status: ReplayStatus) -> list[float]:
 def _wait(client: StationClient, wanted: Callable[[Snapshot, ReplayStatus], bool]) -> ReplayStatus:
     deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
-        select.select([client.fileno()], [], [], 1.0)
+        select.select(client.filenos(), [], [], 1.0)
         snapshot = client.receive()
         if snapshot is not None and snapshot.replay is not None and wanted(snapshot, snapshot.replay):
             return snapshot.replay

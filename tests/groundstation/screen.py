@@ -75,7 +75,7 @@ class Screen:
         """Wait for a snapshot of which `condition` is true."""
         deadline = time.monotonic() + within
         while time.monotonic() < deadline and self.client.alive:
-            select.select([self.client.fileno()], [], [], 0.2)
+            select.select(self.client.filenos(), [], [], 0.2)
             newest = self.client.receive()
             if newest is not None:
                 self.snapshot = newest

@@ -43,7 +43,7 @@ class Station:
             if self._watched != self.copies.requests:
                 self._watched = self.copies.requests
                 self.client.send(Watch(self.copies.requests))
-            select.select([self.client.fileno()], [], [], 0.05)
+            select.select(self.client.filenos(), [], [], 0.05)
             self.client.receive()
             for view in self.client.pop_views():
                 self.copies.show_view(view)

@@ -69,10 +69,12 @@ def test_it_ends_with_a_screen_that_never_gave_it_arguments(process: HostProcess
 
 @pytest.mark.e2e
 def test_end_ends_it_once_and_not_after_release(process: HostProcess) -> None:
-    pipe, running = process.release()
+    pipe, watchdog, running = process.release()
     process.end()
     assert running.poll() is None
     pipe.close()
+    assert watchdog is not None
+    watchdog.close()
     assert running.wait(WITHIN) == 0
 
 

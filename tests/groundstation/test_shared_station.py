@@ -29,7 +29,6 @@ from groundstation.ipc import protocol_version
 from groundstation.station_socket.about import describe_stations
 from groundstation.station_socket.connect import NoStationError, connect, running_stations
 from groundstation.station_socket.folder import (
-    LONGEST_ADDRESS,
     FolderError,
     folder_path,
     list_sockets,
@@ -37,6 +36,7 @@ from groundstation.station_socket.folder import (
     socket_path,
 )
 from groundstation.station_socket.hello import SCREEN, Hello
+from link.runtime.local_socket import LONGEST_ADDRESS
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.killed_screen import ROOT, assert_said_neutral, killed_screen, moving, neutral

@@ -97,6 +97,8 @@ class ConsoleApp(App[int]):
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
         self._snapshot, self._outage = Snapshot(), client.outage
+        self._reading: list[int] = []
+        """Descriptors of the client that have not ended."""
         self._pressed = PressedKeys()
         self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
@@ -140,7 +142,9 @@ class ConsoleApp(App[int]):
         if self._first != ROOT.id:
             self.call_after_refresh(self._navigator.open, find_row(self._first))
         self._own_loop = asyncio.get_running_loop()
-        self._own_loop.add_reader(self._client.fileno(), self._readable)
+        self._reading = self._client.filenos()
+        for descriptor in self._reading:
+            self._own_loop.add_reader(descriptor, self._readable)
         # In this loop and not in a thread: a UI that hangs must lose its lease.
         self._ticks.start(self._own_loop)
         self._pings.start(self._own_loop)
@@ -154,7 +158,8 @@ class ConsoleApp(App[int]):
         self._ticks.stop()
         self._pings.stop()
         self._tmux.stop()
-        asyncio.get_running_loop().remove_reader(self._client.fileno())
+        for descriptor in self._reading:
+            asyncio.get_running_loop().remove_reader(descriptor)
 
     def end(self, code: int = 0) -> None:
         """Close the gate, which means neutral, and leave."""
@@ -215,8 +220,9 @@ class ConsoleApp(App[int]):
         if self._client.outage != self._outage:
             self._outage = self._client.outage
             self._tick()
-        if not self._client.open:
-            asyncio.get_running_loop().remove_reader(self._client.fileno())
+        for descriptor in set(self._reading).difference(self._client.filenos()):
+            self._reading.remove(descriptor)
+            asyncio.get_running_loop().remove_reader(descriptor)
         if not self._client.alive:
             self._quitting.handle_station_ended()
 

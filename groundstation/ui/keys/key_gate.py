@@ -51,16 +51,12 @@ class StationConnection(Protocol):
     def pop_views(self) -> list[View]:
         """Return the views that came with it."""
 
-    def fileno(self) -> int:
-        """Return a descriptor that is readable when a snapshot waits."""
+    def filenos(self) -> list[int]:
+        """Return the descriptors of which one is readable when a snapshot or an outage waits, or has ended."""
 
     @property
     def alive(self) -> bool:
         """The station process runs."""
-
-    @property
-    def open(self) -> bool:
-        """Something may still arrive: the station or its watchdog runs."""
 
     @property
     def outage(self) -> StationOutage:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import socket
 from collections.abc import Callable, Hashable, Sequence
 
 from dialects.messages import Message
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.stall import Standstill
 from groundstation.watchdog.feed import WatchdogFeed
+from link.runtime.local_socket import open_pair
 from link.signing.signing import Signing
 from link.transport.transport import Link
 
@@ -22,7 +22,7 @@ class DemandGuard:
 
     def __init__(self, ids: tuple[int, int], signing: Signing | None = None) -> None:
         """Start the process, which signs as this one does. Raises OSError."""
-        self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._ours, theirs = open_pair()
         self._feed = WatchdogFeed.start(theirs, None, ids, signing)
         theirs.close()
         self.standstill = Standstill()

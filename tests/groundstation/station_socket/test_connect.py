@@ -14,7 +14,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from groundstation.station_socket.connect import NoStationError, connect, peer_credentials, running_stations
+from groundstation.station_socket.connect import NoStationError, connect, running_stations
 from groundstation.station_socket.folder import (
     FolderError,
     folder_path,
@@ -27,6 +27,7 @@ from groundstation.station_socket.hello import NAMES, SCREEN, VERB, Hello, Stati
 from groundstation.station_socket.names import MODES, PARAMS, Names, encode_names, find_names, plain_names
 from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.verb_run import CompanionEnded, RunVerb, ToCompanion
+from link.runtime.local_socket import peer_credentials
 from link.transport.receive_buffer import ReceiveBuffer
 
 HELLO = Hello(SCREEN, 3, "screen on pts/4", watches=True)

@@ -62,9 +62,9 @@ class Recorder:
         self.intents += intents
         self._handle(*intents)
 
-    def fileno(self) -> int:
+    def filenos(self) -> list[int]:
         """Readable after `offer`."""
-        return self._ours.fileno()
+        return [self._ours.fileno()] if self.alive else []
 
     def receive(self) -> Snapshot | None:
         """The newest offered."""
@@ -94,11 +94,6 @@ class Recorder:
         """Give the descriptors back."""
         self._ours.close()
         self._theirs.close()
-
-    @property
-    def open(self) -> bool:
-        """As long as it is alive."""
-        return self.alive
 
     @property
     def wishes(self) -> list[AnyIntent]:
