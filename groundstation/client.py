@@ -69,6 +69,9 @@ class StationClient:
         self._lock = threading.Lock()
         self._pending: deque[AnyIntent] = deque(maxlen=MAX_PENDING)
         self._open = True
+        """Intents can be sent."""
+        self._ended = False
+        """All that the station has sent is read."""
         self._newest = Snapshot()
         self._logs: dict[str, None] = {}
         """Logs of this session, in their order."""
@@ -204,7 +207,7 @@ class StationClient:
 
     def filenos(self) -> list[int]:
         """Return the descriptors for the screen's loop to wait on: of the station and its watchdog while they run."""
-        ends = (self._pipe if self._open else None, self._watchdog)
+        ends = (None if self._ended else self._pipe, self._watchdog)
         return [end.fileno() for end in ends if end is not None]
 
     def receive(self) -> Snapshot | None:
@@ -213,9 +216,9 @@ class StationClient:
         The newest report of the watchdog becomes `outage`.
         """
         snapshot: Snapshot | None = None
-        while self._open and (packet := self._read_packet(self._pipe)) is not None:
+        while not self._ended and (packet := self._read_packet(self._pipe)) is not None:
             if not packet:
-                self._open = False
+                self._open, self._ended = False, True
                 break
             with contextlib.suppress(msgspec.DecodeError):
                 message = decode_from_station(packet)
@@ -298,7 +301,7 @@ class StationClient:
         code = None if self._goes_on or self._process is None else end_process(self._process, CLOSE_TIMEOUT)
         self.receive()
         with self._lock:
-            self._open = False
+            self._open, self._ended = False, True
             self._pipe.close()
         if self._watchdog is not None:
             self._watchdog.close()

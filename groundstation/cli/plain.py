@@ -13,7 +13,7 @@ from groundstation.cli.verb_help import EVERY_VERB
 from groundstation.station_socket.about import ask_about
 from groundstation.station_socket.connect import running_stations
 from groundstation.station_socket.folder import FolderError
-from link.runtime.child_process import end_process, end_with_parent, start_module
+from link.runtime.child_process import end_process, start_module
 
 VERB = ("status", "--watch", "--changes")
 """What prints the lines."""
@@ -59,7 +59,7 @@ def _run_beside_station(endpoints: Sequence[str], options: Sequence[str], words:
         ["serve", "--headless", *given],
         output=subprocess.PIPE,
         new_session=True,  # Ctrl-C is for this process, which ends the station
-        prepare=end_with_parent(),
+        ends_with_us=True,
     )
     assert station.stderr is not None
     with station:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from groundstation.sitl.simulators import find_simulator, find_system
 from link.endpoint import Endpoint
-from link.runtime.child_process import end_process, end_with_parent, start_module
+from link.runtime.child_process import end_process, start_module
 
 END_TIMEOUT = 1.0
 """s for the simulator to stop its motors and exit before it is killed."""
@@ -46,7 +46,7 @@ class Simulator:
             ["--sim", f"udpout:{host}:{port}", "--tlog", self._logs.name, *options],
             output=self._output,
             new_session=True,  # Ctrl-C in the terminal is for the screen only
-            prepare=end_with_parent(),
+            ends_with_us=True,
         )
 
     @property

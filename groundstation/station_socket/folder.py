@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import stat
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -68,6 +67,8 @@ def socket_address(path: Path) -> Iterator[str]:
         yield str(path)
         return
     if not os.path.isdir(OPEN_FOLDERS):
+        import tempfile  # by those that need it: it takes some ms of each start
+
         with tempfile.TemporaryDirectory(prefix="mh-", dir="/tmp") as short:  # nobody else can look into it
             link = Path(short) / "d"
             link.symlink_to(path.parent.absolute())

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import IO
 
@@ -14,6 +15,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 PR_SET_PDEATHSIG = 1
 """prctl(2): the kernel sends a signal when the parent dies, even by kill -9."""
+KERNEL_TELLS_OF_DEATH = sys.platform == "linux"
+MORTAL_MODULE = "link.runtime.mortal_module"
+"""Runs a program that ends with a pipe, for other kernels."""
 
 
 def start_module(
@@ -23,15 +27,22 @@ def start_module(
     output: IO[bytes] | int = subprocess.DEVNULL,
     pass_fds: Sequence[int] = (),
     new_session: bool = False,
-    prepare: Callable[[], None] | None = None,
+    ends_with_us: bool = False,
 ) -> subprocess.Popen[bytes]:
     """Start `python -m module arguments` without our standard streams: only the screen uses the terminal.
 
-    `output` receives what the program prints; `prepare` runs in the child before the program. Raises OSError.
+    `output` receives what the program prints. `ends_with_us`: it gets SIGTERM when this process ends, even by kill -9.
+    Raises OSError.
     """
+    words, prepare = [module, *arguments], None
+    if ends_with_us and KERNEL_TELLS_OF_DEATH:
+        prepare = _end_with_parent()
+    elif ends_with_us:
+        pipe = _life_line()
+        words, pass_fds = [MORTAL_MODULE, str(pipe), *words], [*pass_fds, pipe]
     # -P: a folder named like one of our packages in the current directory must not be imported instead of ours.
     return subprocess.Popen(
-        [sys.executable, "-P", "-m", module, *arguments],
+        [sys.executable, "-P", "-m", *words],
         stdin=subprocess.DEVNULL,
         stdout=output,
         stderr=output,
@@ -42,10 +53,17 @@ def start_module(
     )
 
 
-def end_with_parent() -> Callable[[], None] | None:
-    """Return what `prepare` of a child runs so that the kernel terminates it when we die; None except on Linux."""
-    if not sys.platform.startswith("linux"):
-        return None
+@cache
+def _life_line() -> int:
+    """Return the end of a pipe that ends with this process; its other end stays open here, and in no fork."""
+    theirs, ours = os.pipe()
+    kept = [ours]
+    os.register_at_fork(after_in_child=lambda: os.close(kept.pop()) if kept else None)  # once: the number is used again
+    return theirs
+
+
+def _end_with_parent() -> Callable[[], None]:
+    """Return what a child runs before its program, so that the kernel terminates it when we die."""
     import ctypes  # by those that need it: it takes 5 ms
 
     prctl = ctypes.CDLL(None).prctl  # looked up before the fork: as little as possible may run after it

@@ -79,7 +79,7 @@ def _flush(program: str) -> int:
 
 def _reader_has_gone() -> bool:
     poll = select.poll()
-    poll.register(1, 0)
+    poll.register(1, select.POLLOUT)  # macOS reports nothing where nothing is waited for
     return any(events & (select.POLLERR | select.POLLHUP) for _, events in poll.poll(0))
 
 

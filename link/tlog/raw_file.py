@@ -19,7 +19,7 @@ class RawFile:
 
     def sync(self) -> None:
         """Write the file's data to the disk, against a power cut. Raises OSError."""
-        os.fdatasync(self._descriptor)
+        getattr(os, "fdatasync", os.fsync)(self._descriptor)  # macOS has no fdatasync
 
     def duplicate(self) -> RawFile:
         """Return the same file with a descriptor of its own. Raises OSError."""

@@ -22,6 +22,9 @@ def bind_to_device(sock: socket.socket, endpoint: Endpoint) -> None:
     """
     if not endpoint.device:
         return
+    if not hasattr(socket, "SO_BINDTODEVICE"):
+        sock.close()
+        raise LinkError(f"{endpoint.text}: cannot be bound to interface {endpoint.device}: Linux is needed")
     try:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, endpoint.device.encode())
     except OSError as error:

@@ -9,8 +9,8 @@ import socket
 import struct
 import sys
 
-SIOCGIFADDR = 0x8915
-"""Linux (netdevice(7)): get the address of an interface."""
+SIOCGIFADDR = {"linux": 0x8915, "darwin": 0xC0206921}
+"""The request for the address of an interface: Linux (netdevice(7)), macOS (<sys/sockio.h>)."""
 
 PERIOD = 2.0
 """s between two lookups: a network may come up while the program waits."""
@@ -43,12 +43,12 @@ def _find_addresses() -> tuple[str, ...]:
 
 
 def _interface_addresses(probe: socket.socket) -> list[str]:
-    """Return one address of each interface; none on other systems than Linux, whose request differs."""
-    if sys.platform != "linux":
+    """Return one address of each interface; none on other systems, whose request differs."""
+    if (request := SIOCGIFADDR.get(sys.platform)) is None:
         return []
     addresses: list[str] = []
     for _, name in socket.if_nameindex():
         with contextlib.suppress(OSError):  # an interface without an address
-            answer = fcntl.ioctl(probe.fileno(), SIOCGIFADDR, struct.pack("256s", name.encode()[:15]))
+            answer = fcntl.ioctl(probe.fileno(), request, struct.pack("256s", name.encode()[:15]))
             addresses.append(socket.inet_ntoa(answer[20:24]))
     return addresses

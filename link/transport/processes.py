@@ -1,12 +1,20 @@
-"""The processes of this machine, as /proc shows them: names, what each has open, and which has a UDP or TCP port."""
+"""The processes of this machine: names, what each has open, and which has a UDP or TCP port.
+
+Linux shows them in /proc. Elsewhere lsof is asked, which macOS comes with.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import socket
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal
+
+import msgspec
 
 PROC = Path("/proc")
 
@@ -55,6 +63,8 @@ HIDDEN = "a program of another user"
 
 def find_socket_holders(kind: Kind, port: int, proc: Path = PROC) -> list[str]:
     """Return the programs that have this port of any local address, e.g. ["vehicle (pid 412)"]; empty if it is free."""
+    if not proc.is_dir():
+        return _ask_for_holders(kind, port)
     wanted = {f"socket:[{inode}]" for inode in _inodes(kind, port, proc)}
     if not wanted:
         return []
@@ -71,3 +81,58 @@ def _inodes(kind: Kind, port: int, proc: Path) -> Iterator[str]:
                 bound = int(words[LOCAL].rpartition(":")[2], 16)
                 if bound == port and (kind == "udp" or words[STATE] == LISTEN):
                     yield words[INODE]
+
+
+# ---- without /proc ----
+
+LSOF = ("lsof", "-nP", "-w", "-F", "pcn")
+"""Lists open files: a line `p` with the process id, `c` with the program, then `n` with the name of each file."""
+LSOF_WITHIN = 5.0
+"""s; it takes some 0.1 s."""
+
+
+class OpenFile(msgspec.Struct, frozen=True):
+    """A file or socket that a process has open."""
+
+    holder: str
+    """e.g. "screen (pid 412)"."""
+    name: str
+    """A path, or the addresses of a socket, e.g. "*:14550" or "127.0.0.1:14550->127.0.0.1:50123"."""
+
+
+def ask_lsof(*selection: str) -> list[OpenFile]:
+    """Return the files of other processes that fit words of lsof; those of other users hide theirs."""
+    try:
+        listed = subprocess.run([*LSOF, *selection], stdin=subprocess.DEVNULL, capture_output=True, timeout=LSOF_WITHIN)
+    except (OSError, subprocess.SubprocessError):
+        return []
+    found: list[OpenFile] = []
+    pid, program = "", ""
+    for line in listed.stdout.decode("utf-8", "replace").splitlines():
+        field, value = line[:1], line[1:]
+        if field == "p":
+            pid = value
+        elif field == "c":
+            program = "".join(filter(str.isprintable, value))
+        elif field == "n" and pid != str(os.getpid()):
+            found.append(OpenFile(f"{program} (pid {pid})", value))
+    return found
+
+
+def _ask_for_holders(kind: Kind, port: int) -> list[str]:
+    """Return the programs that have a port, by lsof; HIDDEN if it is taken and lsof names none."""
+    state = ("-sTCP:LISTEN",) if kind == "tcp" else ()
+    files = ask_lsof(f"-i{kind.upper()}:{port}", *state)
+    found = [each.holder for each in files if each.name.partition("->")[0].endswith(f":{port}")]
+    return list(dict.fromkeys(found)) or ([HIDDEN] if _is_taken(kind, port) else [])
+
+
+def _is_taken(kind: Kind, port: int) -> bool:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM if kind == "udp" else socket.SOCK_STREAM) as probe:
+        if kind == "tcp":
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a connection that has ended is none
+        try:
+            probe.bind(("", port))
+        except OSError as error:
+            return error.errno == errno.EADDRINUSE
+    return False

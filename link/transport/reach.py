@@ -12,6 +12,7 @@ import ipaddress
 import re
 import socket
 import struct
+import sys
 from array import array
 from collections.abc import Collection, Iterator
 from importlib import import_module
@@ -65,8 +66,15 @@ def find_trust(endpoint: Endpoint, private: Collection[str] = ()) -> Trust | Non
 
 def missing_interfaces(private: Collection[str]) -> list[str]:
     """Return those of these interfaces that this computer does not have now."""
-    # From sysfs: if_nameindex() needs AF_NETLINK, which the unit of the vehicle forbids.
-    return [name for name in private if not (INTERFACES / name).exists()]
+    # Not by if_nameindex(): it needs AF_NETLINK, which the unit of the vehicle forbids.
+    return [name for name in private if not _has_interface(name)]
+
+
+def _has_interface(name: str) -> bool:
+    try:
+        return socket.if_nametoindex(name) > 0
+    except OSError:
+        return False
 
 
 def is_interface_name(text: str) -> bool:
@@ -97,7 +105,12 @@ def _source_address(endpoint: Endpoint) -> str | None:
 
 
 def _addresses() -> Iterator[tuple[str, str]]:
-    """Yield each interface of this computer with each of its addresses."""
+    """Yield each interface of this computer with each of its addresses; none on other systems than Linux.
+
+    There is no trust in an interface there: packets to its address are accepted on others, too.
+    """
+    if sys.platform != "linux":
+        return
     room = array("B", bytes(_IFREQ * _MOST))
     with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
         answer = fcntl.ioctl(asking, _SIOCGIFCONF, struct.pack("iL", len(room), room.buffer_info()[0]))

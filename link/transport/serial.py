@@ -188,7 +188,7 @@ def _configure(port: serial.Serial) -> None:
     settings[2] &= ~termios.HUPCL  # keep DTR as it is on close: many boards reset when it falls
     settings[6][termios.VMIN] = 1  # or "nothing to read" would look like "unplugged"
     termios.tcsetattr(descriptor, termios.TCSANOW, settings)
-    with contextlib.suppress(ValueError, OSError, AttributeError):
+    with contextlib.suppress(ValueError, OSError, AttributeError, NotImplementedError):  # the last one on macOS
         port.set_low_latency_mode(True)  # FTDI: 1 ms instead of 16; other drivers raise
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import msgspec
 from serial.tools import list_ports
 
-from link.transport.processes import PROC, describe_process, open_files, other_processes, program_name
+from link.transport.processes import PROC, ask_lsof, describe_process, open_files, other_processes, program_name
 
 TTY_CLASS = Path("/sys/class/tty")
 LOGINS = ("getty", "agetty")
@@ -61,6 +61,8 @@ def find_holders(paths: list[str], proc: Path = PROC) -> dict[str, str]:
     found: dict[str, str] = {}
     if not real:
         return found
+    if not proc.is_dir():
+        return {real[each.name]: each.holder for each in ask_lsof("--", *real) if each.name in real}
     for process in other_processes(proc):
         opened = {os.path.realpath(target) for target in open_files(process, "/dev/")}
         for path in [real[each] for each in opened & real.keys()] + _login_ports(process, paths):

@@ -278,8 +278,16 @@ SEND_BUFFER = 32768
 """Bytes that the kernel buffers, where nothing can overtake; its own default grows to megabytes."""
 READ = 65536
 """Bytes that one turn of the event loop reads at most."""
+_KEEPIDLE: int = getattr(socket, "TCP_KEEPIDLE", None) or vars(socket)["TCP_KEEPALIVE"]
+"""Linux's name, and that of macOS."""
 DEAD_AFTER = 10
 """s without an acknowledgement after which the other end counts as gone; twice the vehicle's GCS timeout."""
+_DROP_TIME = 0x80
+"""TCP_RXT_CONNDROPTIME of macOS's <netinet/tcp.h>, s; Python does not name it."""
+_GIVE_UP = (
+    (socket.TCP_USER_TIMEOUT, DEAD_AFTER * 1000) if hasattr(socket, "TCP_USER_TIMEOUT") else (_DROP_TIME, DEAD_AFTER)
+)
+"""Option and value that end a connection whose data nobody confirms."""
 
 
 class Connection:
@@ -353,7 +361,7 @@ def _prepare(sock: socket.socket) -> None:
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, DEAD_AFTER // 2)
+    sock.setsockopt(socket.IPPROTO_TCP, _KEEPIDLE, DEAD_AFTER // 2)
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 1)
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPCNT, DEAD_AFTER // 2)
-    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, DEAD_AFTER * 1000)
+    sock.setsockopt(socket.IPPROTO_TCP, *_GIVE_UP)

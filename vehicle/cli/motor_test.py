@@ -71,10 +71,19 @@ def run_motor_test(table: Mapping[str, Any], wanted: MotorTestOptions) -> signal
         end = time.monotonic() + wanted.time
         while (left := end - time.monotonic()) > 0:
             motors.set(wanted.throttles)
-            ended = signal.sigtimedwait(SIGNALS, min(PERIOD, left))
-            if ended is not None:
-                return signal.Signals(ended.si_signo)
+            if (ended := _wait_for_signal(min(PERIOD, left))) is not None:
+                return ended
     return None
+
+
+def _wait_for_signal(seconds: float) -> signal.Signals | None:
+    """Return the first of SIGNALS, which are blocked; None if there is none in that time."""
+    if hasattr(signal, "sigtimedwait"):
+        ended = signal.sigtimedwait(SIGNALS, seconds)
+        return None if ended is None else signal.Signals(ended.si_signo)
+    if not signal.sigpending().intersection(SIGNALS):  # macOS cannot wait for both
+        time.sleep(seconds)
+    return signal.Signals(signal.sigwait(SIGNALS)) if signal.sigpending().intersection(SIGNALS) else None
 
 
 @contextlib.contextmanager

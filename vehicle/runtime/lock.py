@@ -13,7 +13,8 @@ import fcntl
 import hashlib
 import os
 import socket
-from collections.abc import Iterator, Mapping
+import sys
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,10 @@ from vehicle.motors.drivers import DRIVERS
 from vehicle.motors.settings import port_name
 
 SIMULATED = "simulated"
+
+HAS_ABSTRACT_NAMES = sys.platform == "linux"
+LOCK_FOLDER = Path("/tmp")
+"""For the files that are locked where sockets have no abstract names; all users share it."""
 
 
 class InUseError(MotorError):
@@ -34,27 +39,46 @@ class MotorLock:
 
     def __init__(self, motors: Mapping[str, Any]) -> None:
         """Acquire the lock for the table [motors]. Raises InUseError, and MotorError if locks are not supported."""
-        self._socket: socket.socket | None = None
+        self._release: Callable[[], None] | None = None
         name = _name(motors)
         if name is None:
             return
-        holder = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
         try:
-            holder.bind(name)
+            self._release = _lock_name(name) if HAS_ABSTRACT_NAMES else _lock_file(LOCK_FOLDER / f"{name}.lock")
         except OSError as error:
-            holder.close()
-            if error.errno != errno.EADDRINUSE:
+            if error.errno not in (errno.EADDRINUSE, errno.EWOULDBLOCK):
                 raise MotorError(f"the lock of the motors: {error}") from error
             raise InUseError(
                 "the motors are in use by another vehicle; stop it first, a service with: sudo systemctl stop rover"
             ) from error
-        self._socket = holder
 
     def close(self) -> None:
         """Release the lock."""
-        if self._socket is not None:
-            self._socket.close()
-            self._socket = None
+        if self._release is not None:
+            self._release()
+            self._release = None
+
+
+def _lock_name(name: str) -> Callable[[], None]:
+    """Take an abstract name of a socket, which is no file; return what releases it. Raises OSError."""
+    holder = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        holder.bind(f"\0{name}")
+    except OSError:
+        holder.close()
+        raise
+    return holder.close
+
+
+def _lock_file(path: Path) -> Callable[[], None]:
+    """Lock a file, which all users may open; return what releases it. Raises OSError."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(descriptor)
+        raise
+    return lambda: os.close(descriptor)
 
 
 def _name(motors: Mapping[str, Any]) -> str | None:
@@ -67,7 +91,7 @@ def _name(motors: Mapping[str, Any]) -> str | None:
         return None
     port = port_name(str(motors["port"])) if "port" in motors else ""
     # Hashed: the kernel accepts 107 bytes, and a name in /dev/serial/by-id has 60 and more.
-    return f"\0mavhelm motors {hashlib.sha256(f'{DRIVERS[driver].path} {port}'.encode()).hexdigest()}"
+    return f"mavhelm motors {hashlib.sha256(f'{DRIVERS[driver].path} {port}'.encode()).hexdigest()}"
 
 
 @contextlib.contextmanager

@@ -53,7 +53,8 @@ class Notifier:
 def _connected(address: str) -> socket.socket | None:
     if not address:
         return None
-    notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC | socket.SOCK_NONBLOCK)
+    notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    notify.setblocking(False)
     try:
         notify.connect("\0" + address[1:] if address.startswith("@") else address)
     except OSError:

@@ -9,6 +9,7 @@ src/terminal/terminalfunctions.cc (CSI_DSR), screen's ansi.c, tmux's input.c (IN
 from __future__ import annotations
 
 import os
+import subprocess
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -20,6 +21,9 @@ PROXIES = {"mosh-server": "mosh", "screen": "GNU screen"}
 BELOW_TMUX = {**PROXIES, "sshd": "tmux over ssh", "sshd-session": "tmux over ssh"}
 """The same for an ancestor of a client of tmux. Without tmux, ssh hides nothing: pings go through to the terminal."""
 MOST_ANCESTORS = 64
+PS = ("ps", "-axo", "pid=,ppid=,comm=")
+PS_WITHIN = 1.0
+"""s for the list of all processes; it takes some 20 ms."""
 
 
 def find_proxy(environment: Mapping[str, str] = os.environ, pid: int | None = None, proc: Path = PROC) -> str:
@@ -48,13 +52,35 @@ def style_refusal(style: str, proxy: str) -> str:
 
 def _ancestors(pid: int, proc: Path) -> Iterator[str]:
     """Yield the names of a process and its ancestors; none where the system does not tell."""
+    parent_of = (lambda each: _read_status(each, proc)) if proc.is_dir() else _list_processes().get
     for _ in range(MOST_ANCESTORS):
-        try:
-            lines = (proc / str(pid) / "status").read_text(errors="replace").splitlines()
-        except OSError:
+        if (found := parent_of(pid)) is None:
             return
-        fields = dict(line.split(":", 1) for line in lines if ":" in line)
-        yield fields.get("Name", "").strip()
-        pid = int(fields.get("PPid", "0"))
+        name, pid = found
+        yield name
         if pid < 1:
             return
+
+
+def _read_status(pid: int, proc: Path) -> tuple[str, int] | None:
+    """Return the name and the parent of a process from procfs."""
+    try:
+        lines = (proc / str(pid) / "status").read_text(errors="replace").splitlines()
+    except OSError:
+        return None
+    fields = dict(line.split(":", 1) for line in lines if ":" in line)
+    return fields.get("Name", "").strip(), int(fields.get("PPid", "0"))
+
+
+def _list_processes() -> dict[int, tuple[str, int]]:
+    """Return the name and the parent of each process, as ps lists them where there is no procfs."""
+    try:
+        listed = subprocess.run(PS, stdin=subprocess.DEVNULL, capture_output=True, timeout=PS_WITHIN, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return {}
+    found = {}
+    for line in listed.stdout.decode(errors="replace").splitlines():
+        pid, parent, command = line.split(None, 2)
+        # macOS lists the path of the program, or its title, as "sshd: user@ttys001".
+        found[int(pid)] = command.partition(":")[0].rpartition("/")[2], int(parent)
+    return found

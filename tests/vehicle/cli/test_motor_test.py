@@ -123,7 +123,10 @@ def test_a_driver_that_fails_is_stopped_too(monkeypatch: pytest.MonkeyPatch) -> 
     assert ASKED[-3:] == ["0 0", "disable", "disable"]
 
 
-def test_a_signal_ends_it_at_once() -> None:
+@pytest.mark.parametrize("waits", [True, False], ids=["sigtimedwait", "sigpending"])
+def test_a_signal_ends_it_at_once(waits: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if not waits:  # as on macOS
+        monkeypatch.delattr(signal, "sigtimedwait")
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
     signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
     signal.pthread_kill(threading.get_ident(), signal.SIGTERM)  # other threads of the test runner do not hold it back

@@ -11,12 +11,28 @@ from pathlib import Path
 import pytest
 
 from vehicle.config.run_settings import SettingsError
+from vehicle.motors import MotorError
 from vehicle.runtime.lock import InUseError, MotorLock, lock_state_folder
 
 # A serial port of each test's own, so that tests that run at the same time do not meet.
 MINE = {"driver": "roboclaw", "port": f"/dev/test-{os.getpid()}"}
+KILLED = """
+from vehicle.runtime import lock
+lock.HAS_ABSTRACT_NAMES = {names}
+mine = lock.MotorLock({motors})
+print(flush=True)
+input()
+"""
 
 
+@pytest.fixture(params=[True, False], ids=["abstract name", "file"])
+def names(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Whether sockets have abstract names, as on Linux and on macOS."""
+    monkeypatch.setattr("vehicle.runtime.lock.HAS_ABSTRACT_NAMES", request.param)
+    return bool(request.param)
+
+
+@pytest.mark.usefixtures("names")
 def test_the_second_is_refused_until_the_first_lets_go() -> None:
     first = MotorLock(MINE)
     with pytest.raises(InUseError, match="in use by another vehicle"):
@@ -26,6 +42,7 @@ def test_the_second_is_refused_until_the_first_lets_go() -> None:
     MotorLock(MINE).close()
 
 
+@pytest.mark.usefixtures("names")
 def test_another_port_is_another_controller() -> None:
     first, second = MotorLock(MINE), MotorLock({**MINE, "port": MINE["port"] + "b"})
     first.close()
@@ -50,8 +67,8 @@ def test_simulated_motors_and_those_of_others_are_not_locked(driver: str) -> Non
     second.close()
 
 
-def test_a_killed_process_holds_nothing() -> None:
-    script = f"from vehicle.runtime.lock import MotorLock; lock = MotorLock({MINE!r}); print(flush=True); input()"
+def test_a_killed_process_holds_nothing(names: bool) -> None:
+    script = KILLED.format(names=names, motors=MINE)
     process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert process.stdout is not None
     process.stdout.readline()
@@ -60,6 +77,18 @@ def test_a_killed_process_holds_nothing() -> None:
     process.send_signal(signal.SIGKILL)
     process.communicate()
     MotorLock(MINE).close()
+
+
+def test_a_link_in_the_place_of_a_lock_is_not_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("vehicle.runtime.lock.HAS_ABSTRACT_NAMES", False)
+    monkeypatch.setattr("vehicle.runtime.lock.LOCK_FOLDER", tmp_path)
+    MotorLock(MINE).close()
+    (lock,) = tmp_path.iterdir()
+    lock.unlink()
+    lock.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(MotorError, match="the lock of the motors"):
+        MotorLock(MINE)
+    assert not (tmp_path / "elsewhere").exists()
 
 
 def test_a_second_vehicle_of_a_folder_waits_for_the_first_to_end(tmp_path: Path) -> None:
@@ -74,6 +103,7 @@ def test_a_second_vehicle_of_a_folder_waits_for_the_first_to_end(tmp_path: Path)
 def test_a_killed_vehicle_holds_no_folder(tmp_path: Path) -> None:
     script = f"""
 from pathlib import Path
+from vehicle.motors import MotorError
 from vehicle.runtime.lock import lock_state_folder
 with lock_state_folder(Path({str(tmp_path)!r})):
     print(flush=True); input()

@@ -16,7 +16,7 @@ import pytest
 from groundstation.input.keymap import KeyEvent
 from groundstation.intents.driving import SetStyle
 from groundstation.ui.keys.key_gate import KeyGate
-from groundstation.ui.terminal.frozen_terminal import find_proxy, find_proxy_of_clients, style_refusal
+from groundstation.ui.terminal.frozen_terminal import _list_processes, find_proxy, find_proxy_of_clients, style_refusal
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.ui.examples import Recorder
@@ -60,6 +60,33 @@ def test_ancestors_tell_who_answers_in_place_of_it(names: tuple[str, ...], proxy
 def test_ancestors_of_a_client_of_tmux_tell_it(names: tuple[str, ...], proxy: str, tmp_path: Path) -> None:
     assert find_proxy_of_clients((10,), make_processes(tmp_path, *names)) == proxy
     assert find_proxy_of_clients((), tmp_path) == ""
+
+
+LISTED = """
+    1     0 /sbin/launchd
+   20     1 /opt/homebrew/bin/mosh-server
+   21    20 -zsh
+   22    21 /Applications/My Terminal.app/Contents/MacOS/My Terminal
+   30     1 sshd: me@ttys001
+   31    30 tmux
+"""
+
+
+def test_without_procfs_ps_tells_the_ancestors(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As macOS lists them: paths, titles, and names with blanks."""
+    lists, nowhere = tmp_path / "ps", tmp_path / "proc"
+    lists.write_text(f"#!/bin/sh\ncat <<'END'\n{LISTED.strip()}\nEND\n")
+    lists.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    assert [find_proxy({}, pid, nowhere) for pid in (22, 31, 99)] == ["mosh", "", ""]
+    assert find_proxy_of_clients((31,), nowhere) == "tmux over ssh"
+    lists.write_text("#!/bin/sh\nexit 1\n")
+    assert find_proxy({}, 22, nowhere) == ""
+
+
+def test_the_real_ps_lists_this_process() -> None:
+    name, parent = _list_processes()[os.getpid()]
+    assert (parent, bool(name)) == (os.getppid(), True)
 
 
 @pytest.mark.parametrize("style", ["latch", "step"])
