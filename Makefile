@@ -4,7 +4,7 @@ PYTEST = .venv/bin/pytest
 NEEDS = @.venv/bin/python -m tests.extras
 PARALLEL = -n auto --dist loadgroup
 
-.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 oldest mutate release docs picture deb deb-check wheels installs
+.PHONY: help setup check format test-fast test test-all stranger bare coverage bench soak stress vm aarch64 macos oldest mutate release docs picture deb deb-check wheels installs
 
 help:  ## List the targets.
 	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
@@ -63,6 +63,10 @@ vm: | .venv/bin/python  ## Test pins, I2C, the service and a serial line against
 
 aarch64: | .venv/bin/python  ## Test the core on an emulated aarch64, with Debian's Python for it; needs qemu-user-static.
 	.venv/bin/python -m tests.aarch64 $(ARGS)
+
+macos: | .venv/bin/python  ## Run the stops, the watchdog, the screen and verbs under the rules of macOS; ARGS="tests/e2e/test_gamepad.py".
+	$(NEEDS) test pytest
+	.venv/bin/python -m tests.macos_rules $(ARGS)
 
 oldest: | .venv/bin/python  ## Run tests with the oldest allowed versions of all packages; needs a network.
 	.venv/bin/python -m tests.oldest $(ARGS)

@@ -23,6 +23,7 @@ from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.station_socket.folder import list_sockets
+from link.runtime.local_socket import open_socket
 from tests.e2e.stop_rows import NOISE, STOPS_WITHIN, Crowd, Pressed, Rover, Row, Stands, Station, companion, start
 from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.tmux_marks import NEEDS_TMUX
@@ -162,7 +163,7 @@ def fill_socket(stack: ExitStack) -> None:
     """Connect to the station until its queue is full."""
     ((_, path),) = list_sockets()
     while True:
-        caller = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+        caller = stack.enter_context(open_socket())
         caller.setblocking(False)
         try:
             caller.connect(str(path))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,6 +12,7 @@ import pytest
 
 from groundstation.client import StationClient, StationError
 from groundstation.host_process import MAX_ARGUMENTS, STATION, ArgumentsError, HostProcess, read_arguments
+from link.runtime.local_socket import open_pair
 
 WITHIN = 20.0
 """s for a process to import its modules and end, on a busy machine."""
@@ -29,7 +29,7 @@ def process() -> Iterator[HostProcess]:
     "arguments", [["--system=255"], ["", "--", "a b", "new\nline", "ü"], [os.fsdecode(b"/tmp/\xff.log")]]
 )
 def test_arguments_arrive_as_they_are(process: HostProcess, arguments: list[str]) -> None:
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    ours, theirs = open_pair()
     with ours, theirs:
         pipe, process.pipe = process.pipe, ours
         process.send_arguments(arguments)
@@ -38,7 +38,7 @@ def test_arguments_arrive_as_they_are(process: HostProcess, arguments: list[str]
 
 
 def test_no_arguments_come_from_an_end_that_is_closed() -> None:
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    ours, theirs = open_pair()
     ours.close()
     with theirs:
         assert read_arguments(theirs) is None

@@ -36,7 +36,8 @@ from groundstation.station_socket.folder import (
     socket_path,
 )
 from groundstation.station_socket.hello import SCREEN, Hello
-from link.runtime.local_socket import LONGEST_ADDRESS
+from link.runtime import local_socket
+from link.runtime.local_socket import LONGEST_ADDRESS, open_socket
 from tests.fakes.lines import on_line
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.killed_screen import ROOT, assert_said_neutral, killed_screen, moving, neutral
@@ -73,7 +74,8 @@ def test_another_user_is_refused_even_where_the_folder_allows_it() -> None:
         for each, mode in ((path, 0o777), (path.parent, 0o755), (path.parent.parent, 0o755)):
             each.chmod(mode)
         try:
-            command = [sys.executable, "-c", FOREIGN, str(path), str(NOBODY)]
+            kind = socket.SOCK_SEQPACKET if local_socket.KEEPS_PACKETS else socket.SOCK_STREAM
+            command = [sys.executable, "-c", FOREIGN, str(path), str(NOBODY), str(int(kind))]
             said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
         finally:
             for each, mode in ((path.parent.parent, 0o700), (path.parent, 0o700)):
@@ -85,7 +87,7 @@ def test_another_user_is_refused_even_where_the_folder_allows_it() -> None:
 FOREIGN = """
 import os, socket, sys
 os.setuid(int(sys.argv[2]))
-sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+sock = socket.socket(socket.AF_UNIX, int(sys.argv[3]))
 sock.settimeout(20)
 sock.connect(sys.argv[1])
 print(sock.recv(4096))
@@ -169,7 +171,7 @@ def test_version_is_of_the_packets_not_of_other_loaded_modules() -> None:
 
 def test_a_socket_that_a_killed_station_has_left_is_removed() -> None:
     path = socket_path(make_folder(), 4_000_000)
-    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as sock:
+    with open_socket() as sock:
         sock.bind(str(path))
         sock.listen()
     assert (4_000_000, path) in list_sockets()
@@ -177,7 +179,11 @@ def test_a_socket_that_a_killed_station_has_left_is_removed() -> None:
     assert not path.exists()
 
 
-def test_a_runtime_folder_may_be_deeper_than_a_socket_address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("folders", ["/proc/self/fd", "/nowhere"])
+def test_a_runtime_folder_may_be_deeper_than_a_socket_address(
+    folders: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("groundstation.station_socket.folder.OPEN_FOLDERS", folders)
     deep = tmp_path / ("d" * LONGEST_ADDRESS)
     deep.mkdir()
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(deep))

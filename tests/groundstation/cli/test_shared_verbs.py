@@ -14,6 +14,7 @@ import pytest
 from groundstation.cli.main import main
 from groundstation.station_socket.folder import make_folder, socket_path
 from link.runtime.install_hint import install_command
+from link.runtime.local_socket import open_socket
 from tests.ports import free_port
 
 
@@ -27,7 +28,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def two_stations(folder: Path) -> Iterator[None]:
     with ExitStack() as stack:
         for pid in (11, 12):
-            sock = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+            sock = stack.enter_context(open_socket())
             sock.bind(str(socket_path(folder, pid)))
             sock.listen()
         yield

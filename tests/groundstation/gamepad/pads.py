@@ -8,6 +8,7 @@ import socket
 from pathlib import Path
 from types import TracebackType
 
+from link.runtime.local_socket import open_socket
 from tests.waits import PATIENCE
 
 SOCKET = "TEST_PAD_SOCKET"
@@ -20,7 +21,7 @@ class Hand:
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / "pads.socket"
-        self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._listener = open_socket()
         self._listener.settimeout(PATIENCE)
         self._listener.bind(str(self._path))
         self._listener.listen()

@@ -15,6 +15,7 @@ import sdl2
 
 from groundstation.gamepad import reader
 from groundstation.gamepad.sdl import Gamepads
+from link.runtime.local_socket import open_socket
 from tests.groundstation.gamepad.pads import SOCKET
 
 AXES = ("leftx", "lefty", "rightx", "righty", "lefttrigger", "righttrigger")
@@ -64,7 +65,7 @@ class LateGamepads(Gamepads):
 
     def __init__(self) -> None:
         super().__init__()
-        lines = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        lines = open_socket()
         lines.connect(os.environ[SOCKET])
         lines.send(str(os.getpid()).encode())
         threading.Thread(target=VirtualPads().run, args=(lines,), daemon=True).start()

@@ -22,6 +22,7 @@ from groundstation.station_socket.about import (
 )
 from groundstation.station_socket.folder import folder_path, make_folder, socket_path
 from groundstation.station_socket.hello import ABOUT, Hello, decode_hello
+from link.runtime.local_socket import open_socket
 
 FULL = About(("Rover 1", "Rover 2"), ("udpin:0.0.0.0:14550",), ("screen on pts/3", "web tab 1"))
 EMPTY = About((), (), ())
@@ -41,7 +42,7 @@ def stack(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ExitStack
 
 def station(stack: ExitStack, pid: int, answer: bytes | None) -> None:
     """Answer the programs that ask the station with this process id; None: accept them and say nothing."""
-    listening = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+    listening = stack.enter_context(open_socket())
     listening.bind(str(socket_path(folder_path(), pid)))
     listening.listen(5)
     open_for_ever: list[socket.socket] = []

@@ -27,7 +27,7 @@ from groundstation.station_socket.hello import NAMES, SCREEN, VERB, Hello, Stati
 from groundstation.station_socket.names import MODES, PARAMS, Names, encode_names, find_names, plain_names
 from groundstation.station_socket.packets import read_packet
 from groundstation.station_socket.verb_run import CompanionEnded, RunVerb, ToCompanion
-from link.runtime.local_socket import peer_credentials
+from link.runtime.local_socket import open_socket, peer_credentials
 from link.transport.receive_buffer import ReceiveBuffer
 
 HELLO = Hello(SCREEN, 3, "screen on pts/4", watches=True)
@@ -43,7 +43,7 @@ def stack(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ExitStack
 
 def station(stack: ExitStack, pid: int, backlog: int = 5) -> socket.socket:
     """A socket that listens as the station with this process id."""
-    listening = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+    listening = stack.enter_context(open_socket())
     listening.bind(str(socket_path(folder_path(), pid)))
     listening.listen(backlog)
     listening.settimeout(20.0)
@@ -54,7 +54,7 @@ def fill(stack: ExitStack, pid: int) -> None:
     """Fill the queue of those who connect."""
     with contextlib.suppress(BlockingIOError):
         while True:
-            waiting = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+            waiting = stack.enter_context(open_socket())
             waiting.setblocking(False)
             waiting.connect(str(socket_path(folder_path(), pid)))
 
@@ -116,7 +116,7 @@ def test_a_station_that_hangs_counts_and_takes_nobody(stack: ExitStack) -> None:
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can be another user")
 def test_the_station_of_another_user_is_refused(stack: ExitStack) -> None:
     ours, theirs = os.pipe()
-    listening = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+    listening = stack.enter_context(open_socket())
     listening.bind(str(socket_path(folder_path(), 41)))
     child = os.fork()
     if not child:
@@ -210,7 +210,7 @@ def test_a_path_of_107_bytes_is_an_address_and_a_longer_one_not(tmp_path: Path) 
         folder.mkdir()
         path, before = folder / "s", len(os.listdir("/proc/self/fd"))
         assert len(str(path)) == length
-        with socket_address(path) as address, socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as sock:
+        with socket_address(path) as address, open_socket() as sock:
             assert (address == str(path)) is (length == 107)
             sock.bind(address)
         assert path.is_socket()

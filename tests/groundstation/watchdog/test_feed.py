@@ -16,6 +16,7 @@ from groundstation.watchdog.feed import WatchdogFeed
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
 from link.endpoint import Side
 from link.links import open_links
+from link.runtime.local_socket import open_pair
 from link.transport.transport import Link
 
 ROVER = WatchdogTarget(system=1, component=1, name="rover 1", autopilot=3)
@@ -26,7 +27,7 @@ class Rig:
     """A feed with a link to a rover, and the watchdog's end of the socket."""
 
     def __init__(self, stack: ExitStack) -> None:
-        self.ours, self.theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.ours, self.theirs = open_pair()
         for end in (self.ours, self.theirs):
             stack.enter_context(end)
             end.setblocking(False)
@@ -201,7 +202,7 @@ def test_a_watchdog_that_stood_still_is_not_gone(rig: Rig) -> None:
 
 
 def test_a_feed_that_is_closed_ends_its_watchdog_in_order() -> None:
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    ours, theirs = open_pair()
     with ours, theirs:
         feed = WatchdogFeed.start(ours, None, (255, 190))
         assert feed.report([ROVER], 100.0)

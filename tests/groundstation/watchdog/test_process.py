@@ -29,6 +29,7 @@ from groundstation.watchdog.process import WatchdogProcess, fork_watchdog
 from groundstation.watchdog.report import DemandRoute, StationReport, encode_report
 from groundstation.watchdog.terminal_reset import RESET, TerminalReset
 from link.protocol.framer import Framer
+from link.runtime.local_socket import open_pair
 from tests.groundstation.watchdog.test_terminal_guard import ignores_hangup
 from tests.waits import wait_until
 
@@ -41,7 +42,7 @@ class Loop:
     """A watchdog's loop with both ends of everything that it talks to."""
 
     def __init__(self, stack: ExitStack) -> None:
-        pairs = [socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET) for _ in range(2)]
+        pairs = [open_pair() for _ in range(2)]
         for end in (*pairs[0], *pairs[1]):
             stack.enter_context(closing(end))
             end.setblocking(False)

@@ -30,6 +30,7 @@ from groundstation.verbs.session.station_core import StationCore, StationSeat
 from link.core import Received
 from link.links import open_links
 from link.runner import Runner
+from link.runtime.local_socket import open_pair
 from tests.fakes.params import Param
 from tests.fakes.services import ARDUPILOT, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.setup.test_doctor import MAG_CAL_CANCEL, MAG_CAL_START, commanded, progress
@@ -47,7 +48,7 @@ class Shells:
 
     def connect(self) -> StationLink:
         """Return the end of a shell."""
-        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        ours, theirs = open_pair()
         for each in (ours, theirs):
             each.setblocking(False)
         port = RunPort(theirs, self.station, "a shell", self.flush, RunPort.close, follows=False)

@@ -1,0 +1,1 @@
+"""The rules of macOS, forced on the programs that tests start."""
