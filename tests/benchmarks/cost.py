@@ -81,9 +81,11 @@ def _starters() -> dict[str, Start]:
     return {
         PYTHON: Start(BARE_PYTHON, "bare python ready"),
         TEXTUAL: Start(python("tests.benchmarks.bare_textual"), "bare textual ready"),
-        f"{VEHICLE}, ready": Start(python("vehicle", "--sim", f"udpout:{endpoint}"), "ready", terminal=False),
-        f"{GROUND}, first paint": Start(python("groundstation", f"udpin:{endpoint}"), "waiting for a vehicle"),
-        f"{GROUND} --sitl, rover on the screen": Start(python("groundstation", "--sitl"), "DISARMED"),
+        f"{VEHICLE}, ready": Start(
+            python("link.program", "vehicle", "--sim", f"udpout:{endpoint}"), "ready", terminal=False
+        ),
+        f"{GROUND}, first paint": Start(python("link.program", f"udpin:{endpoint}"), "waiting for a vehicle"),
+        f"{GROUND} --sitl, rover on the screen": Start(python("link.program", "--sitl"), "DISARMED"),
     }
 
 

@@ -20,6 +20,10 @@ WHEELS = ROOT / "dist/wheels"
 FOLDERS = ("mavhelm/bin", ".local/bin")
 """Where programs are after the installation, below the home folder."""
 TOOLS = ("pipx", "uv", "uvx", "unshare")
+UPDATES = {"python3": "install --upgrade", "pipx": "install --force", "uv": "install --reinstall"}
+"""First word of a line -> what stands there for `install` to update, as in the table of the page."""
+REMOVALS = {"python3": "cd && rm -rf mavhelm", "pipx": "pipx uninstall mavhelm", "uv": "uv tool uninstall mavhelm"}
+"""First word of a line -> the line of docs/faq.md that removes the program."""
 
 
 class LineError(Exception):
@@ -50,7 +54,7 @@ def install_lines(page: str) -> list[str]:
 
 
 def try_line(line: str, home: Path) -> None:
-    """Install in an empty home folder, run the program, add the extra `web` as it says."""
+    """Install in an empty home folder, run the program, add the extra `web` as it says, update and uninstall."""
     (home / "wheels").symlink_to(WHEELS)
     if line.startswith("uvx"):
         type_line(line.replace("--sitl", "--version"), home)
@@ -62,6 +66,11 @@ def try_line(line: str, home: Path) -> None:
     type_line("mavhelm --version && groundstation --version && vehicle --version", home)
     type_line(asked_extra("mavhelm serve --web", home), home)
     type_line('$(head -n 1 "$(command -v mavhelm)" | cut -c 3-) -c "import textual_serve"', home)
+    way = line.split()[0]
+    type_line(line.replace("install", UPDATES[way], 1), home)
+    type_line("mavhelm --version", home)
+    type_line(REMOVALS[way], home)
+    type_line("mavhelm --version", home, code=127)
 
 
 def asked_extra(command: str, home: Path) -> str:
