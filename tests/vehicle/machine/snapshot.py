@@ -80,12 +80,23 @@ class Snapshots:
         return plain, copied
 
     def _copier(self, twin: Any) -> Callable[[], Any]:
-        """Return what copies a saved value again. Most are tables of plain values, which copy themselves fast."""
-        if type(twin) in (dict, list, deque):
-            values = twin.values() if type(twin) is dict else twin
-            if all(self._copy(each) is each for each in values):
-                return twin.copy  # type: ignore[no-any-return]
-        return partial(self._copy, twin)
+        """Return what copies a saved value again.
+
+        What of it never changes is found out once, because each state is restored for each event.
+        """
+        kind = type(twin)
+        if kind is dict:
+            return self._table_copier(twin, list(twin.items()))
+        if kind is list or kind is deque:
+            return self._table_copier(twin, list(enumerate(twin)))
+        attributes_of = [(name, getattr(twin, name)) for name in attributes(twin)]
+        changing = [(name, self._copier(value)) for name, value in attributes_of if self._copy(value) is not value]
+        return partial(_copy_object, twin, changing)
+
+    def _table_copier(self, twin: Any, items: list[tuple[Any, Any]]) -> Callable[[], Any]:
+        """Return what copies a table. Most have plain values only, and copy themselves fast."""
+        changing = [(key, self._copier(value)) for key, value in items if self._copy(value) is not value]
+        return partial(_copy_table, twin, changing) if changing else twin.copy
 
     def _find(self, item: object) -> None:
         """Collect the long-lived objects."""
@@ -125,3 +136,17 @@ class Snapshots:
         for name in attributes(item):
             setattr(twin, name, self._copy(getattr(item, name)))
         return twin
+
+
+def _copy_table(twin: Any, changing: list[tuple[Any, Callable[[], Any]]]) -> Any:
+    made = twin.copy()
+    for key, make in changing:
+        made[key] = make()
+    return made
+
+
+def _copy_object(twin: Any, changing: list[tuple[str, Callable[[], Any]]]) -> Any:
+    made = copy(twin)
+    for name, make in changing:
+        setattr(made, name, make())
+    return made
