@@ -1,7 +1,8 @@
 """Mistakes on the command lines of the real programs: exit code 2, one line that names the mistake, no traceback.
 
 A vehicle that lacks something that may appear later ends with 1: as a service it is restarted. The text of each message
-is tested beside its code. These tests check, in processes of their own, that nothing else is printed.
+is tested beside its code. These tests check, in processes of their own, that nothing else is printed. The rows of
+tables are forked (tests/forked.py). Other tests start the programs as a user does.
 """
 
 from __future__ import annotations
@@ -15,15 +16,16 @@ import struct
 import subprocess
 import sys
 import termios
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
+from tests.forked import Forks
 from tests.ports import free_port
 
-pytestmark = pytest.mark.e2e
+pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("forked programs")]  # one process that forks them
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = (80, 24)
@@ -31,8 +33,12 @@ WITHIN = 60.0
 """s: the start of Python on a busy machine."""
 
 
+Run = Callable[[list[str], Path], tuple[int, str, str]]
+"""Words and an empty folder -> exit code, stdout and stderr."""
+
+
 def run(words: list[str], folder: Path) -> tuple[int, str, str]:
-    """Return exit code, stdout and stderr of a program that is started in an empty folder, without a terminal."""
+    """Start a program without a terminal; return exit code, stdout and stderr."""
     done = subprocess.run(
         [sys.executable, "-m", *words],
         capture_output=True,
@@ -50,9 +56,7 @@ def run_in_terminal(
     words: list[str], folder: Path, size: tuple[int, int] = SIZE, term: str = "xterm-256color"
 ) -> tuple[int, str, str]:
     """Do the same in a terminal of this size. Only stderr is not a terminal, so that the two can be told apart."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
-    environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES")}
+    ours, theirs = _open_terminal(size)
     with subprocess.Popen(
         [sys.executable, "-m", *words],
         stdin=theirs,
@@ -60,13 +64,68 @@ def run_in_terminal(
         stderr=subprocess.PIPE,
         text=True,
         cwd=folder,
-        env=environment | {"PYTHONPATH": str(ROOT), "TERM": term},
+        env=_environment(term),
     ) as process:
         os.close(theirs)
         _, complaint = process.communicate(timeout=WITHIN)
-    drawn = os.read(ours, 65536).decode() if select.select([ours], [], [], 0)[0] and _readable(ours) else ""
-    os.close(ours)
-    return process.returncode, drawn, complaint
+    return process.returncode, _drawn(ours), complaint
+
+
+@pytest.fixture(scope="module")
+def forks() -> Iterator[Forks]:
+    """The process that forks programs."""
+    made = Forks()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def fork(forks: Forks, tmp_path: Path) -> Run:
+    """Return `run` for a program that is forked. Its files stand for what a pipe would hold back."""
+
+    def run(words: list[str], folder: Path) -> tuple[int, str, str]:
+        with (tmp_path / "out").open("w+") as out, (tmp_path / "err").open("w+") as err, open(os.devnull) as nothing:
+            environment = os.environ | {"PYTHONPATH": str(ROOT)}
+            forks.start(words, folder, environment, [each.fileno() for each in (nothing, out, err)])
+            code = forks.ended()
+        return code, Path(out.name).read_text(), Path(err.name).read_text()
+
+    return run
+
+
+@pytest.fixture
+def fork_in_terminal(forks: Forks, tmp_path: Path) -> Run:
+    """Return `run_in_terminal` for a program that is forked."""
+
+    def run(words: list[str], folder: Path) -> tuple[int, str, str]:
+        ours, theirs = _open_terminal(SIZE)
+        with (tmp_path / "err").open("w+") as err:
+            forks.start(words, folder, _environment(), [theirs, theirs, err.fileno()])
+            os.close(theirs)
+            code = forks.ended()
+        return code, _drawn(ours), Path(err.name).read_text()
+
+    return run
+
+
+def _open_terminal(size: tuple[int, int]) -> tuple[int, int]:
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+    return ours, theirs
+
+
+def _environment(term: str = "xterm-256color") -> dict[str, str]:
+    """Return what a program in a terminal gets."""
+    environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES")}
+    return environment | {"PYTHONPATH": str(ROOT), "TERM": term}
+
+
+def _drawn(terminal: int) -> str:
+    """Return what a program has drawn that has ended, and close the terminal."""
+    readable = bool(select.select([terminal], [], [], 0)[0]) and _readable(terminal)
+    drawn = os.read(terminal, 65536).decode() if readable else ""
+    os.close(terminal)
+    return drawn
 
 
 def _readable(terminal: int) -> bool:
@@ -123,18 +182,20 @@ NAMES = [endpoint for endpoint, _ in (*ENDPOINTS, *ABSENT)]
 
 
 @pytest.mark.parametrize(("endpoint", "names"), [*ENDPOINTS, *ABSENT], ids=NAMES)
-def test_endpoints_of_the_ground_station(endpoint: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "mavhelm", *names)
+def test_endpoints_of_the_ground_station(
+    endpoint: str, names: list[str], fork_in_terminal: Run, tmp_path: Path
+) -> None:
+    assert_one_line(fork_in_terminal(["groundstation", endpoint], tmp_path), "mavhelm", *names)
 
 
 @pytest.mark.parametrize(("endpoint", "names"), ENDPOINTS, ids=[endpoint for endpoint, _ in ENDPOINTS])
-def test_endpoints_of_the_vehicle(endpoint: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", *names)
+def test_endpoints_of_the_vehicle(endpoint: str, names: list[str], fork: Run, tmp_path: Path) -> None:
+    assert_one_line(fork(["vehicle", "--sim", endpoint], tmp_path), "vehicle", *names)
 
 
 @pytest.mark.parametrize(("endpoint", "names"), ABSENT, ids=[endpoint for endpoint, _ in ABSENT])
-def test_endpoints_that_the_vehicle_cannot_have(endpoint: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", *names, code=1)
+def test_endpoints_that_the_vehicle_cannot_have(endpoint: str, names: list[str], fork: Run, tmp_path: Path) -> None:
+    assert_one_line(fork(["vehicle", "--sim", endpoint], tmp_path), "vehicle", *names, code=1)
 
 
 @pytest.mark.parametrize("kind", ["udp", "tcp"])
@@ -172,8 +233,8 @@ def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None
         ("--log-file /tmp", ["/tmp", "directory"]),
     ],
 )
-def test_options_of_the_ground_station(words: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run_in_terminal(["groundstation", *words.split()], tmp_path), "mavhelm", *names)
+def test_options_of_the_ground_station(words: str, names: list[str], fork_in_terminal: Run, tmp_path: Path) -> None:
+    assert_one_line(fork_in_terminal(["groundstation", *words.split()], tmp_path), "mavhelm", *names)
 
 
 @pytest.mark.parametrize(
@@ -197,8 +258,8 @@ def test_options_of_the_ground_station(words: str, names: list[str], tmp_path: P
         ("udpout:127.0.0.1:14550", ["--motors", "--sim"]),
     ],
 )
-def test_options_of_the_vehicle(words: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run(["vehicle", *words.split()], tmp_path), "vehicle", *names)
+def test_options_of_the_vehicle(words: str, names: list[str], fork: Run, tmp_path: Path) -> None:
+    assert_one_line(fork(["vehicle", *words.split()], tmp_path), "vehicle", *names)
 
 
 @pytest.mark.parametrize(
@@ -210,8 +271,8 @@ def test_options_of_the_vehicle(words: str, names: list[str], tmp_path: Path) ->
         ("udpin:127.0.0.1:14550", ["two endpoints or more are needed, for example serial:"]),
     ],
 )
-def test_command_lines_of_the_bridge(words: str, names: list[str], tmp_path: Path) -> None:
-    assert_one_line(run(["link.bridge", *words.split()], tmp_path), "bridge", *names)
+def test_command_lines_of_the_bridge(words: str, names: list[str], fork: Run, tmp_path: Path) -> None:
+    assert_one_line(fork(["link.bridge", *words.split()], tmp_path), "bridge", *names)
 
 
 @pytest.mark.parametrize(
@@ -223,10 +284,10 @@ def test_command_lines_of_the_bridge(words: str, names: list[str], tmp_path: Pat
         ("serial:/dev/ttyUSB{port}:57600", ["waiting for /dev/ttyUSB{port}, it is not there; is it plugged in?"]),
     ],
 )
-def test_a_verb_says_why_it_hears_no_vehicle(scheme: str, names: list[str], tmp_path: Path) -> None:
+def test_a_verb_says_why_it_hears_no_vehicle(scheme: str, names: list[str], fork: Run, tmp_path: Path) -> None:
     port = free_port()
     endpoint = scheme.format(port=port)
-    result = run(["groundstation", "status", "--wait", "2", "-e", endpoint], tmp_path)
+    result = fork(["groundstation", "status", "--wait", "2", "-e", endpoint], tmp_path)
     says = [name.format(port=port) for name in names]
     assert_one_line(result, "mavhelm", f"no vehicle on {endpoint} within 2 s", *says, code=3)
 
