@@ -1,7 +1,7 @@
 """Which tests run: `pytest` alone runs the short suite, `--suite all` every test, `--suite rest` those that are left.
 
 The short suite is for everybody who has a clone: the cores and the safety code in virtual time, all that needs no other
-program, and the main job with the real ones. It takes 250 s of CPU and skips nothing with the packages of the extra
+program, and the main job with the real ones. It takes 160 s of CPU and skips nothing with the packages of the extra
 `test`. A new test belongs to it, unless one of MARKERS or a row of LONG says otherwise; of a long table of parameters
 ROWS do. Tests that are named on the command line always run.
 """
@@ -89,22 +89,55 @@ LONG = (
     "link/services/ftp/test_client.py::test_any_answer", "link/test_runner.py::test_frames_returned",
     "vehicle/cli/test_pi_guide.py", "vehicle/cli/test_without_libraries.py",
     "vehicle/telemetry/test_schedule.py",
+    "groundstation/cli/test_shared_verbs.py::test_serve_says",
+    "groundstation/formats/test_geojson_layer.py::test_many_small",
+    "groundstation/formats/test_plan_file.py::test_any_mission",
+    "groundstation/formats/test_plan_file.py::test_no_json",
+    "groundstation/input/test_sticks.py::test_timer_drive_ends",
+    "groundstation/input/test_sticks.py::test_whatever_came_before",
+    "groundstation/recording/test_session_recorder.py", "groundstation/station/driving/test_gamepad.py",
+    "groundstation/station/driving/test_handover.py", "groundstation/station/driving/test_kinds.py",
+    "groundstation/station/driving/test_motor_test.py", "groundstation/station/driving/test_screen_lease.py",
+    "groundstation/station/driving/test_several_vehicles.py", "groundstation/station/test_readings.py",
+    "groundstation/station/views/test_drive_display.py", "groundstation/station/views/test_link_views.py",
+    "groundstation/station/views/test_param_views.py", "groundstation/ui/drive/instruments/test_track.py",
+    "groundstation/ui/map/plan/test_files.py::test_a_plan_that_is_too_long",
+    "groundstation/vehicles/probes/test_stream_requests.py", "groundstation/vehicles/readings/test_outputs.py",
+    "groundstation/vehicles/stops/test_foreign_stops.py::test_neutral_flows",
+    "groundstation/vehicles/stops/test_foreign_stops.py::test_what_the_driver_sees",
+    "groundstation/web/test_server.py", "groundstation/web/test_tab.py",
+    "link/protocol/test_channel.py::test_station_takes_files",
+    "link/runtime/test_install_hint.py::test_no_other_message", "link/signing/test_key_input.py::test_each_kind",
+    "link/signing/test_keys.py::test_a_passphrase", "link/signing/test_verifier.py::test_no_frame",
+    "link/test_runner.py::test_the_core_ticks", "test_contact.py",
+    "vehicle/autonomy/test_autonomous_stops.py::test_a_lost_position", "vehicle/cli/test_safe_stop.py",
+    "vehicle/drive/test_driving.py::test_an_empty_battery", "vehicle/motors/test_sysfs_pwm.py",
+    "vehicle/navigation/test_fence.py", "vehicle/runtime/test_lock.py",
+    "vehicle/safety/test_pi_monitor.py",
+    "vehicle/sim", "vehicle/test_identity.py::test_frames_of_the_former",
+    "vehicle/test_identity.py::test_the_driver_is_told", "vehicle/test_safety_texts.py",
+    "vehicle/test_stops_in_a_crowd.py",
 )  # fmt: skip
-"""Folders, files and tests below tests/ that are not in the short suite either: they take half a second of CPU or more
-each, such as the properties that drive a whole rover, test the tests, or need programs and packages that a clone alone
+"""Folders, files and tests below tests/ that are not in the short suite either: their tests take 0.3 s of CPU or more,
+such as the properties that drive a whole rover, test the tests, or need programs and packages that a clone alone
 does not have."""
 
 MAIN_JOB = (
     "groundstation/sitl/test_sitl.py::test_sitl_starts",
     "e2e/test_stop_matrix.py::test_key_released", "e2e/test_stop_matrix.py::test_terminal_closed",
-    "e2e/test_stop_matrix.py::test_ground_station", "e2e/test_stop_matrix.py::test_quit_by_key",
-    "e2e/test_stop_matrix.py::test_vehicle_told_to_end", "e2e/test_station_process_lost.py::test_our_rover_stops",
+    "e2e/test_stop_matrix.py::test_ground_station_killed", "e2e/test_stop_matrix.py::test_ground_station_frozen",
+    "e2e/test_stop_matrix.py::test_ground_station_told_to_end", "e2e/test_stop_matrix.py::test_quit_by_key",
+    "e2e/test_stop_matrix.py::test_vehicle_told_to_end", "e2e/test_station_process_lost.py::test_our_rover_stops[9",
     "e2e/test_handover.py::test_given_control_stops_the_rover_and_the_other_drives[give",
-    "e2e/test_serial_and_bridge.py",
+    "e2e/test_serial_and_bridge.py::test_the_rover_is_driven",
     "e2e/test_serial_and_tcp.py::test_ground_station_killed_or_frozen_with_its_children[serial-9",
     "vehicle/runtime/test_daemon.py::test_a_signal_while_driving",
-    "vehicle/safety/test_estop_button.py", "groundstation/verbs/line", "groundstation/verbs/control/test_arm.py",
-    "groundstation/verbs/control/test_stops.py",
+    "vehicle/safety/test_estop_button.py", "groundstation/verbs/line/test_parser.py",
+    "groundstation/verbs/control/test_arm.py::test_it_waits_for_the_pre_arm_bit",
+    "groundstation/verbs/control/test_arm.py::test_an_interrupted_arming_disarms",
+    "groundstation/verbs/control/test_stops.py::test_disarm_and_stop_are_done",
+    "groundstation/verbs/control/test_stops.py::test_a_stop_goes_past",
+    "groundstation/verbs/control/test_stops.py::test_without_a_vehicle",
 )  # fmt: skip
 """Tests that are in it all the same: starting, driving, every way to die, serial lines, the bridge, and the verbs that
 arm and stop."""

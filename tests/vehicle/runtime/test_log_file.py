@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import logging
 import os
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
+from tests.waits import wait_until
 from vehicle.runtime import log_file
 from vehicle.runtime.log import DaemonLog
 from vehicle.runtime.log_file import LogFile
@@ -23,6 +25,13 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
     return tmp_path / "vehicle.log"
+
+
+def read(path: Path) -> bytes:
+    """Return what is in the log file; nothing while a new one is begun."""
+    with suppress(FileNotFoundError):
+        return path.read_bytes()
+    return b""
 
 
 def lines(count: int, first: int = 0) -> list[bytes]:
@@ -52,6 +61,7 @@ def test_the_program_never_writes_more_than_two_files(path: Path) -> None:
     log = DaemonLog(str(path))
     for number in range(200):
         logging.getLogger("vehicle.test").info("%d %s", number, "x" * 100)
+    wait_until(lambda: b" 199 xxx" in read(path), "the last line")  # close() waits for a second only
     log.close()
     assert sum(each.stat().st_size for each in path.parent.iterdir()) <= 2 * SIZE
     assert b" 199 xxx" in path.read_bytes().splitlines()[-1].replace(b"vehicle.test:", b"")
