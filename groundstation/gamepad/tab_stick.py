@@ -10,6 +10,7 @@ from groundstation.gamepad.frame_pipe import FramePipe, TakeFrame
 from groundstation.input.pad import PadFrame
 from groundstation.input.pad_mapping import PadMapping
 from groundstation.input.touch_stick import PIPE_VARIABLE, TOUCH
+from link.runtime.local_socket import take_over
 
 
 class TabStick:
@@ -60,6 +61,6 @@ def inherit_stick(environment: MutableMapping[str, str] = os.environ) -> TabStic
         return None
     try:
         os.set_inheritable(int(number), False)  # not for the processes of this screen
-        return TabStick(socket.socket(fileno=int(number)))
+        return TabStick(take_over(int(number)))
     except OSError:  # not a socket: set by somebody else
         return None

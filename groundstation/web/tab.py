@@ -23,6 +23,7 @@ import msgspec
 
 from groundstation.input.pad import PadFrame
 from groundstation.input.touch_stick import PIPE_VARIABLE
+from link.runtime.local_socket import open_pair
 
 READ_SIZE = 1 << 16
 """Bytes of output in one message."""
@@ -60,7 +61,7 @@ class Tab:
     def open(cls, command: Sequence[str], size: tuple[int, int]) -> Tab:
         """Start a program in a terminal of this size. Raises OSError."""
         ours, theirs = pty.openpty()
-        pipe, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        pipe, its = open_pair()
         pipe.setblocking(False)
         try:
             _set_size(ours, size)

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tests.groundstation.screen import children, running, simulators
-from tests.macos_rules.__main__ import FOLDER
+from tests.macos_rules.forced import FOLDER
 from tests.ports import free_port
 from tests.waits import Waits, wait_until
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from link.transport.local_addresses import LocalAddresses
-from tests.macos_rules.__main__ import FOLDER
+from tests.macos_rules.forced import FOLDER
 
 
 def under_rules(code: str, folder: Path) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import socket
 import time
 
 import msgspec
@@ -12,13 +11,14 @@ import pytest
 from groundstation.gamepad.tab_stick import inherit_stick
 from groundstation.input.pad import PadFrame
 from groundstation.input.touch_stick import NAME, PIPE_VARIABLE
+from link.runtime.local_socket import open_pair
 from tests.waits import until
 
 HELD = PadFrame(1.0, (NAME,), held=True, throttle=0.5)
 
 
 async def test_frames_reach_the_screen_until_the_server_ends() -> None:
-    server, screen = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    server, screen = open_pair()
     environment = {PIPE_VARIABLE: str(screen.detach())}
     stick = inherit_stick(environment)
     assert stick is not None
