@@ -139,9 +139,11 @@ def look_up(library: ctypes.CDLL, name: str) -> Any:
     return _look_up(library, name)
 
 
-def comports(include_links: bool = False) -> list[Any]:
-    """The list of serial ports of pyserial asks a framework of macOS."""
-    return []
+def add_module(name: str, **contents: Any) -> None:
+    """Add a module that asks a framework of macOS, with what it says of a computer that has nothing."""
+    module = ModuleType(name)
+    vars(module).update(contents)
+    sys.modules[name] = module
 
 
 _poll, _socketpair, _ioctl, _look_up = select.poll, socket.socketpair, fcntl.ioctl, ctypes.CDLL.__getattr__
@@ -158,8 +160,7 @@ for name in ("stat", "lstat", "readlink", "access"):
 for module, names in MISSING.items():
     for name in names:
         vars(module).pop(name, None)
-ports: Any = ModuleType("serial.tools.list_ports_osx")
-ports.comports = comports
-sys.modules[ports.__name__] = ports
+add_module("serial.tools.list_ports_osx", comports=lambda include_links=False: [])
+add_module("_scproxy", _get_proxy_settings=dict, _get_proxies=dict)
 sys.platform = "darwin"
 sys.addaudithook(audit)
