@@ -167,8 +167,9 @@ class Browser:
     def signal_pages(self, number: signal.Signals) -> None:
         """Send a signal to the processes of its pages."""
         for pid in _descendants(self.process.pid):
-            if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes():
-                os.kill(pid, number)
+            with suppress(FileNotFoundError, ProcessLookupError):
+                if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                    os.kill(pid, number)
 
     async def _touch(self, kind: str, points: list[dict[str, float]]) -> None:
         await self._send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
@@ -198,7 +199,10 @@ class Browser:
 
 
 def _descendants(pid: int) -> list[int]:
-    found = children(pid)
+    try:
+        found = children(pid)
+    except FileNotFoundError:  # it has ended meanwhile
+        return []
     return [*found, *(each for child in found for each in _descendants(child))]
 
 
