@@ -20,13 +20,13 @@ from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.vehicles.demand.blind_stop import BlindStop
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
-from groundstation.verbs.session.core import OwnCore
 from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import to_stamp
 from link.signing.keys import SigningKey
 from link.signing.role import SigningRole
 from link.transport.memory import LossyPipe
+from tests.fakes.lone_verb import LoneVerb
 from tests.link.signing.signed import DRIVER as OWNER
 from tests.link.signing.signed import NOON, SIGNED_ONLY, STRANGER, WATCHER, keep, signed
 from tests.vehicle.bench import AHEAD, BEAT, CYCLE, DRIVER, NEUTRAL
@@ -81,7 +81,8 @@ class StopWorld(CrowdedLink):
             keep(OWNER, WATCHER, wall=facts.clock, now=100.0), SigningPolicy(SigningRole.WATCH, open_stops=True), 0
         )
         self.facts = facts
-        self.core = OwnCore(VERB, facts.vehicle, 1)
+        self.lone = LoneVerb(VERB, facts.vehicle, 1)
+        self.core = self.lone.core
         guard = None
         if facts.key is not None:
             guard = SigningGuard(keep(facts.key, wall=NOON + 100.0, now=100.0), SIGNED_ONLY, 0)
@@ -135,7 +136,7 @@ class StopWorld(CrowdedLink):
         blind = BlindStop(StopKind.EMERGENCY, self.facts.vehicle or 0, VERB, began)
         while any(self.rover.outputs.throttles) or self.rover.state is SafetyState.ARMED:
             assert self.now - began <= STOPPED_WITHIN, self.facts
-            self.core.tick(self.now)
+            self.lone.tick(self.now)
             if self.core.chosen is None:
                 self.core.outbox += blind.tick(self.now)
             elif job is None:
@@ -148,7 +149,7 @@ class StopWorld(CrowdedLink):
         return self.now - began
 
     def exchange(self) -> None:
-        for outgoing in self.core.messages_to_send():
+        for outgoing in self.lone.messages_to_send():
             for data, _, _ in self.verb.send(outgoing, now=self.now):
                 self.up.send(data, self.now)
         for data in self.up.receive(self.now):
@@ -157,7 +158,7 @@ class StopWorld(CrowdedLink):
         self._flush()
         for data in self.down.receive(self.now):
             for received in self.verb.receive(data, "rover", self.now):
-                self.core.receive(received, self.now)
+                self.lone.receive(received, self.now)
 
     def _flush(self) -> None:
         for outgoing in self.rover.messages_to_send():

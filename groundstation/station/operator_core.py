@@ -41,12 +41,8 @@ TICK_PERIOD = 0.1
 class OperatorCore:
     """A core (link/core.py). Its parts do the work; here is which of them gets what, and in which order."""
 
-    def __init__(self, parts: CoreParts, listener: CoreListener | None = None, *, serves: bool = False) -> None:
-        """Join the parts. `listener` shows and records what happens; None: nobody does.
-
-        `serves`: a verb of this process makes requests, which are repeated although no screen is there.
-        """
-        self._serves = serves
+    def __init__(self, parts: CoreParts, listener: CoreListener | None = None) -> None:
+        """Join the parts. `listener` shows and records what happens; None: nobody does."""
         self.parts = parts
         self.log, self.operator, self.fleet = parts.log, parts.operator, parts.fleet
         self.services, self.driving, self.verbs = parts.services, parts.driving, parts.verbs
@@ -246,7 +242,7 @@ class OperatorCore:
     @property
     def _uses_services(self) -> bool:
         """Whether somebody is there for whom requests are repeated: a screen, or a verb that runs here."""
-        return self._serves or self.operator.live or self.verbs.uses_services
+        return self.operator.live or self.verbs.uses_services
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""

@@ -41,8 +41,11 @@ from link.runtime.event_loop import run_loop
 
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
-    from groundstation.verbs.session.core import OwnCore
+    from groundstation.verbs.session.core import VerbCore
     from groundstation.verbs.session.demand_guard import DemandGuard
+    from groundstation.verbs.session.doctor_session import DoctorSession
+    from groundstation.verbs.session.session import VerbSession
+    from groundstation.verbs.session.station_seat import StationSeat
     from link.link_signing import LinkSigning
     from link.runner import Runner
 
@@ -178,7 +181,7 @@ async def _run_here(
 ) -> int:
     """Run the action in this process, with links of its own."""
     from groundstation.verbs.performing import build_session, perform  # a verb that a station runs does without
-    from groundstation.verbs.session.core import OwnCore
+    from groundstation.verbs.session.core import VerbCore
     from groundstation.verbs.session.kept_session import choose_identity
     from groundstation.verbs.session.running import run_over
 
@@ -189,8 +192,11 @@ async def _run_here(
     if action.guarded(options):  # before the links are open
         guard = demand_guard.DemandGuard(ids, signing.signing if signing else None)
 
-    def build_core() -> OwnCore:
-        return OwnCore(ids, options.vehicle, kept.number, endpoints, asyncio.get_running_loop().time())
+    def build_core() -> VerbCore:
+        now = asyncio.get_running_loop().time()
+        core = VerbCore.alone(ids, options.vehicle, kept.number, endpoints, now)
+        core.standstill = core.standstill if guard is None else guard.standstill
+        return core
 
     session = build_session(action, options, output, endpoints, build_core, (ids, kept.number))
 
@@ -200,20 +206,41 @@ async def _run_here(
 
     async def script(runner: Runner) -> int:
         session.flush, session.observe = runner.flush, runner.observe
+        may_prove = kept.may_prove if kept.follows else None
         async with local_companion(_companion_of(action, options, output)) as session.companion:
-            return await perform(
-                session, action, options, output, group, kept.may_prove if kept.follows else None, found
-            )
+            work = perform(session, action, options, output, group, may_prove, found)
+            return await (seat.run(work) if (seat := _take_seat(session, action, runner)) else work)
 
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
-            return await run_over(endpoints, session.core, script, ids=ids, signing=signing, log_tap=tap, guard=guard)
+            return await run_over(
+                endpoints,
+                session.station,
+                script,
+                ids=ids,
+                signing=signing,
+                log_tap=tap,
+                guard=guard,
+                driven=session.driven,
+            )
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
     finally:
         kept.end(time.monotonic())
         if guard is not None:
             guard.close()
+
+
+def _take_seat(session: VerbSession | DoctorSession, action: VerbAction, runner: Runner) -> StationSeat | None:
+    """Return the seat of a verb in the OperatorCore of this process; None: it is that core itself."""
+    from groundstation.verbs.session.station_seat import StationSeat
+
+    if session.core is session.station:
+        return None
+    needs = action.needs_session
+    seat = StationSeat(session.station, session.core, "a verb", runner.flush, needs_session=needs, alone=True)
+    session.flush = seat.flush
+    return seat
 
 
 def _companion_of(action: VerbAction, options: argparse.Namespace, output: Output) -> RunCompanion | None:

@@ -7,9 +7,10 @@ import time
 from statistics import median
 
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
-from groundstation.verbs.session.core import OwnCore
+from groundstation.verbs.session.core import VerbCore
 from groundstation.verbs.session.running import run_over
 from groundstation.verbs.session.session import VerbSession
+from groundstation.verbs.session.station_seat import StationSeat
 from link.runner import Runner
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Table, brief
 from tests.fakes.params import many_params
@@ -47,14 +48,15 @@ def _fetch(*, files: bool) -> float:
         vehicle.params.replace(dict(many_params(COUNT)))
 
         async def fetch() -> int:
-            core = OwnCore((254, 190), 1, 1, now=asyncio.get_running_loop().time())
+            core = VerbCore.alone((254, 190), 1, 1, now=asyncio.get_running_loop().time())
             session = VerbSession(core, lambda: None, _ignore)
 
             async def begin(runner: Runner) -> int:
-                session.flush = runner.flush
-                return await script(session)
+                seat = StationSeat(core.station, core, "a benchmark", runner.flush, alone=True)
+                session.flush = seat.flush
+                return await seat.run(script(session))
 
-            return await run_over([vehicle.endpoint], core, begin, ids=core.ids)
+            return await run_over([vehicle.endpoint], core.station, begin, ids=core.ids)
 
         async def script(session: VerbSession) -> int:
             await session.find_vehicle(20.0, 1)

@@ -71,6 +71,8 @@ class Verb(msgspec.Struct, eq=False):
     seat: VerbSeat
     follows: bool = False
     """It keeps the session going that a verb has used just before."""
+    alone: bool = False
+    """The station is that of its own process, which its watchdog watches: nobody else drives there."""
     heard_at: float = 0.0
     demands: dict[tuple[type[m.Message], int], m.Message] = msgspec.field(default_factory=dict)
     """Kind and vehicle -> the newest demand that moves."""
@@ -180,7 +182,7 @@ class RunningVerbs:
     def handle(self, verb: Verb, message: m.Message, now: float) -> None:
         """Send a message of a verb, if it may be sent."""
         if isinstance(message, m.Heartbeat):
-            passes = not self._operator.live and (self._keeps(verb) or not self._any_armed)
+            passes = verb.alone or (not self._operator.live and (self._keeps(verb) or not self._any_armed))
         elif isinstance(message, m.RoverOperatorPresence) or type(message) in DEMANDS:
             passes = self._keeps(verb) and self._may_demand(verb, message, now)
         else:
@@ -245,7 +247,9 @@ class RunningVerbs:
 
     def _keeps(self, verb: Verb) -> bool:
         """Return whether a verb keeps vehicles from missing their ground station."""
-        return verb.needs_session or (verb.follows and not any(each.needs_session for each in self._verbs))
+        return (
+            verb.alone or verb.needs_session or (verb.follows and not any(each.needs_session for each in self._verbs))
+        )
 
     def _may_demand(self, verb: Verb, message: m.Message, now: float) -> bool:
         """Return whether to send a demand or a proof; refuse one that moves while somebody else drives."""
@@ -281,7 +285,7 @@ class RunningVerbs:
 
     def _check_silence(self, verb: Verb, now: float) -> None:
         silence = now - verb.heard_at
-        if verb.demands and silence > ALIVE_WITHIN:
+        if verb.demands and silence > ALIVE_WITHIN and not verb.alone:
             self._refuse(verb, f"{verb.name} stood still for {silence:.1f} s: its demand has ended", now)
 
     def _refuse(self, verb: Verb, reason: str, now: float) -> None:

@@ -115,9 +115,9 @@ def _tell_unheard(session: VerbSession, blind: BlindStop | None, output: Output)
     heard = ", ".join(str(system) for system in sorted(session.core.contacts))
     text = f"no such vehicle on {session.where} within {wait:.0f} s" + (f", but {heard}" if heard else "")
     if blind is not None:
+        why = session.describe_links()
         silent = not session.core.frames_sent and not session.core.has_heard_all
         nobody = "; nobody was heard there, so there is no address to send to" if silent else f"; {blind.describe()}"
-        why = session.describe_links()
         text = f"no heartbeat of a vehicle on {session.where} within {wait:.0f} s{why}{nobody}"
     output.error(text)
     output.result(False, blind.system if blind else 0, detail=text)

@@ -100,7 +100,7 @@ class LineCommands:
 
     async def _perform(self, intent: RunLine, parsed: ParsedLine, contact: Contact) -> None:
         session, output = LineSession(self._station, contact, self._flush), CollectedOutput(here)
-        session.seat.join()
+        session.seat.join(session.now)
         run: Any = parsed.rule.own or parsed.action.run
         try:
             async with asyncio.timeout(parsed.options.timeout):

@@ -1,4 +1,4 @@
-"""LineSession: the session of a verb that runs in a station (station_core.py), for a line of the screens."""
+"""LineSession: the session of a verb that runs in a station (station_seat.py), for a line of the screens."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.verbs.collected_output import one_line
 from groundstation.verbs.session.contact import VehicleContact
+from groundstation.verbs.session.core import VerbCore
 from groundstation.verbs.session.session import Interrupted, RequestStart, VerbSession
-from groundstation.verbs.session.station_core import StationCore, StationSeat
+from groundstation.verbs.session.station_seat import StationSeat
 
 
 class LineSession(VerbSession):
     """For the vehicle that the operator has chosen. The station proves its session, and goes on behind the verb."""
 
     def __init__(self, station: OperatorCore, contact: Contact, flush: Callable[[], None]) -> None:
-        core = StationCore(station, contact.state.system)
+        core = VerbCore(station, contact.state.system)
         self.seat = StationSeat(station, core, "a line", flush)
         super().__init__(core, self.seat.flush, lambda report: None, VehicleContact(station, contact, 0.0))
         self.selects = contact

@@ -24,10 +24,10 @@ from groundstation.verbs.main import build_parser, check_options, choose_action
 from groundstation.verbs.performing import build_session, perform
 from groundstation.verbs.remote.sent_output import SentOutput
 from groundstation.verbs.remote.shell_files import ShellFiles
+from groundstation.verbs.session.core import VerbCore
 from groundstation.verbs.session.doctor_session import DoctorSession
-from groundstation.verbs.session.running import END_WITHIN
 from groundstation.verbs.session.session import VerbSession
-from groundstation.verbs.session.station_core import StationCore, StationSeat
+from groundstation.verbs.session.station_seat import StationSeat
 
 log = logging.getLogger(__name__)
 
@@ -98,19 +98,7 @@ class ShellVerb:
         )
         session.flush = seat.flush
         may_prove = (lambda now: True) if self._follows else None  # the station sees to that no other one does
-        seat.join()
-        verb = asyncio.ensure_future(perform(session, action, options, output, group, may_prove, self._note_vehicle))
-        try:
-            await asyncio.wait((verb, seat.broken), return_when=asyncio.FIRST_COMPLETED)
-            if seat.broken.done():
-                seat.broken.result()
-            return await verb
-        finally:
-            if verb.cancel():
-                await asyncio.wait({verb}, timeout=END_WITHIN)
-                if verb.done() and not verb.cancelled() and (error := verb.exception()):
-                    log.info("%s: %s", self._name, error)  # as of a file that cannot be kept: its shell has ended
-            seat.leave()
+        return await seat.run(perform(session, action, options, output, group, may_prove, self._note_vehicle))
 
     def _build_session(
         self, action: VerbAction, options: argparse.Namespace, output: SentOutput
@@ -119,8 +107,8 @@ class ShellVerb:
         ids, endpoints = station.parts.ids, station.station_info.endpoints
         options.system = ids[0]
 
-        def build_core() -> StationCore:
-            core = StationCore(station, options.vehicle)
+        def build_core() -> VerbCore:
+            core = VerbCore(station, options.vehicle)
             tap = action.tap(options, ids)
             if tap is not None:
                 core.record(tap)

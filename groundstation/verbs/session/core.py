@@ -5,18 +5,19 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 
+from dialects import codec
 from dialects import messages as m
 from dialects.kinds import AUTOPILOT_COMPONENT
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.stall import Standstill
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
-from groundstation.station.operator_core import TICK_PERIOD, OperatorCore
-from groundstation.vehicles.demand.drive_gate import drive_refusal
+from groundstation.station.operator_core import OperatorCore
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.session.contact import VehicleContact
 from link.core import LinkReport, Outgoing, Received
+from link.protocol.log_tap import LogTap
 
 WATCHER = 25
 """MAV_COMP_ID_USER1: of verbs that only look. With the ids of a silent driver, as of the verb before, any command would
@@ -33,12 +34,12 @@ Tap = Callable[[Received, float], None]
 
 
 class VerbCore:
-    """A verb on `station`: that of its own process (OwnCore), or of one that runs (StationCore).
+    """A verb in `station`, where a StationSeat joins it: one that runs, or (`own`) one for this verb alone.
 
     It talks to `wanted`, or to the first vehicle that is heard.
     """
 
-    def __init__(self, station: OperatorCore, wanted: int | str | None) -> None:
+    def __init__(self, station: OperatorCore, wanted: int | str | None, *, own: bool = False) -> None:
         self.station = station
         self.contacts: dict[int, VehicleContact] = {}
         """All vehicles heard, by system id."""
@@ -48,12 +49,10 @@ class VerbCore:
         self.heard: dict[tuple[int, type[m.Message]], float] = {}
         """System id of a vehicle and kind -> when the newest such message arrived that its contact knows; also the
         first ones, before any tap."""
-        self.frames_sent = 0
-        """On links of this program; each address counts."""
         self.taps: list[Tap] = []
         """Called with each message that arrives."""
-        self.has_heard_all = False
-        """The links were heard for longer than this verb runs, by the station that it goes through."""
+        self.has_heard_all = not own
+        """The links were heard for longer than this verb runs, by a station that runs."""
         self.standstill = Standstill()
         """Of this process, while a watchdog stands by."""
         self.outbox: list[m.Message] = []
@@ -63,11 +62,33 @@ class VerbCore:
         self._wanted = wanted
         self._heartbeat = HeartbeatSender(0.0)
         self._waiters: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+        if own:
+            station.fleet.is_meant = self._is_meant
+
+    @classmethod
+    def alone(
+        cls,
+        ids: tuple[int, int],
+        wanted: int | str | None,
+        session: int,
+        endpoints: Sequence[str] = (),
+        now: float = 0.0,
+    ) -> VerbCore:
+        """Return one with an OperatorCore for itself.
+
+        `ids` are our system and component id, `session` is the number of our session.
+        """
+        parts = CoreParts(endpoints, system=ids[0], component=ids[1], session=session, now=now)
+        return cls(OperatorCore(parts), wanted, own=True)
+
+    @property
+    def frames_sent(self) -> int:
+        """Frames sent on the links, as of their newest reports; each address counts."""
+        return sum(report.frames_sent for report in self.reports)
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message, which the station has handled; the HEARTBEAT of a vehicle begins the conversation."""
-        if type(received.message) is m.SetupSigning:
-            received = received._replace(message=m.hide_key(received.message))
+        self.station.services.collect(now)  # what this message has ended
         if is_vehicle(received.message):
             self._heartbeat.greet(received.peer, now)
             self.add_vehicles(now)
@@ -99,6 +120,9 @@ class VerbCore:
 
     def tick(self, now: float) -> None:
         """Send heartbeats, repeat what is overdue."""
+        if self.has_heard_all:  # else a watchdog measures it
+            self.standstill.record_report(now)
+        self.add_vehicles(now)
         demanding = self.chosen is not None and self.chosen.operator.demanding
         self.outbox += [each.message for each in self._heartbeat.tick(now, driving=demanding)]
         if self.chosen is None:
@@ -108,7 +132,8 @@ class VerbCore:
         self._check_waiters()
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Keep the reports of the links."""
+        """Take the vehicles that the station knows, and the reports of its links."""
+        self.add_vehicles(now)
         self.reports = tuple(reports)
 
     def messages_to_send(self) -> list[Outgoing]:
@@ -136,6 +161,16 @@ class VerbCore:
         self._waiters.append((condition, found))
         return found
 
+    def record(self, log_tap: LogTap) -> None:
+        """Have all that the station hears recorded, as frames without signatures. To be called before it joins."""
+
+        def take(received: Received, now: float) -> None:
+            number, place = type(received.message).id, (received.system, received.component)
+            raw = codec.frame(number, codec.encode_payload(received.message), received.sequence, *place)
+            log_tap.record_received([(number, *place, received.sequence, raw)], received.peer.link, now)
+
+        self.taps.append(take)
+
     def _check_waiters(self) -> None:
         for condition, found in self._waiters:
             if not found.done() and condition():
@@ -150,66 +185,9 @@ class VerbCore:
                 self._wanted, system, state.fleet_name
             ):
                 self.chosen = contact
+                if not self.has_heard_all:  # no other vehicle gets its place
+                    self.station.fleet.select(system, now)
                 return
-
-
-class OwnCore(VerbCore):
-    """A core (link/core.py) for the links of this process, with an OperatorCore that no screen uses.
-
-    `ids` are our system and component id, `session` is the number of our session.
-    """
-
-    def __init__(
-        self,
-        ids: tuple[int, int],
-        wanted: int | str | None,
-        session: int,
-        endpoints: Sequence[str] = (),
-        now: float = 0.0,
-    ) -> None:
-        parts = CoreParts(endpoints, system=ids[0], component=ids[1], session=session, now=now)
-        super().__init__(OperatorCore(parts, serves=True), wanted)
-        self.station.fleet.is_meant = self._is_meant
-        self._station_due = now
-
-    def receive(self, received: Received, now: float) -> None:
-        """Handle one message."""
-        self.station.receive(received, now)
-        self.station.services.collect(now)
-        super().receive(received, now)
-
-    def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
-        """Count a frame that has left on a link of this program."""
-        self.frames_sent += 1
-
-    def tick(self, now: float) -> None:
-        """Repeat what is overdue; the station needs all ticks only while something is under way there."""
-        if self.station.rest_period is None or now >= self._station_due:
-            self._station_due = now + TICK_PERIOD
-            self.station.tick(now)
-        super().tick(now)
-
-    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Keep the reports of the links."""
-        self.station.observe(reports, now)
-        super().observe(reports, now)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them; the proof goes before the command that needs it."""
-        return super().messages_to_send() + self.station.messages_to_send()
-
-    def may_send(self, message: m.Message, now: float) -> bool:
-        """Return False for what would move a vehicle of a kind that is not driven; the verb is told why."""
-        why = drive_refusal(message, (contact.state for contact in self.contacts.values()))
-        if why is not None:
-            self.handle_refused(message, why, now)
-        return why is None
-
-    def _choose(self, now: float) -> None:
-        """Choose the vehicle, and select it, so that no other one gets its place."""
-        super()._choose(now)
-        if self.chosen is not None:
-            self.station.fleet.select(self.chosen.state.system, now)
 
     def _is_meant(self, received: Received) -> bool:
         return self._wanted is not None and is_chosen(self._wanted, received.system, received.peer.name)

@@ -13,6 +13,7 @@ from groundstation.intents.vehicle import SelectVehicle
 from groundstation.snapshot import Snapshot
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.operator_core import OperatorCore
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.channel import CompanionChannel
@@ -45,6 +46,15 @@ class DoctorSession:
         self._request = DoctorRequest(station=getattr(options, "driver", 0))
         self.flush: Callable[[], None] = lambda: None
         """Sends the messages of the core."""
+
+    @property
+    def station(self) -> OperatorCore:
+        """The core, which has vehicles of its own."""
+        return self.core
+
+    def driven(self) -> tuple[WatchdogTarget, ...]:
+        """Return nothing: it never drives."""
+        return ()
 
     def do(self, *intents: Intent) -> None:
         """Carry out intents now."""

@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from typing import TYPE_CHECKING
 
 from groundstation.vehicles.state.places import PLACES
-from groundstation.verbs.session.core import OwnCore
+from groundstation.verbs.session.station_seat import END_WITHIN
 from link.core import Core
 from link.endpoint import Side
 from link.links import open_links
@@ -15,13 +15,12 @@ from link.protocol.log_tap import LogTap
 from link.runner import Runner
 
 if TYPE_CHECKING:
+    from groundstation.station.driving.driven import WatchdogTarget
     from groundstation.verbs.session.demand_guard import DemandGuard
     from link.link_signing import LinkSigning
 
 PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
-END_WITHIN = 1.0
-"""s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
 
 
 async def run_over(
@@ -33,20 +32,20 @@ async def run_over(
     signing: LinkSigning | None = None,
     log_tap: LogTap | None = None,
     guard: DemandGuard | None = None,
+    driven: Callable[[], Sequence[WatchdogTarget]] = tuple,
 ) -> int:
     """Open links and run the script with a core; return its exit code. Raises EndpointError, LinkError, VerbError.
 
-    `ids` are our system and component id. A script that is interrupted gets END_WITHIN to end in order, over links
-    that still work.
+    `ids` are our system and component id; `driven` returns what the guard must know. A script that is interrupted gets
+    END_WITHIN to end in order, over links that still work.
     """
     links = open_links(endpoints, system=ids[0], component=ids[1], side=Side.GROUND_STATION, places=PLACES)
     sent = guard.record_sent if guard is not None else None
     runner = Runner(core, links, period=PERIOD, route=False, log_tap=log_tap, sent=sent, signing=signing)
     running = [asyncio.ensure_future(runner.run())]
     await asyncio.sleep(0)  # run() begins
-    if guard is not None and isinstance(core, OwnCore):
-        core.standstill = guard.standstill
-        running.append(asyncio.ensure_future(guard.run(core.driven)))
+    if guard is not None:
+        running.append(asyncio.ensure_future(guard.run(driven)))
     verb = asyncio.ensure_future(script(runner))
     try:
         await asyncio.wait({*running, verb}, return_when=asyncio.FIRST_COMPLETED)

@@ -10,7 +10,9 @@ from itertools import count
 
 from dialects import messages as m
 from dialects.enums import Command
+from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.operator import NEUTRAL_LEAD
+from groundstation.station.operator_core import OperatorCore
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.vehicle_state import VehicleState
@@ -68,6 +70,15 @@ class VerbSession:
         """What becomes of this program when the verb has ended, for a vehicle that moves by itself."""
         self.observe: Callable[[], None] = lambda: None
         """Gets the newest reports of links of its own; those of a station come by themselves."""
+
+    @property
+    def station(self) -> OperatorCore:
+        """The core that has the vehicles: of a station that runs, or of this process."""
+        return self.core.station
+
+    def driven(self) -> tuple[WatchdogTarget, ...]:
+        """Return what the watchdog must know."""
+        return self.core.driven()
 
     @property
     def now(self) -> float:

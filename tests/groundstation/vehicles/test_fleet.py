@@ -7,8 +7,8 @@ from dialects.enums import Autopilot
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle
-from groundstation.verbs.session.core import OwnCore
 from link.core import Peer, Received
+from tests.fakes.lone_verb import LoneVerb
 
 
 def beat(system: int, autopilot: int = Autopilot.GENERIC, kind: int = 10) -> Received:
@@ -117,14 +117,15 @@ def test_a_vehicle_with_our_key_takes_the_place_of_one_without() -> None:
 
 
 def test_a_verb_has_a_place_for_the_vehicle_that_is_meant() -> None:
-    core = OwnCore((254, 25), 200, 1)
+    verb = LoneVerb((254, 25), 200, 1)
+    core = verb.core
     for system in range(1, MAX_VEHICLES + 1):
-        core.receive(beat(system), 1.0)
-    core.receive(beat(200), 2.0)
+        verb.receive(beat(system), 1.0)
+    verb.receive(beat(200), 2.0)
     assert core.chosen is not None
     assert core.chosen.state.system == 200
     assert len(core.contacts) == MAX_VEHICLES
     for system in range(1, MAX_VEHICLES + 1):
-        core.receive(beat(system), 3.0)
-    core.receive(beat(201)._replace(signed=True), 4.0)
+        verb.receive(beat(system), 3.0)
+    verb.receive(beat(201)._replace(signed=True), 4.0)
     assert {200, 201} <= set(core.contacts), "the one that is meant keeps its place"

@@ -13,8 +13,9 @@ from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
 from groundstation.verbs.control.stop_jobs import StopTimes, disarm_job
-from groundstation.verbs.session.core import ALONE_AFTER, OwnCore
+from groundstation.verbs.session.core import ALONE_AFTER
 from link.core import Peer, Received
+from tests.fakes.lone_verb import LoneVerb
 
 PEER = Peer(0, "vehicle")
 GIMBAL, CAMERA, ADSB, COMPANION, ROVER, ANTENNA_TRACKER = 26, 30, 27, 18, 10, 5
@@ -64,66 +65,71 @@ def test_autopilot_replaces_a_script_that_claims_to_be_a_rover() -> None:
 
 
 def test_a_request_to_the_former_component_is_refused() -> None:
-    core = OwnCore((254, 25), None, 1)
-    core.receive(beat(ROVER), 1.0)
-    core.tick(1.01 + ALONE_AFTER)
+    verb = LoneVerb((254, 25), None, 1)
+    core = verb.core
+    verb.receive(beat(ROVER), 1.0)
+    verb.tick(1.01 + ALONE_AFTER)
     contact = core.chosen
     assert contact is not None
     reports: list[RequestReport] = []
     core.station.services.follow(1, reports.append)
     contact.services.commands.send(1, 520, (1.0,), "ask", 2.5)
-    core.receive(autopilot(), 2.6)
+    verb.receive(autopilot(), 2.6)
     [report] = [each for each in reports if each.state.ended]
     assert report.detail == "component 1 is the autopilot, not 191: request it again"
     contact.services.commands.send(2, 520, (1.0,), "ask", 2.7)
-    assert [each.message.target_component for each in core.messages_to_send() if type(each.message) is m.CommandLong][
+    assert [each.message.target_component for each in verb.messages_to_send() if type(each.message) is m.CommandLong][
         -1
     ] == 1
 
 
 def test_a_stop_goes_on_when_the_autopilot_is_heard() -> None:
-    core = OwnCore((254, 25), None, 1)
-    core.receive(beat(ROVER), 1.0)
-    core.tick(1.01 + ALONE_AFTER)
+    verb = LoneVerb((254, 25), None, 1)
+    core = verb.core
+    verb.receive(beat(ROVER), 1.0)
+    verb.tick(1.01 + ALONE_AFTER)
     contact = core.chosen
     assert contact is not None
     contact.services.book.begin(1, "disarm")
     contact.start(disarm_job(1, contact.state, StopTimes(2.5, 2.5, 30.0)), 2.5)
-    core.messages_to_send()
-    core.receive(autopilot(), 2.6)
-    core.tick(4.0)
-    sent = [each.message for each in core.messages_to_send()]
+    verb.messages_to_send()
+    verb.receive(autopilot(), 2.6)
+    verb.tick(4.0)
+    sent = [each.message for each in verb.messages_to_send()]
     assert {each.target_component for each in sent if type(each) is m.CommandLong} == {1}
     assert [report.number for report in contact.services.book.running] == [1]
 
 
 def test_a_verb_waits_for_the_autopilot_behind_a_script() -> None:
-    core = OwnCore((254, 25), None, 1)
-    core.receive(beat(ROVER), 1.0)
-    core.tick(1.0 + ALONE_AFTER - 0.1)
+    verb = LoneVerb((254, 25), None, 1)
+    core = verb.core
+    verb.receive(beat(ROVER), 1.0)
+    verb.tick(1.0 + ALONE_AFTER - 0.1)
     assert core.chosen is None
-    core.receive(autopilot(), 1.0 + ALONE_AFTER - 0.05)
+    verb.receive(autopilot(), 1.0 + ALONE_AFTER - 0.05)
     assert core.chosen is not None
     assert core.chosen.state.armed
 
 
 def test_a_verb_takes_the_second_autopilot_if_there_is_no_first() -> None:
-    core = OwnCore((254, 25), None, 1)
-    core.receive(autopilot(2), 1.0)
+    verb = LoneVerb((254, 25), None, 1)
+    core = verb.core
+    verb.receive(autopilot(2), 1.0)
     assert core.chosen is None
-    core.tick(1.01 + ALONE_AFTER)
+    verb.tick(1.01 + ALONE_AFTER)
     assert core.chosen is not None
     assert core.chosen.state.component == 2
 
 
 def test_what_came_before_a_heartbeat_counts_as_not_heard() -> None:
     """Its contact has not taken it: `status` would not request it, and print that nobody is in control."""
-    core, system = OwnCore((254, 25), None, 1), 1
+    verb, system = LoneVerb((254, 25), None, 1), 1
+    core = verb.core
     control = Received(m.ControlStatus(0, 254, [0] * 10), system, 1, 0, PEER, introduced=True)
-    core.receive(control, 1.0)
-    core.receive(autopilot(), 1.1)
+    verb.receive(control, 1.0)
+    verb.receive(autopilot(), 1.1)
     assert (system, m.ControlStatus) not in core.heard
-    core.receive(control, 1.2)
+    verb.receive(control, 1.2)
     assert core.heard[system, m.ControlStatus] == 1.2
     assert core.contacts[system].state.driver == 254
 

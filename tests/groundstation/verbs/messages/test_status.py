@@ -14,8 +14,8 @@ from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.messages.status import _failsafes, _link_cells, _speed
 from groundstation.verbs.messages.status_changes import ChangePrinter
-from groundstation.verbs.session.core import OwnCore
 from link.core import LinkReport, SourceCount
+from tests.fakes.lone_verb import LoneVerb
 from tests.fakes.services import foreign_vehicle
 from tests.groundstation.vehicles.state.test_vehicle_state import heartbeat, received
 from tests.groundstation.verbs.verb_runs import run_verb
@@ -67,19 +67,21 @@ def test_status_asks_again_a_vehicle_that_refuses_at_first(capsys: Capture) -> N
 
 def test_a_message_before_the_first_heartbeat_does_not_count() -> None:
     """The state of a vehicle begins with its HEARTBEAT: what came before must be requested."""
-    core = OwnCore((254, 190), None, 1)
+    verb = LoneVerb((254, 190), None, 1)
+    core = verb.core
     status = mav.MAVLink_sys_status_message(PREARM, PREARM, PREARM, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0)
     early = received(m.SysStatus(*(getattr(status, name) for name in status.fieldnames)))
-    core.receive(early, 0.0)
+    verb.receive(early, 0.0)
     assert (core.contacts, core.heard) == ({}, {})
-    core.receive(received(heartbeat()), 0.1)
-    core.receive(early, 0.2)
+    verb.receive(received(heartbeat()), 0.1)
+    verb.receive(early, 0.2)
     assert (1, m.SysStatus) in core.heard
 
 
 def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) -> None:
-    core = OwnCore((254, 190), None, 1)
-    core.receive(received(heartbeat(1)), 1.0)
+    verb = LoneVerb((254, 190), None, 1)
+    core = verb.core
+    verb.receive(received(heartbeat(1)), 1.0)
     contact = core.contacts[1]
     printers = [
         ChangePrinter(
@@ -98,10 +100,10 @@ def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) ->
         return [each[10:] for each in out if each[0] != "{"], [json.loads(each) for each in out if each[0] == "{"]
 
     assert printed(1.0)[0] == ["Rover 1: state disarmed"]
-    core.receive(received(heartbeat(1)), 2.0)
+    verb.receive(received(heartbeat(1)), 2.0)
     assert printed(2.0) == ([], [])
-    core.receive(received(m.StatusText(severity=4, text=b"Throttle \x1b[31marmed")), 3.0)
-    core.receive(received(heartbeat(0, base=0x81)), 3.0)
+    verb.receive(received(m.StatusText(severity=4, text=b"Throttle \x1b[31marmed")), 3.0)
+    verb.receive(received(heartbeat(0, base=0x81)), 3.0)
     lines, records = printed(3.0)
     assert lines == ["Rover 1: warning: Throttle \ufffd[31marmed", "Rover 1: state ARMED"]
     assert [(each.get("severity"), each.get("armed")) for each in records] == [("WARNING", None), (None, True)]
@@ -109,13 +111,14 @@ def test_changes_are_printed_once_each_and_texts_before_them(capsys: Capture) ->
 
 
 def test_a_text_that_lost_a_chunk_is_printed_with_a_gap(capsys: Capture) -> None:
-    core = OwnCore((254, 190), None, 1)
-    core.receive(received(heartbeat(1)), 1.0)
+    verb = LoneVerb((254, 190), None, 1)
+    core = verb.core
+    verb.receive(received(heartbeat(1)), 1.0)
     contact = core.contacts[1]
     printer = ChangePrinter(contact, Output("status", as_json=False, quiet=True), lambda now: {}, lambda now: {})
-    core.receive(received(m.StatusText(3, b"PreArm: ".ljust(50, b"b"), 91, 0)), 1.0)
-    core.receive(received(m.StatusText(3, b" end", 91, 2)), 1.0)
-    core.tick(3.5)
+    verb.receive(received(m.StatusText(3, b"PreArm: ".ljust(50, b"b"), 91, 0)), 1.0)
+    verb.receive(received(m.StatusText(3, b" end", 91, 2)), 1.0)
+    verb.tick(3.5)
     printer.print_changes(3.5)
     assert capsys.readouterr().out[10:] == f"Rover 1: error: {'PreArm: '.ljust(50, 'b')} [...] end\n"
     assert contact.state.build_view(3.5).prearm_reason.endswith("[...] end")
@@ -126,19 +129,21 @@ def test_status_names_a_breach_and_a_failsafe_without_a_name(capsys: Capture) ->
         vehicle.telemetry = {1: mav.MAVLink_sys_status_message(FENCE, FENCE, 0, 0, 11800, -1, 73, 0, 0, 0, 0, 0, 0)}
         shown = run_verb(capsys, "status", "-e", vehicle.endpoint)
         assert "failsafe  outside the fence" in shown.out
-    core = OwnCore((254, 190), None, 1)
-    core.receive(received(heartbeat(1)), 1.0)
+    verb = LoneVerb((254, 190), None, 1)
+    core = verb.core
+    verb.receive(received(heartbeat(1)), 1.0)
     contact = core.contacts[1]
-    core.receive(received(heartbeat(status=5)), 1.0)
+    verb.receive(received(heartbeat(status=5)), 1.0)
     assert _failsafes(contact.state.build_view(1.0)) == "not named; HEARTBEAT says CRITICAL"
 
 
 def test_a_speed_of_nothing_has_no_sign() -> None:
-    core = OwnCore((254, 190), None, 1)
-    core.receive(received(heartbeat(1)), 1.0)
+    verb = LoneVerb((254, 190), None, 1)
+    core = verb.core
+    verb.receive(received(heartbeat(1)), 1.0)
     contact = core.contacts[1]
-    core.receive(received(m.Attitude(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), 1.0)
-    core.receive(received(m.LocalPositionNed(0, 0.0, 0.0, 0.0, -0.01, 0.0, 0.0)), 1.0)
+    verb.receive(received(m.Attitude(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), 1.0)
+    verb.receive(received(m.LocalPositionNed(0, 0.0, 0.0, 0.0, -0.01, 0.0, 0.0)), 1.0)
     view = contact.state.build_view(1.0)
     assert view.speed is not None
     assert view.speed < 0

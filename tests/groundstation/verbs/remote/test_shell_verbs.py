@@ -26,7 +26,8 @@ from groundstation.verbs.client.station_choice import StationLink
 from groundstation.verbs.client.verb_client import VerbClient
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.session.station_core import StationCore, StationSeat
+from groundstation.verbs.session.core import VerbCore
+from groundstation.verbs.session.station_seat import StationSeat
 from link.core import Received
 from link.links import open_links
 from link.runner import Runner
@@ -137,10 +138,10 @@ def test_a_verb_gets_no_signing_key_that_is_heard() -> None:
             heard.append(received.message)
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1)
+        core = VerbCore(shells.station, 1)
         seat = StationSeat(shells.station, core, "a shell", shells.flush)
         core.taps.append(tap)
-        seat.join()
+        seat.join(asyncio.get_running_loop().time())
         vehicle.send(m.SetupSigning(255, 190, [7] * 32, 1))
         await shells.see(lambda: bool(heard))
         assert not any(heard[0].secret_key)
@@ -154,10 +155,10 @@ def test_the_verb_of_a_shell_that_stands_still_sends_nothing() -> None:
     silence = [0.0]
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1)
+        core = VerbCore(shells.station, 1)
         station, flush = shells.station, shells.flush
         seat = StationSeat(station, core, "a shell", flush, needs_session=True, silence=lambda now: silence[0])
-        seat.join()
+        seat.join(asyncio.get_running_loop().time())
         await shells.see(lambda: core.chosen is not None)
         silence[0] = STILL_WITHIN + 0.01
         core.outbox.append(ping)
@@ -178,10 +179,10 @@ def test_the_demand_of_a_shell_that_stands_still_ends() -> None:
     silence = [0.0]
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1)
+        core = VerbCore(shells.station, 1)
         station, flush = shells.station, shells.flush
         seat = StationSeat(station, core, "a shell", flush, needs_session=True, silence=lambda now: silence[0])
-        seat.join()
+        seat.join(asyncio.get_running_loop().time())
         await shells.see(lambda: core.chosen is not None)
         core.outbox.append(ahead)
         seat.flush()
@@ -234,9 +235,9 @@ def test_a_mistake_in_a_verb_ends_that_verb_alone() -> None:
         raise RuntimeError("a mistake")
 
     async def use(shells: Shells) -> None:
-        core = StationCore(shells.station, 1)
+        core = VerbCore(shells.station, 1)
         seat = StationSeat(shells.station, core, "a shell", shells.flush)
-        seat.join()
+        seat.join(asyncio.get_running_loop().time())
         core.taps.append(fail)
         with pytest.raises(RuntimeError, match="a mistake"):
             await seat.broken

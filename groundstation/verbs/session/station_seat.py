@@ -1,53 +1,24 @@
-"""The core of a verb that runs in the process of a station, and the seat there of such a core."""
+"""The seat of a verb in a station: one that runs, or that which the verb's own process has for it alone."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+import logging
+from collections.abc import Callable, Coroutine, Sequence
+from functools import cached_property
+from typing import Any
 
-from dialects import codec
 from dialects import messages as m
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station.verbs.running_verbs import Verb
 from groundstation.station_socket.verb_run import STILL_WITHIN
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.session.core import VerbCore
 from link.core import Core, LinkReport, Received, RefusalListener
-from link.protocol.log_tap import LogTap
 
+log = logging.getLogger(__name__)
 
-class StationCore(VerbCore):
-    """The core of a verb over the vehicles of a station, which has heard them. `wanted` as for VerbCore."""
-
-    def __init__(self, station: OperatorCore, wanted: int | str | None) -> None:
-        super().__init__(station, wanted)
-        self.has_heard_all = True
-
-    def receive(self, received: Received, now: float) -> None:
-        """Handle one message, which the station has handled."""
-        self.station.services.collect(now)  # what this message has ended
-        super().receive(received, now)
-
-    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take the vehicles that the station knows, and the reports of its links."""
-        self.add_vehicles(now)
-        super().observe(reports, now)
-
-    def tick(self, now: float) -> None:
-        """Send heartbeats, repeat what is overdue."""
-        self.standstill.record_report(now)
-        self.add_vehicles(now)
-        super().tick(now)
-
-    def record(self, log_tap: LogTap) -> None:
-        """Have all that the station hears recorded, as frames without signatures. To be called before it joins."""
-
-        def take(received: Received, now: float) -> None:
-            number, place = type(received.message).id, (received.system, received.component)
-            raw = codec.frame(number, codec.encode_payload(received.message), received.sequence, *place)
-            log_tap.record_received([(number, *place, received.sequence, raw)], received.peer.link, now)
-
-        self.taps.append(take)
+END_WITHIN = 1.0
+"""s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
 
 
 class StationSeat:
@@ -66,19 +37,45 @@ class StationSeat:
         needs_session: bool = False,
         follows: bool = False,
         silence: Callable[[float], float] = lambda now: 0.0,
+        alone: bool = False,
     ) -> None:
-        """`flush` sends what the station has queued; `silence`: for how many s the shell of the verb was silent."""
-        self.broken: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        """Has what ends the verb: a mistake in it, or a demand that is refused."""
+        """`flush` sends what the station has queued; `silence`: for how many s the shell of the verb was silent.
+
+        `alone`: the station is that of the verb's own process.
+        """
         self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
-        self._verb = Verb(name, needs_session, self, follows=follows)
+        self._verb = Verb(name, needs_session, self, follows=follows, alone=alone)
 
-    def join(self) -> None:
+    @cached_property
+    def broken(self) -> asyncio.Future[None]:
+        """Has what ends the verb: a mistake in it, or a demand that is refused."""
+        return asyncio.get_running_loop().create_future()
+
+    def join(self, now: float) -> None:
         """Begin: take what the station knows."""
-        self._verbs.join(self._verb, self._now)
-        self.tick(self._now)
+        self._verbs.join(self._verb, now)
+        self.tick(now)
         self._flush()
+
+    async def run(self, work: Coroutine[Any, Any, int]) -> int:
+        """Join, do the work of the verb, and leave; return its exit code. Raises what ends it.
+
+        A verb that is cancelled, or whose demand is refused, gets END_WITHIN to end in order.
+        """
+        self.join(self._now)
+        verb = asyncio.ensure_future(work)
+        try:
+            await asyncio.wait((verb, self.broken), return_when=asyncio.FIRST_COMPLETED)
+            if self.broken.done():
+                self.broken.result()
+            return await verb
+        finally:
+            if verb.cancel():
+                await asyncio.wait({verb}, timeout=END_WITHIN)
+                if verb.done() and not verb.cancelled() and (error := verb.exception()):
+                    log.info("%s: %s", self._verb.name, error)  # as of a file that cannot be kept: its shell has ended
+            self.leave()
 
     def leave(self) -> None:
         """End: send what is left."""
@@ -90,8 +87,15 @@ class StationSeat:
 
     def flush(self) -> None:
         """Send the messages of the verb now."""
-        self._pass_on(self._now)
+        self.pass_on(self._now)
         self._flush()
+
+    def pass_on(self, now: float) -> None:
+        """Give the messages of the verb to the station, which sends them; later if the shell stands still."""
+        if self._silence(now) > STILL_WITHIN:
+            return
+        for outgoing in self._core.messages_to_send():
+            self._verbs.handle(self._verb, outgoing.message, now)
 
     @property
     def _now(self) -> float:
@@ -102,7 +106,7 @@ class StationSeat:
     def deliver(self, received: Received, now: float) -> None:
         """Handle a message that the station has handled."""
         self._guard(lambda: self._core.receive(received, now))
-        self._pass_on(now)
+        self.pass_on(now)
 
     def tick(self, now: float) -> None:
         """Tick, unless the shell stands still."""
@@ -110,7 +114,7 @@ class StationSeat:
             return
         self._verbs.hear(self._verb, now - self._silence(now))
         self._guard(lambda: self._core.tick(now))
-        self._pass_on(now)
+        self.pass_on(now)
 
     def report(self, reports: Sequence[LinkReport], now: float) -> None:
         """Handle the state of the links."""
@@ -127,13 +131,6 @@ class StationSeat:
         self._break(VerbError(ExitCode.NOT_IN_CONTROL, line))
 
     # ---- own ----
-
-    def _pass_on(self, now: float) -> None:
-        """Give the messages of the verb to the station, which sends them; later if the shell stands still."""
-        if self._silence(now) > STILL_WITHIN:
-            return
-        for outgoing in self._core.messages_to_send():
-            self._verbs.handle(self._verb, outgoing.message, now)
 
     def _guard(self, step: Callable[[], object]) -> None:
         try:
