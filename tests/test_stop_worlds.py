@@ -18,8 +18,9 @@ from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.vehicles.demand.blind_stop import BlindStop
+from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.demand.stop_commands import StopKind
-from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
+from groundstation.verbs.control.stop_jobs import EmergencyJob
 from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard, SigningPolicy
 from link.signing.clock import to_stamp

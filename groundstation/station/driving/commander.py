@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-import msgspec
-
 from dialects.enums import Command, Result, Severity
 from dialects.kinds import MANUAL
 from dialects.messages import Message
@@ -17,17 +13,9 @@ from groundstation.station.driving.claims import Claims
 from groundstation.station.driving.command_results import CommandResults
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.station.driving.stop_questions import FALLS, StopQuestions
-from groundstation.vehicles.demand.stop_commands import (
-    DANGEROUS,
-    DISARM,
-    StopCommand,
-    StopKind,
-    hold_command,
-    send_stop,
-    shows_hold,
-)
+from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, hold_stop
+from groundstation.vehicles.demand.stop_commands import DANGEROUS, DISARM, StopKind
 from groundstation.vehicles.state.message_log import MessageLog
-from groundstation.vehicles.state.senders import ReportingSender
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
@@ -35,21 +23,8 @@ from link.services.command.client import CommandClient, CommandOutcome
 QUERY_COMMANDS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
 """Commands that the station sends on its own: their results are not logged."""
 
-STOP_RETRY, STOP_TIMEOUT = 0.5, 6.0
-"""s after which disarm and HOLD are repeated while a heartbeat reports that it is not so, as the emergency stop is, and
-after which that is reported as a failure."""
-
-
-class _Stop(msgspec.Struct):
-    """A disarm or HOLD that is repeated."""
-
-    vehicle: VehicleState
-    label: str
-    stop: StopCommand
-    is_done: Callable[[ReportingSender], bool]
-    due: float
-    until: float
-    tries: int = 1
+STOP_TIMEOUT = 6.0
+"""s for which disarm and HOLD are repeated; then what the heartbeat reports is shown as a failure."""
 
 
 class Commander:
@@ -60,8 +35,8 @@ class Commander:
         self._results = CommandResults(log)
         self._client = CommandClient(system, component)
         self._arming: ArmSequence | None = None
-        self._stops: dict[tuple[int, int], _Stop] = {}
-        """System id and command -> what is repeated."""
+        self._stops: dict[tuple[int, int], RepeatedStop] = {}
+        """By system id and command."""
         self._locks: dict[int, EmergencyLock] = {}
         self._claims = Claims()
         self._stop_questions = StopQuestions()
@@ -96,7 +71,7 @@ class Commander:
     def disarm(self, vehicle: VehicleState, now: float) -> None:
         """Disarm, and repeat until the heartbeat agrees: the vehicle may still act on an earlier arm command."""
         self._arming = None
-        self._stop(vehicle, "disarm", DISARM, lambda sender: not sender.armed, now)
+        self._begin_stop(disarm_stop(vehicle, StopTimes(now, now, now + STOP_TIMEOUT)), now)
 
     def release_control(self, vehicle: VehicleState, now: float, *, station: int = 0) -> None:
         """Release control: at once as far as we are concerned, and with a command for a vehicle that manages it.
@@ -111,10 +86,10 @@ class Commander:
 
         HOLD is repeated until each sender of its id reports it, or another mode is chosen.
         """
-        hold = hold_command(vehicle) if name == HOLD else None
+        hold = hold_stop(vehicle, StopTimes(now, now, now + STOP_TIMEOUT)) if name == HOLD else None
         self._stops.pop((vehicle.system, Command.DO_SET_MODE), None)
         if hold is not None:
-            self._stop(vehicle, f"mode {HOLD}", hold, lambda sender: shows_hold(vehicle, sender), now)
+            self._begin_stop(hold, now)
         if hold is not None or send_mode(self._client, vehicle, name, now):
             self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {name}")
             return
@@ -245,8 +220,9 @@ class Commander:
         if self._arming is not None:
             self._arming.tick(self._client, now)
             self._end_arming(self._arming, now)
-        for stop in list(self._stops.values()):
-            self._retry(stop, now)
+        for stop in self._stops.values():
+            stop.tick(self._client, now)
+        self._end_stops(now)
         self._client.tick(now)
         self._handle_outcomes(now)
 
@@ -262,31 +238,22 @@ class Commander:
         self._vehicles[system] = vehicle
         self._client.send(command, *params, target_system=system, target_component=component, now=now)
 
-    def _stop(
-        self,
-        vehicle: VehicleState,
-        label: str,
-        stop: StopCommand,
-        is_done: Callable[[ReportingSender], bool],
-        now: float,
-    ) -> None:
-        key = vehicle.system, stop.command
-        self._stops[key] = _Stop(vehicle, label, stop, is_done, now + STOP_RETRY, now + STOP_TIMEOUT)
-        self._vehicles[vehicle.system] = vehicle
-        send_stop(self._client, vehicle, stop, now)
+    def _begin_stop(self, stop: RepeatedStop, now: float) -> None:
+        self._stops[stop.vehicle.system, stop.stop.command] = stop
+        self._vehicles[stop.vehicle.system] = stop.vehicle
+        stop.tick(self._client, now)
 
-    def _retry(self, stop: _Stop, now: float) -> None:
-        vehicle, command = stop.vehicle, stop.stop.command
-        doubt = vehicle.senders.find_doubt(now, stop.is_done)
-        if not doubt:
-            del self._stops[vehicle.system, command]
-        elif now >= stop.until:
-            del self._stops[vehicle.system, command]
-            self._results.add_refusal(vehicle.system, f"{stop.label}: {vehicle.name}: {doubt}", now)
-        elif now >= stop.due and not self.is_pending(command, vehicle):
-            stop.due = now + STOP_RETRY
-            send_stop(self._client, vehicle, stop.stop, now, attempt=stop.tries)
-            stop.tries += 1
+    def _end_stops(self, now: float) -> None:
+        """Forget the stops that have ended, and report those without effect; a refusal is reported by its answer."""
+        for (system, command), stop in list(self._stops.items()):
+            if stop.end is None:
+                continue
+            del self._stops[system, command]
+            label = "disarm" if command == DISARM.command else f"mode {HOLD}"
+            if stop.end is StopEnd.NOT_DONE:
+                self._results.add_refusal(system, f"{label}: {stop.vehicle.name}: {stop.find_doubt(now)}", now)
+            elif stop.end is StopEnd.NO_ANSWER:
+                self._results.add_refusal(system, f"{label}: no answer", now)
 
     def _end_arming(self, arming: ArmSequence, now: float) -> None:
         if arming.step is ArmStep.DONE and self._arming is arming:
@@ -315,8 +282,10 @@ class Commander:
         if self._arming is not None and self._arming.vehicle.system == system:
             self._arming.handle_outcome(outcome, self._client, now)
             self._end_arming(self._arming, now)
-        if outcome.result is not Result.ACCEPTED:
-            self._stops.pop((system, outcome.command), None)  # refused or no answer; that has been logged
+        stop = self._stops.get((system, outcome.command))
+        if stop is not None:
+            stop.handle_outcome(outcome, now)
+            self._end_stops(now)
 
 
 def _grants_control(outcome: CommandOutcome) -> bool:

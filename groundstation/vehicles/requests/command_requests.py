@@ -79,7 +79,7 @@ class CommandRequests:
         for command, each in list(self._numbers.items()):
             if each == number:
                 del self._numbers[command]
-                self._client.cancel(command)
+                self._client.cancel(command, self.target[0])
                 self._book.cancel(number)
 
     def refuse(self, message: m.Message, why: str) -> None:

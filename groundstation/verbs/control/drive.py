@@ -22,6 +22,7 @@ from groundstation.intents.base import Intent
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.vehicle import Disarm, SetMode
 from groundstation.station.driving.emergency import EmergencyLock
+from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.arguments import LONGEST_HOLD, finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -38,7 +39,7 @@ from groundstation.verbs.control.driving import (
     need_control,
 )
 from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, parse_script
-from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes
+from groundstation.verbs.control.stop_jobs import EmergencyJob
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import finish, need_driven
 from groundstation.verbs.session.session import VerbSession

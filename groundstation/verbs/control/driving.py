@@ -10,10 +10,11 @@ from dialects.kinds import MANUAL
 from dialects.modes import Mode
 from groundstation.station.driving.operator import NEUTRAL_LEAD
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
+from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.control.control import ask_for_control
-from groundstation.verbs.control.stop_jobs import StopTimes, disarm_job
+from groundstation.verbs.control.stop_jobs import disarm_job
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import need_driven
 from groundstation.verbs.session.session import TOLD_WITHIN, VerbSession

@@ -15,6 +15,7 @@ from dialects.enums import Command
 from groundstation.station.driving.arming import CONFIRM_WITHIN
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.vehicles.demand.blind_stop import BlindStop
+from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, STOP_VERBS, StopKind
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
@@ -22,7 +23,7 @@ from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.control.stop_jobs import EmergencyJob, StopTimes, disarm_job, hold_job
+from groundstation.verbs.control.stop_jobs import EmergencyJob, disarm_job, hold_job
 from groundstation.verbs.session.contact import Job
 from groundstation.verbs.session.core import ALONE_AFTER
 from groundstation.verbs.session.reports import finish

@@ -9,10 +9,10 @@ from dialects.mode_tables import HOLD
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.handover import ANSWER_WITHIN
+from groundstation.vehicles.demand.repeated_stop import StopEvidence, find_hold_doubt
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.verbs.collected_output import CollectedOutput
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.control.stop_jobs import StopEvidence, find_hold_doubt
 from groundstation.verbs.line.session import LineSession
 
 STOPPED_WITHIN = 5.0

@@ -109,9 +109,9 @@ class CommandClient:
         self._waiting[target_system, int(command)] = waiting
         self._transmit(waiting, now)
 
-    def cancel(self, command: int) -> None:
-        """Stop repeating a command to any target."""
-        self._waiting = {key: each for key, each in self._waiting.items() if each.command != command}
+    def cancel(self, command: int, target_system: int) -> None:
+        """Stop repeating a command to a target."""
+        self._waiting.pop((target_system, int(command)), None)
 
     @property
     def busy(self) -> bool:

@@ -8,11 +8,12 @@ from dialects import messages as m
 from dialects.enums import Autopilot
 from dialects.kinds import NO_VEHICLES
 from groundstation.connect.heard import HeardVehicles
+from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.requests.requests import RequestReport
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
-from groundstation.verbs.control.stop_jobs import StopTimes, disarm_job
+from groundstation.verbs.control.stop_jobs import disarm_job
 from groundstation.verbs.session.core import ALONE_AFTER
 from link.core import Peer, Received
 from tests.fakes.lone_verb import LoneVerb

@@ -81,7 +81,7 @@ def test_a_newer_wish_replaces_the_older_of_its_kind() -> None:
     sent(client)
     client.tick(0.1 + REPEAT_AFTER)
     assert [each.param1 for each in sent(client)] == [0.0]
-    client.cancel(400)
+    client.cancel(400, 1)
     client.tick(10.0)
     assert sent(client) == []
 
