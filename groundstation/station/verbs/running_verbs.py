@@ -72,7 +72,7 @@ class Verb(msgspec.Struct, eq=False):
     follows: bool = False
     """It keeps the session going that a verb has used just before."""
     alone: bool = False
-    """The station is that of its own process, which its watchdog watches: nobody else drives there."""
+    """The station is that of its own process: nobody else drives there, and its watchdog ends what it demands."""
     heard_at: float = 0.0
     demands: dict[tuple[type[m.Message], int], m.Message] = msgspec.field(default_factory=dict)
     """Kind and vehicle -> the newest demand that moves."""
@@ -181,8 +181,10 @@ class RunningVerbs:
 
     def handle(self, verb: Verb, message: m.Message, now: float) -> None:
         """Send a message of a verb, if it may be sent."""
-        if isinstance(message, m.Heartbeat):
-            passes = verb.alone or (not self._operator.live and (self._keeps(verb) or not self._any_armed))
+        if verb.alone:
+            passes = True
+        elif isinstance(message, m.Heartbeat):
+            passes = not self._operator.live and (self._keeps(verb) or not self._any_armed)
         elif isinstance(message, m.RoverOperatorPresence) or type(message) in DEMANDS:
             passes = self._keeps(verb) and self._may_demand(verb, message, now)
         else:
@@ -285,7 +287,7 @@ class RunningVerbs:
 
     def _check_silence(self, verb: Verb, now: float) -> None:
         silence = now - verb.heard_at
-        if verb.demands and silence > ALIVE_WITHIN and not verb.alone:
+        if verb.demands and silence > ALIVE_WITHIN:
             self._refuse(verb, f"{verb.name} stood still for {silence:.1f} s: its demand has ended", now)
 
     def _refuse(self, verb: Verb, reason: str, now: float) -> None:

@@ -34,6 +34,30 @@ def test_disarm_that_never_takes_effect_is_reported() -> None:
     assert cockpit.view.refusal == "disarm: Rover 1: its heartbeat reports ARMED in MANUAL"
 
 
+def test_disarm_is_repeated_where_answers_are_lost_or_for_the_moment() -> None:
+    cockpit = armed_cockpit()
+    cockpit.vehicle.answers[ARM] = Result.TEMPORARILY_REJECTED
+    cockpit.do(Disarm())
+    cockpit.run(2.0)
+    cockpit.vehicle.silent_on.add(ARM)
+    cockpit.run(3.0)
+    assert cockpit.view.armed
+    cockpit.vehicle.silent_on.clear()
+    cockpit.vehicle.answers.clear()
+    cockpit.run(2.0)
+    assert not cockpit.view.armed
+
+
+def test_a_stop_without_an_answer_is_reported_in_the_end() -> None:
+    cockpit = armed_cockpit()
+    cockpit.vehicle.silent_on.add(ARM)
+    cockpit.do(Disarm())
+    cockpit.run(5.5)
+    assert cockpit.view.refusal is None
+    cockpit.run(1.0)
+    assert cockpit.view.refusal == "disarm: no answer"
+
+
 def test_mode_by_name() -> None:
     cockpit = armed_cockpit()
     cockpit.do(SetMode(mode="HOLD"))
