@@ -34,7 +34,7 @@ def test_disarm_that_never_takes_effect_is_reported() -> None:
     assert cockpit.view.refusal == "disarm: Rover 1: its heartbeat reports ARMED in MANUAL"
 
 
-def test_disarm_is_repeated_where_answers_are_lost_or_for_the_moment() -> None:
+def test_disarm_is_repeated_past_rejections_and_silence() -> None:
     cockpit = armed_cockpit()
     cockpit.vehicle.answers[ARM] = Result.TEMPORARILY_REJECTED
     cockpit.do(Disarm())
