@@ -164,7 +164,7 @@ class WatchdogProcess:
                 packet = b""
             self._screen_gone = not packet
             with contextlib.suppress(msgspec.DecodeError):
-                if packet and any(isinstance(each, Quit) for each in decode_from_screen(packet).intents):
+                if any(isinstance(each, Quit) for each in decode_from_screen(packet).intents):
                     self._screen_has_quit = True
 
 

@@ -186,6 +186,7 @@ def test_a_runtime_folder_may_be_deeper_than_a_socket_address(
     monkeypatch.setattr("groundstation.station_socket.folder.OPEN_FOLDERS", folders)
     deep = tmp_path / ("d" * LONGEST_ADDRESS)
     deep.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(deep))
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(deep))
 
     async def listen() -> None:

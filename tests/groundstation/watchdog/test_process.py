@@ -401,3 +401,15 @@ def test_the_forked_process_ends_with_its_station(loop: Loop) -> None:
         station.send(encode_report(StationReport()))
     assert os.waitpid(process, 0)[1] == 0
     assert decode_from_station(loop.ends[1].recv(65536)) == StationOutage(ENDED + "nothing is sent", True)
+
+
+def test_the_forked_process_does_not_keep_the_stations_pipe_open(loop: Loop) -> None:
+    """The screen sees the end of a station at once, though its watchdog goes on."""
+    screen, pipe = open_pair()
+    process, station = fork_watchdog(loop.screen, None, of_station=pipe)
+    with screen, station:
+        pipe.close()
+        screen.settimeout(20.0)
+        assert screen.recv(10) == b""
+        assert os.waitpid(process, os.WNOHANG) == (0, 0)
+    assert os.waitpid(process, 0)[1] == 0
