@@ -11,7 +11,6 @@ import contextlib
 import errno
 import os
 import socket
-import struct
 import sys
 import time
 from collections.abc import Iterable
@@ -34,13 +33,14 @@ BUFFER = 1 << 20
 LARGEST = 1 << 20
 """Bytes of the largest packet of a stream; a longer one shows that the two ends do not agree."""
 
-_LENGTH = struct.Struct("!I")
-_UCRED = struct.Struct("3i")
-"""`struct ucred` of Linux: process, user, group."""
+_LENGTH = 4
+"""Bytes of the length before each packet of a stream, the highest first."""
+_UCRED = 12
+"""Bytes of `struct ucred` of Linux: process, user, group."""
 SOL_LOCAL, LOCAL_PEERCRED, LOCAL_PEERPID = 0, 1, 2
 """Level and options of macOS's <sys/un.h>; Python does not name them all."""
-_XUCRED = struct.Struct("IIh2x16I")
-"""`struct xucred` of macOS's <sys/ucred.h>: version, user, number of groups, groups."""
+_XUCRED = 76
+"""Bytes of `struct xucred` of macOS's <sys/ucred.h>: version, user, number of groups, 16 groups."""
 
 
 class PacketStream(socket.socket):
@@ -55,8 +55,8 @@ class PacketStream(socket.socket):
         """Open a socket, or take over a descriptor. Raises OSError."""
         super().__init__(socket.AF_UNIX, socket.SOCK_STREAM, 0, fileno)
         self._unsent = b""
-        self._packet = bytearray(_LENGTH.size)
-        self._have, self._wanted = 0, _LENGTH.size
+        self._packet = bytearray(_LENGTH)
+        self._have, self._wanted = 0, _LENGTH
         self._carried: list[tuple[int, int, bytes]] = []
         """Descriptors that have come with the packet so far."""
         for option in (socket.SO_SNDBUF, socket.SO_RCVBUF):
@@ -85,7 +85,7 @@ class PacketStream(socket.socket):
         if len(packet) > LARGEST:
             raise OSError(errno.EMSGSIZE, os.strerror(errno.EMSGSIZE))
         self._send_rest()
-        whole = _LENGTH.pack(len(packet)) + packet
+        whole = len(packet).to_bytes(_LENGTH, "big") + packet
         self._unsent = whole[super().sendmsg([whole], ancdata, flags) :]
         if self.gettimeout() != 0.0:
             self._send_rest()
@@ -121,12 +121,12 @@ class PacketStream(socket.socket):
         finally:
             if deadline is not None:
                 self.settimeout(timeout)
-        packet, carried = bytes(self._packet[_LENGTH.size : self._wanted][:bufsize]), self._carried
+        packet, carried = bytes(self._packet[_LENGTH : self._wanted][:bufsize]), self._carried
         self._begin_packet()
         return packet, carried, 0, None
 
     def _begin_packet(self) -> None:
-        self._have, self._wanted, self._carried = 0, _LENGTH.size, []
+        self._have, self._wanted, self._carried = 0, _LENGTH, []
 
     def _receive_some(self, ancillary: int, flags: int) -> int:
         """Receive more of the packet; return how much. Raises OSError."""
@@ -136,8 +136,8 @@ class PacketStream(socket.socket):
             size, carried, _, _ = super().recvmsg_into([room], ancillary, flags)
         self._carried += carried
         self._have += size
-        if self._have == self._wanted == _LENGTH.size:
-            (length,) = _LENGTH.unpack_from(self._packet)
+        if self._have == self._wanted == _LENGTH:
+            length = int.from_bytes(self._packet[:_LENGTH], "big")
             if length > LARGEST:
                 raise OSError(errno.EBADMSG, os.strerror(errno.EBADMSG))
             self._wanted += length
@@ -170,9 +170,14 @@ def take_over(descriptor: int) -> socket.socket:
 def peer_credentials(sock: socket.socket) -> tuple[int, int]:
     """Return the process id and the user id of the other end, as the kernel knows them. Raises OSError."""
     if hasattr(socket, "SO_PEERCRED"):
-        pid, user, _ = _UCRED.unpack(sock.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _UCRED.size))
+        pid, user, _ = _read_integers(sock.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _UCRED))
         return pid, user
-    version, user, *_ = _XUCRED.unpack(sock.getsockopt(SOL_LOCAL, LOCAL_PEERCRED, _XUCRED.size))
+    version, user, *_ = _read_integers(sock.getsockopt(SOL_LOCAL, LOCAL_PEERCRED, _XUCRED))
     if version != 0:  # XUCRED_VERSION
         raise OSError(errno.EPROTO, "the kernel describes the other end in an unknown way")
     return sock.getsockopt(SOL_LOCAL, LOCAL_PEERPID), user
+
+
+def _read_integers(raw: bytes) -> list[int]:
+    """Return the 32-bit numbers of a structure of the kernel. Without struct, which takes 0.5 ms of each start."""
+    return [int.from_bytes(raw[at : at + 4], sys.byteorder) for at in range(0, len(raw), 4)]
