@@ -63,13 +63,14 @@ class Matches:
     def _set(self, node: DOMNode, rules: RulesMap, animate: bool) -> None:
         """Set rules of `_found`: only those that change, and all at once on a new node, which nothing shows yet."""
         base = node.styles.base
-        if animate:
+        if animate and rules.get("transitions"):
             self._replace(node, rules, animate=True)
-        elif base._rules or node._is_mounted:
-            for key in base._rules.keys() | rules.keys():
-                if base._rules.get(key) is not rules.get(key):
-                    setattr(base, key, rules.get(key))
-            node.notify_style_update()
+        elif animate or base._rules or node._is_mounted:
+            changed = [key for key in base._rules.keys() | rules.keys() if base._rules.get(key) is not rules.get(key)]
+            for key in changed:
+                setattr(base, key, rules.get(key))
+            if changed or not animate:
+                node.notify_style_update()
         elif id(rules) in self._styles:
             base.merge_rules(self._styles[id(rules)])
             node.notify_style_update()
