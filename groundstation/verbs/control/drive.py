@@ -32,8 +32,8 @@ from groundstation.verbs.control.arm import arm
 from groundstation.verbs.control.driving import (
     DISARM_WITHIN,
     begin_driving,
+    check_driving,
     disarm_vehicle,
-    drive_fault,
     leave,
     need_accepted,
     need_control,
@@ -143,29 +143,12 @@ async def _drive(session: VerbSession, course: KeyScript | SteadyDemand) -> floa
     operator.demand = demand
     while not course.finished:
         await asyncio.sleep(max(0.0, min(LOOK_PERIOD, course.due - session.now)))
-        _check(session, course.axes(session.now), began)
+        check_driving(session, course.axes(session.now), began)
         while (intents := course.play(session.vehicle.armed, session.now)) is not None:
             operator.record_input(session.now)
             for intent in intents:
                 await _carry_out(session, intent)
     return session.now - began
-
-
-def _check(session: VerbSession, axes: Axes, began: float) -> None:
-    """Raise VerbError if this program stood still, or if a demand is not neutral and the vehicle does not take it."""
-    state, now = session.vehicle, session.now
-    stood = session.core.standstill.last(now)
-    if stood is not None:
-        raise VerbError(ExitCode.BROKEN, f"this program stood still for {stood:.1f} s: the demand has ended")
-    if axes.neutral:
-        return
-    after = f"after {now - began:.1f} s"
-    if not state.monitor.is_alive(now):
-        raise VerbError(ExitCode.NO_ANSWER, f"{state.name}: link lost {after}; neutral")
-    need_control(session)
-    fault = drive_fault(session)
-    if fault is not None:
-        raise VerbError(ExitCode.REFUSED, f"{state.name} {fault} {after}; neutral")
 
 
 async def _carry_out(session: VerbSession, intent: Intent) -> None:

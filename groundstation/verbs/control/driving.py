@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from dialects.axes import NEUTRAL
+from dialects.axes import NEUTRAL, Axes
 from dialects.enums import Autopilot
 from dialects.kinds import MANUAL
 from dialects.modes import Mode
@@ -75,6 +75,26 @@ def drive_fault(session: VerbSession) -> str | None:
     if not state.armed:
         return "is disarmed"
     return None if state.mode in state.model.keys else f"takes no demands in {state.mode}"
+
+
+def check_driving(session: VerbSession, axes: Axes, began: float) -> None:
+    """Raise VerbError if this program stood still, or if a demand is not neutral and the vehicle does not take it.
+
+    `began`: when it began to drive, for the text.
+    """
+    state, now = session.vehicle, session.now
+    stood = session.core.standstill.last(now)
+    if stood is not None:
+        raise VerbError(ExitCode.BROKEN, f"this program stood still for {stood:.1f} s: the demand has ended")
+    if axes.neutral:
+        return
+    after = f"after {now - began:.1f} s"
+    if not state.monitor.is_alive(now):
+        raise VerbError(ExitCode.NO_ANSWER, f"{state.name}: link lost {after}; neutral")
+    need_control(session)
+    fault = drive_fault(session)
+    if fault is not None:
+        raise VerbError(ExitCode.REFUSED, f"{state.name} {fault} {after}; neutral")
 
 
 def need_accepted(report: RequestReport, session: VerbSession) -> None:

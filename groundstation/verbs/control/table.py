@@ -13,7 +13,7 @@ from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.verb import Example, Group, Stage, Verb
 
 if TYPE_CHECKING:
-    from groundstation.verbs.control import arm, control, drive, mode, motor, reboot, stops
+    from groundstation.verbs.control import arm, control, drive, mode, motor, reboot, stops, turn
 else:
     arm = LazyModule("control.arm")
     control = LazyModule("control.control")
@@ -22,6 +22,7 @@ else:
     motor = LazyModule("control.motor")
     reboot = LazyModule("control.reboot")
     stops = LazyModule("control.stops")
+    turn = LazyModule("control.turn")
 
 
 VERBS: dict[str, Verb] = {
@@ -75,6 +76,12 @@ VERBS: dict[str, Verb] = {
          ("--arm", {"action": "store_true", "help": "arm first, and disarm at the end"}),
          ("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what --arm has armed"})),
         needs_session=True, prepare=drive.prepare, guarded=lambda _: True)}),
+    "turn": Verb(Group.DRIVE, (
+        Example("mavhelm turn 90", "on the spot, degrees to the right, then neutral. It must be armed", Stage.ARMED),
+    ), {ONLY: VerbAction("turn on the spot by an angle, as the vehicle's heading reports it, then neutral", turn.run,
+        (("degrees", {"type": turn.angle, "metavar": "DEGREES", "help": "positive to the right, up to 360"}),
+         ("--steering", {"type": turn.rate, "default": 40.0, "metavar": "PERCENT", "help": "demand (default: 40)"})),
+        needs_session=True, guarded=lambda _: True)}),
     "motor": Verb(Group.VEHICLE, (
         Example("mavhelm motor 1 12 --for 1", "turn motor 1 at 12 % for 1 s, wheels off the ground"),
     ), {ONLY: VerbAction("turn one motor of a disarmed vehicle, wheels off the ground", motor.run,

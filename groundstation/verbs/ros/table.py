@@ -1,4 +1,4 @@
-"""The table of the verbs in this room.
+"""The table of the verbs in this room, and of `mavhelm api`.
 
 To add a verb, write its function in a module beside this one and add its row to VERBS.
 """
@@ -18,7 +18,14 @@ else:
     ros2 = LazyModule("ros.ros2")
 
 
+api = LazyModule("api.api")  # a room above this one
+
 VERBS: dict[str, Verb] = {
+    "api": Verb(Group.LINKS, (
+        Example("mavhelm api", "calls as JSON lines on stdin; docs/python.md", Stage.OTHER_VEHICLE),
+    ), {ONLY: VerbAction("be driven by a program: calls on stdin, answers on stdout, one JSON object a line", api.run,
+        (("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what the program has armed"}),),
+        needs_session=True, guarded=lambda _: True, companion=api.serve)}),
     "ros1": Verb(Group.LINKS, (
         Example("mavhelm ros1 --arm", "a node of ROS 1: /command and /cmd_vel drive; docs/ros.md", Stage.MOVING),
     ), {ONLY: VerbAction("be a node of ROS 1: /command and /cmd_vel drive, telemetry is published; until Ctrl-C",

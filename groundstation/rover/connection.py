@@ -1,0 +1,277 @@
+"""Connection: the process `mavhelm api` of one program, its calls and its newest state."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import sys
+from collections import deque
+from collections.abc import AsyncGenerator, Callable, Sequence
+from itertools import count
+from typing import Any
+from weakref import WeakSet
+
+import msgspec
+
+from groundstation.rover.errors import BY_CODE, Disconnected, LinkLost, NoAnswer, RoverError
+from groundstation.rover.protocol import (
+    WAITING_PERIOD,
+    Call,
+    Cancel,
+    CurrentState,
+    Ended,
+    Note,
+    Ready,
+    Record,
+    Text,
+    Waiting,
+    decode_answer,
+    encode,
+)
+from groundstation.rover.telemetry import State
+
+MAX_ANSWER = 16 << 20
+"""Bytes of one line of `mavhelm api`."""
+END_WITHIN = 3.0
+"""s for it to send neutral, to disarm and to end, before it is killed."""
+TEXTS_KEPT = 100
+NOTES_KEPT = 20
+
+
+_OPEN: WeakSet[Connection] = WeakSet()
+
+
+def _close_in_fork() -> None:
+    for each in list(_OPEN):
+        each.close_in_fork()
+
+
+os.register_at_fork(after_in_child=_close_in_fork)
+
+
+class Outcome(msgspec.Struct, frozen=True):
+    """How a call has ended."""
+
+    fields: dict[str, Any]
+    """What the verb prints last with --json."""
+    records: tuple[dict[str, Any], ...]
+    """What it prints before, one object each."""
+    notes: tuple[str, ...]
+    """What it says to a person."""
+
+
+class _Running:
+    """A call that has not ended."""
+
+    def __init__(self) -> None:
+        self.records: asyncio.Queue[dict[str, Any] | None] = asyncio.Queue()
+        self.notes: list[str] = []
+        self.ended: asyncio.Future[Ended] = asyncio.get_running_loop().create_future()
+
+
+class Connection:
+    """One process. All methods are called in the event loop that has opened it."""
+
+    def __init__(self, arguments: Sequence[str]) -> None:
+        self._arguments = arguments
+        self._process: asyncio.subprocess.Process | None = None
+        self._reading: asyncio.Task[None] | None = None
+        self._numbers = count(1)
+        self._running: dict[int, _Running] = {}
+        self._cancelled: set[asyncio.Future[Ended]] = set()
+        self._changed: asyncio.Future[None] | None = None
+        self._errors: deque[str] = deque(maxlen=NOTES_KEPT)
+        self._pid = os.getpid()
+        self.state: State | None = None
+        """The newest one."""
+        self.texts: deque[Text] = deque(maxlen=TEXTS_KEPT)
+        """The newest STATUSTEXT messages of the vehicle."""
+        self.waits: Callable[[], bool] = lambda: True
+        """Whether the program waits for the call that drives."""
+
+    async def open(self) -> None:
+        """Start the process, and wait until it has found the vehicle. Raises RoverError."""
+        self._process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "groundstation", "api", *self._arguments,
+            stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+            limit=MAX_ANSWER, process_group=0,  # a Ctrl-C is for the program, which ends it in order
+        )  # fmt: skip
+        self._reading = asyncio.ensure_future(self._read())
+        _OPEN.add(self)
+        try:
+            while self.state is None:
+                if self._reading.done():
+                    raise await self._failure()
+                await self.wait_for_state()
+        except BaseException:
+            await self.close()
+            raise
+
+    async def close(self) -> None:
+        """End the process: neutral, and disarmed if the program has armed; kill it if it does not end."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        _OPEN.discard(self)
+        assert process.stdin is not None
+        assert self._reading is not None
+        process.stdin.close()
+        try:
+            async with asyncio.timeout(END_WITHIN):
+                await process.wait()
+        except TimeoutError:
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+            await process.wait()
+        finally:
+            self._reading.cancel()
+
+    async def call(self, *words: str, drives: bool = False) -> Outcome:
+        """Run a verb to its end; a call that is cancelled ends with neutral. Raises RoverError."""
+        number, running = self._begin(words)
+        try:
+            ended = await self._wait(running, drives=drives)
+        except asyncio.CancelledError:
+            self._send(Cancel(number))
+            self._cancelled.add(running.ended)
+            try:
+                with contextlib.suppress(TimeoutError, RoverError):
+                    async with asyncio.timeout(END_WITHIN):
+                        await running.ended
+            finally:
+                self._cancelled.discard(running.ended)
+            raise
+        finally:
+            self._running.pop(number, None)
+        if ended.code:
+            raise self._explain(ended)
+        records = tuple(iter(running.records.get_nowait, None)) if not running.records.empty() else ()
+        return Outcome(ended.fields, records, tuple(running.notes))
+
+    async def follow(self, *words: str) -> AsyncGenerator[dict[str, Any], None]:
+        """Run a verb that watches; yield what it prints. Raises RoverError."""
+        number, running = self._begin(words)
+        try:
+            while (record := await running.records.get()) is not None:
+                yield record
+            ended = await running.ended
+            if ended.code:
+                raise self._explain(ended)
+        finally:
+            self._running.pop(number, None)
+            if not running.ended.done() and self._process is not None:
+                self._send(Cancel(number))
+
+    async def settle(self) -> None:
+        """Wait until every call has ended that was cancelled, END_WITHIN s at most."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(END_WITHIN):
+                while self._cancelled:
+                    await asyncio.wait(set(self._cancelled))
+
+    async def wait_for_state(self) -> None:
+        """Wait for the next state, or the end of the process."""
+        if self._changed is None:
+            self._changed = asyncio.get_running_loop().create_future()
+        await asyncio.shield(self._changed)
+
+    def close_in_fork(self) -> None:
+        """Close the copy of a fork, so that the process sees the end of the program that has opened it."""
+        process = self._process
+        if process is not None and process.stdin is not None:
+            os.close(process.stdin.transport.get_extra_info("pipe").fileno())
+
+    # ---- calls ----
+
+    def _begin(self, words: Sequence[str]) -> tuple[int, _Running]:
+        number, running = next(self._numbers), _Running()
+        self._running[number] = running
+        try:
+            self._send(Call(number, tuple(words)))
+        except RoverError:
+            del self._running[number]
+            raise
+        return number, running
+
+    async def _wait(self, running: _Running, *, drives: bool) -> Ended:
+        """Wait for the end of a call, and say meanwhile that the program waits for it."""
+        while drives:
+            ended, _ = await asyncio.wait({running.ended}, timeout=WAITING_PERIOD)
+            if ended:
+                break
+            if self.waits():
+                self._send(Waiting())
+        return await running.ended
+
+    def _send(self, value: Call | Cancel | Waiting) -> None:
+        if os.getpid() != self._pid:
+            raise Disconnected("this Rover belongs to the process that has opened it: a fork opens its own")
+        process = self._process
+        if process is None or process.returncode is not None:
+            raise Disconnected("this Rover is not connected")
+        assert process.stdin is not None
+        process.stdin.write(encode(value) + b"\n")
+
+    def _explain(self, ended: Ended) -> RoverError:
+        kind = BY_CODE.get(ended.code, RoverError)
+        if kind is NoAnswer and self.state is not None and not self.state.alive:
+            kind = LinkLost
+        return kind(ended.text or f"exit code {ended.code}")
+
+    # ---- what arrives ----
+
+    async def _read(self) -> None:
+        process = self._process
+        assert process is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        errors = asyncio.ensure_future(self._read_errors(process.stderr))
+        try:
+            while line := await process.stdout.readline():
+                self._handle(line)
+            await errors
+        finally:
+            errors.cancel()
+            self._tell_changed()
+            for running in self._running.values():
+                running.records.put_nowait(None)
+                if not running.ended.done():
+                    running.ended.set_exception(Disconnected(f"mavhelm has ended: {self._last_error}"))
+
+    async def _read_errors(self, stream: asyncio.StreamReader) -> None:
+        while line := await stream.readline():
+            self._errors.append(line.decode(errors="replace").strip().removeprefix("mavhelm: "))
+
+    def _handle(self, line: bytes) -> None:
+        match answer := decode_answer(line):
+            case Ready():
+                pass  # the first state follows
+            case CurrentState():
+                self.state = answer.state
+                self._tell_changed()
+            case Text():
+                self.texts.append(answer)
+            case Record() if answer.id in self._running:
+                self._running[answer.id].records.put_nowait(answer.fields)
+            case Note() if answer.id in self._running:
+                self._running[answer.id].notes.append(answer.text)
+            case Ended() if answer.id in self._running:
+                running = self._running[answer.id]
+                running.ended.set_result(answer)
+                running.records.put_nowait(None)
+
+    def _tell_changed(self) -> None:
+        if self._changed is not None:
+            changed, self._changed = self._changed, None
+            changed.set_result(None)
+
+    async def _failure(self) -> RoverError:
+        """Return why the process has ended before it has found the vehicle."""
+        assert self._process is not None
+        code = await self._process.wait()
+        return BY_CODE.get(code, RoverError)(self._last_error)
+
+    @property
+    def _last_error(self) -> str:
+        return self._errors[-1] if self._errors else "no error was printed"

@@ -1,0 +1,236 @@
+"""Rover: a vehicle for a program without asyncio. It runs an AsyncRover in a thread of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import threading
+import time
+from collections.abc import Callable, Coroutine, Iterator
+from concurrent.futures import wait
+from types import TracebackType
+from typing import Any, Self, TypeVar
+
+from groundstation.rover.async_rover import AsyncRover
+from groundstation.rover.connection import END_WITHIN, Outcome
+from groundstation.rover.errors import Disconnected
+from groundstation.rover.protocol import WAITING_PERIOD
+from groundstation.rover.telemetry import State, Telemetry
+
+Result = TypeVar("Result")
+
+
+class Params:
+    """The parameters of a vehicle: `rover.params["FS_TIMEOUT"]` asks for one, an assignment sets it."""
+
+    def __init__(self, rover: Rover) -> None:
+        self._rover = rover
+
+    def __getitem__(self, name: str) -> float:
+        """Return it as the vehicle reports it now. Raises Differs if there is none of this name."""
+        return self._rover.call(lambda rover: rover.get_param(name))
+
+    def __setitem__(self, name: str, value: float) -> None:
+        """Set it; done when the vehicle reports the new value. Raises Refused, NoAnswer."""
+        self._rover.call(lambda rover: rover.set_param(name, value))
+
+
+class Rover(Telemetry):
+    """One vehicle, inside `with`: see AsyncRover for the arguments.
+
+    Every call blocks until it is done. The thread that has called is what keeps a call driving: if it hangs, or its
+    process is stopped or killed, the vehicle is neutral after 0.5 s at most.
+    """
+
+    def __init__(
+        self, *endpoints: str, vehicle: int | str | None = None, wait: float = 10.0, stay_armed: bool = False
+    ) -> None:
+        self._use(AsyncRover(*endpoints, vehicle=vehicle, wait=wait, stay_armed=stay_armed))
+
+    @classmethod
+    def simulated(cls, *, stay_armed: bool = False) -> Self:
+        """Return a simulated rover, which ends with the program."""
+        rover = cls.__new__(cls)
+        rover._use(AsyncRover.simulated(stay_armed=stay_armed))
+        return rover
+
+    def _use(self, rover: AsyncRover) -> None:
+        self._rover = rover
+        self._rover.waits = lambda: time.monotonic() - self._waited_at < 2 * WAITING_PERIOD
+        self._waited_at = 0.0
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread: threading.Thread | None = None
+        self._pid = os.getpid()
+        self.params = Params(self)
+
+    def __enter__(self) -> Self:
+        """Connect."""
+        self.open()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        """Stop, disarm and disconnect."""
+        self.close()
+
+    def __del__(self) -> None:
+        """Disconnect a Rover that was opened without `with` and is forgotten."""
+        with contextlib.suppress(Exception):
+            self.close()
+
+    def open(self) -> None:
+        """Connect, and wait for the vehicle. Raises NoVehicle, RoverError."""
+        if self._loop is not None:
+            return
+        self._loop = loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=_run, args=(loop,), name="mavhelm-rover", daemon=True)
+        self._thread.start()
+        try:
+            self.call(lambda rover: rover.open())
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """Send neutral, disarm what this program has armed, and disconnect."""
+        loop, thread = self._loop, self._thread
+        if loop is None or thread is None or os.getpid() != self._pid:
+            return
+        try:
+            self.call(lambda rover: rover.close())
+        finally:
+            self._loop = self._thread = None
+            loop.call_soon_threadsafe(loop.stop)
+            thread.join(END_WITHIN)
+
+    def call(self, start: Callable[[AsyncRover], Coroutine[Any, Any, Result]]) -> Result:
+        """Run a coroutine of AsyncRover, and wait for it here; an exception here, as of Ctrl-C, cancels it."""
+        loop = self._loop
+        if os.getpid() != self._pid:
+            raise Disconnected("this Rover belongs to the process that has opened it: a fork opens its own")
+        if loop is None:
+            raise Disconnected("this Rover is not connected: use it in `with`")
+        self._waited_at = time.monotonic()
+        future = asyncio.run_coroutine_threadsafe(start(self._rover), loop)
+        try:
+            while not future.done():
+                wait((future,), WAITING_PERIOD)
+                self._waited_at = time.monotonic()
+            return future.result()
+        except BaseException:
+            if future.cancel():  # neutral is sent before the exception goes on
+                asyncio.run_coroutine_threadsafe(self._rover.settle(), loop).result()
+            raise
+
+    # ---- telemetry ----
+
+    @property
+    def state(self) -> State:
+        """The newest state; ten come in a second. Raises Disconnected."""
+        return self._rover.state
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The newest texts of the vehicle, at most 100."""
+        return self._rover.texts
+
+    def wait_for(self, condition: Callable[[State], bool], within: float) -> State:
+        """Wait until a state fulfils a condition; return it. `within`: s. Raises NoAnswer."""
+        return self.call(lambda rover: rover.wait_for(condition, within))
+
+    def messages(self, name: str, hz: float | None = None) -> Iterator[dict[str, Any]]:
+        """Yield the fields of each message of a kind that arrives. `hz`: ask for this rate first, 0.001 to 200."""
+        source = self._rover.messages(name, hz)
+        try:
+            while (fields := self.call(lambda _: anext(source, None))) is not None:
+                yield fields
+        finally:
+            self.call(lambda _: source.aclose())
+
+    # ---- driving ----
+
+    def arm(self, wait: float = 10.0) -> None:
+        """Arm, once the vehicle is ready; `wait`: s for that."""
+        self.call(lambda rover: rover.arm(wait))
+
+    def disarm(self) -> None:
+        """Disarm, repeated until the heartbeat reports it."""
+        self.call(lambda rover: rover.disarm())
+
+    def stop(self) -> None:
+        """Change to HOLD, repeated until the heartbeat reports it. It ends a call that drives."""
+        self.call(lambda rover: rover.stop())
+
+    def estop(self) -> None:
+        """Stop the motors and lock them, repeated until the vehicle reports it."""
+        self.call(lambda rover: rover.estop())
+
+    def clear_estop(self) -> None:
+        """Release the emergency stop."""
+        self.call(lambda rover: rover.clear_estop())
+
+    def drive(self, throttle: float, steering: float = 0.0, *, seconds: float) -> None:
+        """Drive by hand for up to 9 s, then neutral.
+
+        `throttle`: -1 to 1, negative backwards; `steering`: -1 to 1, positive to the right. Raises NotInControl,
+        Refused, LinkLost.
+        """
+        self.call(lambda rover: rover.drive(throttle, steering, seconds=seconds))
+
+    def turn(self, degrees: float, demand: float = 0.4) -> float:
+        """Turn on the spot, then neutral; return by how many degrees it has turned. Positive is to the right.
+
+        `demand`: above 0, up to 1. Raises Refused where the vehicle reports no heading or does not turn on the spot.
+        """
+        return self.call(lambda rover: rover.turn(degrees, demand))
+
+    # ---- what the vehicle does by itself ----
+
+    def set_mode(self, name: str) -> None:
+        """Change the mode; done when the heartbeat reports it."""
+        self.call(lambda rover: rover.set_mode(name))
+
+    def goto(self, latitude: float, longitude: float) -> None:
+        """Have the vehicle drive to a place by itself; done when it begins. It goes on when the program ends."""
+        self.call(lambda rover: rover.goto(latitude, longitude))
+
+    def home(self) -> None:
+        """Have the vehicle drive home by itself; done when it begins. It goes on when the program ends."""
+        self.call(lambda rover: rover.home())
+
+    def upload_plan(self, path: str | os.PathLike[str], kind: str = "mission") -> None:
+        """Upload a .plan or .waypoints file. `kind`: mission, fence or rally."""
+        self.call(lambda rover: rover.upload_plan(path, kind))
+
+    def download_plan(self, path: str | os.PathLike[str], kind: str = "mission") -> None:
+        """Download a plan into a file, which is replaced. `kind`: mission, fence or rally."""
+        self.call(lambda rover: rover.download_plan(path, kind))
+
+    def start_mission(self) -> None:
+        """Start the mission, or go on with it. It goes on when the program ends."""
+        self.call(lambda rover: rover.start_mission())
+
+    def pause_mission(self) -> None:
+        """Stop where the vehicle is; start_mission() goes on."""
+        self.call(lambda rover: rover.pause_mission())
+
+    # ---- commands ----
+
+    def command(self, name: str, *params: float) -> None:
+        """Send a MAV_CMD by its name, with up to 7 parameters; done when the vehicle has accepted."""
+        self.call(lambda rover: rover.command(name, *params))
+
+    def run(self, *words: str) -> Outcome:
+        """Run any verb of `mavhelm` that works with a vehicle, such as `log list`. Raises RoverError."""
+        return self.call(lambda rover: rover.run(*words))
+
+
+def _run(loop: asyncio.AbstractEventLoop) -> None:
+    """Run the loop of a Rover, as its thread."""
+    asyncio.set_event_loop(loop)
+    try:
+        loop.run_forever()
+    finally:
+        loop.close()
