@@ -63,15 +63,17 @@ def test_drive_square_reaches_each_corner_and_logs_it(
     tmp_path: Path, start: Start, vehicle: Callable[..., Vehicle]
 ) -> None:
     port = free_port()
-    vehicle(f"udpout:127.0.0.1:{port}", "--tlog", str(tmp_path / "logs"))
-    driving = start("drive_square.py", f"udpin:127.0.0.1:{port}", "--side", "1.2")
+    rover = vehicle(f"udpout:127.0.0.1:{port}", "--tlog", str(tmp_path / "logs"))
+    driving = start("drive_square.py", f"udpin:127.0.0.1:{port}")
     told, _ = driving.communicate(timeout=PATIENCE)
     assert driving.returncode == 0, told
     assert told.count("corner") == 4
+    assert any(each.turning for each in rover.outputs())
+    assert not rover.outputs()[-1].turning
     [log] = (tmp_path / "logs").glob("*.tlog")
     counted, _ = start("read_log.py", str(log)).communicate(timeout=PATIENCE)
     assert "Armed" in counted or "armed" in counted
-    assert "SET_POSITION_TARGET_LOCAL_NED" in counted
+    assert "MANUAL_CONTROL" in counted
 
 
 @pytest.mark.e2e

@@ -14,6 +14,8 @@ from groundstation.rover.telemetry import State, Telemetry
 from groundstation.sitl.sitl import SimulatorControl, free_port
 from link.endpoint import parse_endpoint
 
+LONGEST = 9.0
+"""s that one call may drive: as `mavhelm drive`."""
 SITL_WAIT = 10.0
 """s for a simulator to start."""
 
@@ -146,6 +148,8 @@ class AsyncRover(Telemetry):
         Refused, LinkLost.
         """
         _need_demand(throttle, steering)
+        if not 0 < seconds <= LONGEST:
+            raise InvalidCall(f"{seconds!r} s is not above 0 and up to {LONGEST:g} s")
         words = ("--throttle", f"{100 * throttle:g}", "--steering", f"{100 * steering:g}", "--for", f"{seconds:g}")
         await self._connected.call("drive", *words, drives=True)
 

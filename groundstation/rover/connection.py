@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import signal
 import sys
 from collections import deque
 from collections.abc import AsyncGenerator, Callable, Sequence
@@ -125,7 +126,10 @@ class Connection:
                 process.kill()
             await process.wait()
         finally:
+            await asyncio.wait({self._reading}, timeout=1.0)  # the pipes close with it
             self._reading.cancel()
+            with contextlib.suppress(OSError):
+                await process.stdin.wait_closed()
 
     async def call(self, *words: str, drives: bool = False) -> Outcome:
         """Run a verb to its end; a call that is cancelled ends with neutral. Raises RoverError."""
@@ -208,8 +212,10 @@ class Connection:
         if os.getpid() != self._pid:
             raise Disconnected("this Rover belongs to the process that has opened it: a fork opens its own")
         process = self._process
-        if process is None or process.returncode is not None:
+        if process is None:
             raise Disconnected("this Rover is not connected")
+        if process.returncode is not None:
+            raise Disconnected(self._how_it_ended)
         assert process.stdin is not None
         process.stdin.write(encode(value) + b"\n")
 
@@ -231,13 +237,14 @@ class Connection:
             while line := await process.stdout.readline():
                 self._handle(line)
             await errors
+            await process.wait()
         finally:
             errors.cancel()
             self._tell_changed()
             for running in self._running.values():
                 running.records.put_nowait(None)
                 if not running.ended.done():
-                    running.ended.set_exception(Disconnected(f"mavhelm has ended: {self._last_error}"))
+                    running.ended.set_exception(Disconnected(self._how_it_ended))
 
     async def _read_errors(self, stream: asyncio.StreamReader) -> None:
         while line := await stream.readline():
@@ -271,6 +278,13 @@ class Connection:
         assert self._process is not None
         code = await self._process.wait()
         return BY_CODE.get(code, RoverError)(self._last_error)
+
+    @property
+    def _how_it_ended(self) -> str:
+        code = None if self._process is None else self._process.returncode
+        if code is not None and code < 0:
+            return f"mavhelm has ended: {signal.Signals(-code).name}"
+        return f"mavhelm has ended: {self._last_error}"
 
     @property
     def _last_error(self) -> str:

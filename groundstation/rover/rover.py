@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 import os
 import threading
 import time
@@ -36,6 +37,21 @@ class Params:
         self._rover.call(lambda rover: rover.set_param(name, value))
 
 
+class _Waiting:
+    """When the thread that has called waited last. A Rover that is forgotten must not be held by its connection."""
+
+    def __init__(self) -> None:
+        self._at = -math.inf
+
+    def note(self) -> None:
+        """Note that it waits."""
+        self._at = time.monotonic()
+
+    def lately(self) -> bool:
+        """Return whether it waits."""
+        return time.monotonic() - self._at < 2 * WAITING_PERIOD
+
+
 class Rover(Telemetry):
     """One vehicle, inside `with`: see AsyncRover for the arguments.
 
@@ -57,12 +73,11 @@ class Rover(Telemetry):
 
     def _use(self, rover: AsyncRover) -> None:
         self._rover = rover
-        self._rover.waits = lambda: time.monotonic() - self._waited_at < 2 * WAITING_PERIOD
-        self._waited_at = 0.0
+        self._waiting = _Waiting()
+        self._rover.waits = self._waiting.lately
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._pid = os.getpid()
-        self.params = Params(self)
 
     def __enter__(self) -> Self:
         """Connect."""
@@ -112,12 +127,12 @@ class Rover(Telemetry):
             raise Disconnected("this Rover belongs to the process that has opened it: a fork opens its own")
         if loop is None:
             raise Disconnected("this Rover is not connected: use it in `with`")
-        self._waited_at = time.monotonic()
+        self._waiting.note()
         future = asyncio.run_coroutine_threadsafe(start(self._rover), loop)
         try:
             while not future.done():
                 wait((future,), WAITING_PERIOD)
-                self._waited_at = time.monotonic()
+                self._waiting.note()
             return future.result()
         except BaseException:
             if future.cancel():  # neutral is sent before the exception goes on
@@ -216,7 +231,12 @@ class Rover(Telemetry):
         """Stop where the vehicle is; start_mission() goes on."""
         self.call(lambda rover: rover.pause_mission())
 
-    # ---- commands ----
+    # ---- parameters, commands ----
+
+    @property
+    def params(self) -> Params:
+        """The parameters of the vehicle: `params["FS_TIMEOUT"] = 2`."""
+        return Params(self)
 
     def command(self, name: str, *params: float) -> None:
         """Send a MAV_CMD by its name, with up to 7 parameters; done when the vehicle has accepted."""

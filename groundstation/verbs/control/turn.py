@@ -86,6 +86,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
         await _turn(session, turn)
     finally:
         await leave(session, disarm=False)
+    turn.update(_heading(session))
     output.note(f"{state.name} has turned by {turn.turned:.0f} degrees, then neutral")
     output.result(True, state.system, turned=round(turn.turned, 1), heading=round(_heading(session), 1))
     return ExitCode.DONE

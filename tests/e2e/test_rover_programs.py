@@ -1,0 +1,329 @@
+"""Python programs that drive with Rover: every way in which they end, with the motor log as ground truth."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from groundstation.station_socket.connect import running_stations
+from tests.e2e.programs import Vehicle
+from tests.ports import free_port
+from tests.waits import wait_until
+
+pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("verbs through a station")]
+
+LONG = 8.0
+"""s for which a call drives that is never to reach its end."""
+HEAD = """\
+import gc, os, signal, sys, threading, time
+from groundstation import Rover
+from groundstation.rover import *
+
+def say(text):
+    print(text, flush=True)
+
+rover = Rover(*{endpoints!r}, vehicle=1, wait=30)
+"""
+DRIVE = f"""\
+with rover:
+    rover.arm(30)
+    rover.drive(0.5, seconds={LONG})
+"""
+
+
+class Program:
+    """A Python program in a process of its own."""
+
+    def __init__(self, folder: Path, endpoint: str, text: str) -> None:
+        path = folder / "program.py"
+        path.write_text(HEAD.format(endpoints=[endpoint] if endpoint else []) + text)
+        self._out, self._err = folder / "program.out", folder / "program.err"
+        with self._out.open("wb") as out, self._err.open("wb") as err:
+            self.process = subprocess.Popen(
+                [sys.executable, str(path)], stdin=subprocess.DEVNULL, stdout=out, stderr=err, start_new_session=True
+            )
+
+    @property
+    def said(self) -> str:
+        """What it has printed."""
+        return self._out.read_text()
+
+    @property
+    def errors(self) -> str:
+        """What it has printed to stderr."""
+        return self._err.read_text()
+
+    def children(self) -> list[int]:
+        """Return the processes that it has started."""
+        path = Path(f"/proc/{self.process.pid}/task")
+        return [int(each) for task in path.iterdir() for each in (task / "children").read_text().split()]
+
+    def end(self) -> None:
+        """End it in any state."""
+        for number in (signal.SIGKILL, signal.SIGCONT):
+            try:
+                os.killpg(self.process.pid, number)
+            except ProcessLookupError:
+                break
+        self.process.wait()
+
+
+class Road:
+    """A simulated rover and the programs that drive it."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        port = free_port()
+        self.endpoint = f"udpin:127.0.0.1:{port}"
+        self.vehicle = Vehicle(folder, port)
+        self.programs: list[Program] = []
+
+    def start(self, text: str) -> Program:
+        """Start a program."""
+        folder = self._folder / str(len(self.programs))
+        folder.mkdir()
+        self.programs.append(Program(folder, self.endpoint, text))
+        return self.programs[-1]
+
+    def start_driving(self, text: str = DRIVE) -> Program:
+        """Start a program, and see that it turns the wheels."""
+        program = self.start(text)
+        wait_until(self.vehicle.turning, lambda: f"turning: {program.errors}")
+        return program
+
+    def see_it_stop(self) -> None:
+        """See the wheels stop long before the call that drives would end."""
+        wait_until(self.vehicle.stands, "standing", within=LONG / 2)
+
+    def end(self) -> None:
+        """End all processes."""
+        for each in self.programs:
+            each.end()
+        self.vehicle.end()
+
+
+@pytest.fixture
+def road(tmp_path: Path) -> Iterator[Road]:
+    road = Road(tmp_path)
+    yield road
+    road.end()
+
+
+def kill(program: Program) -> None:
+    os.kill(program.process.pid, signal.SIGKILL)
+
+
+def interrupt(program: Program) -> None:
+    os.kill(program.process.pid, signal.SIGINT)
+
+
+def terminate(program: Program) -> None:
+    os.kill(program.process.pid, signal.SIGTERM)
+
+
+def freeze(program: Program) -> None:
+    os.kill(program.process.pid, signal.SIGSTOP)
+
+
+def kill_the_connection(program: Program) -> None:
+    for pid in program.children():
+        os.kill(pid, signal.SIGKILL)
+
+
+def freeze_the_connection(program: Program) -> None:
+    for pid in program.children():
+        os.kill(pid, signal.SIGSTOP)
+
+
+@pytest.mark.parametrize(
+    "way",
+    [kill, interrupt, terminate, freeze, kill_the_connection, freeze_the_connection],
+    ids=lambda way: str(way.__name__),
+)
+def test_a_call_that_drives_ends_with_its_program(road: Road, way: Callable[[Program], None]) -> None:
+    program = road.start_driving()
+    way(program)
+    road.see_it_stop()
+
+
+def test_a_program_that_goes_on_does_not_drive_on(road: Road) -> None:
+    program = road.start_driving(f"""\
+with rover:
+    rover.arm(30)
+    try:
+        rover.drive(0.5, seconds={LONG})
+    except RoverError as error:
+        say(error)
+    time.sleep(2)
+    rover.drive(0.5, seconds={LONG})
+""")
+    freeze(program)
+    road.see_it_stop()
+    stopped = time.monotonic()
+    os.kill(program.process.pid, signal.SIGCONT)
+    wait_until(lambda: "stood still" in program.said, lambda: program.errors)
+    wait_until(lambda: road.vehicle.moved_since(stopped), "the next call drives")
+
+
+def test_the_program_is_told_that_its_connection_was_killed(road: Road) -> None:
+    program = road.start_driving()
+    kill_the_connection(program)
+    road.see_it_stop()
+    assert program.process.wait(30) == 1
+    assert program.errors.splitlines()[-1].endswith("Disconnected: mavhelm has ended: SIGKILL"), program.errors
+
+
+BETWEEN_LINES = {
+    "an exception": ("    raise RuntimeError('mistake')", "RuntimeError: mistake"),
+    "an exit": ("    sys.exit(3)", ""),
+    "os._exit": ("    os._exit(3)", ""),
+    "kill -9 of itself": ("    os.kill(os.getpid(), signal.SIGKILL)", ""),
+}
+
+
+@pytest.mark.parametrize("line", BETWEEN_LINES)
+def test_a_program_that_ends_between_two_calls_leaves_it_disarmed(road: Road, line: str) -> None:
+    text, error = BETWEEN_LINES[line]
+    driven = "with rover:\n    rover.arm(30)\n    rover.drive(0.5, seconds=0.5)\n    say('driven')\n"
+    program = road.start(f"{driven}{text}\n")
+    assert program.process.wait(60) != 0
+    assert "driven" in program.said, program.errors
+    assert error in program.errors
+    assert any(each.turning for each in road.vehicle.outputs())
+    road.see_it_stop()
+    wait_until(lambda: "Disarmed" in road.vehicle.errors.read_text(), "disarmed")
+
+
+def test_nothing_moves_between_two_calls(road: Road) -> None:
+    program = road.start("""\
+with rover:
+    rover.arm(30)
+    rover.drive(0.5, seconds=0.5)
+    say(time.monotonic())
+    time.sleep(3)
+    say(time.monotonic())
+""")
+    assert program.process.wait(60) == 0, program.errors
+    driven, left = map(float, program.said.split())
+    outputs = road.vehicle.outputs()
+    assert any(each.turning for each in outputs)
+    assert not any(each.turning for each in outputs if driven < each.at < left)
+
+
+def test_the_interpreter_ends_while_a_thread_drives(road: Road) -> None:
+    program = road.start_driving(f"""\
+rover.open()
+rover.arm(30)
+threading.Thread(target=rover.drive, args=(0.5,), kwargs={{"seconds": {LONG}}}, daemon=True).start()
+rover.wait_for(lambda state: state.speed and state.speed > 0.1, 30)
+sys.exit(0)
+""")
+    road.see_it_stop()
+    assert program.process.wait(30) == 0, program.errors
+
+
+def test_a_stop_of_another_thread_ends_a_call_that_drives(road: Road) -> None:
+    program = road.start_driving(f"""\
+with rover:
+    rover.arm(30)
+    def stop():
+        rover.wait_for(lambda state: state.speed and state.speed > 0.1, 30)
+        rover.stop()
+        say(rover.mode)
+    thread = threading.Thread(target=stop)
+    thread.start()
+    try:
+        rover.drive(0.5, seconds={LONG})
+    except RoverError as error:
+        say(error)
+    thread.join()
+""")
+    road.see_it_stop()
+    assert program.process.wait(30) == 0, program.errors
+    assert set(program.said.split()) == {"cancelled", "HOLD"}
+
+
+def test_a_fork_neither_drives_nor_keeps_the_vehicle_driving(road: Road) -> None:
+    program = road.start_driving(f"""\
+rover.open()
+rover.arm(30)
+if os.fork() == 0:
+    try:
+        rover.drive(0.5, seconds={LONG})
+    except RoverError as error:
+        say(error)
+    time.sleep(60)
+    os._exit(0)
+rover.drive(0.5, seconds={LONG})
+""")
+    wait_until(lambda: "a fork opens its own" in program.said, lambda: program.errors)
+    kill(program)
+    road.see_it_stop()
+    wait_until(lambda: "Disarmed" in road.vehicle.errors.read_text(), "disarmed, because its program has ended")
+
+
+def test_a_rover_that_is_forgotten_is_disarmed(road: Road) -> None:
+    program = road.start("""\
+rover.open()
+rover.arm(30)
+rover.drive(0.5, seconds=0.5)
+del rover
+say("forgotten")
+time.sleep(60)
+""")
+    wait_until(lambda: "forgotten" in program.said, lambda: program.errors)
+    assert any(each.turning for each in road.vehicle.outputs())
+    assert program.children() == []
+    wait_until(lambda: "Disarmed" in road.vehicle.errors.read_text(), "disarmed")
+
+
+@pytest.fixture
+def station(road: Road) -> Iterator[subprocess.Popen[bytes]]:
+    """A station without a screen, through which the programs of the road go."""
+    command = [sys.executable, "-m", "groundstation", "serve", "--headless", road.endpoint]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    wait_until(lambda: running_stations() == [process.pid], "the station runs")
+    road.endpoint = ""
+    yield process
+    for number in (signal.SIGCONT, signal.SIGTERM):
+        process.send_signal(number)
+    process.wait()
+
+
+@pytest.mark.parametrize("way", [kill, interrupt, freeze], ids=lambda way: str(way.__name__))
+@pytest.mark.usefixtures("station")
+def test_through_a_station_a_call_ends_with_its_program(road: Road, way: Callable[[Program], None]) -> None:
+    program = road.start_driving()
+    way(program)
+    road.see_it_stop()
+
+
+def test_a_station_that_is_killed_ends_the_call(road: Road, station: subprocess.Popen[bytes]) -> None:
+    program = road.start_driving()
+    station.kill()
+    road.see_it_stop()
+    assert program.process.wait(30) == 1
+    assert "rover.errors." in program.errors
+
+
+@pytest.mark.usefixtures("station")
+def test_a_second_program_does_not_drive_beside_the_first(road: Road) -> None:
+    first = road.start_driving()
+    second = road.start("""\
+with rover:
+    try:
+        rover.drive(-1.0, seconds=1)
+    except RoverError as error:
+        say(f"{type(error).__name__}: {error}")
+""")
+    assert second.process.wait(30) == 0, second.errors
+    assert second.said
+    assert all(value >= 0 for each in road.vehicle.outputs() for value in each.throttles)
+    assert first.process.wait(30) == 0, first.errors
