@@ -62,6 +62,7 @@ LINES: dict[str, tuple[Line, ...]] = {
     "control release": line("control release"), "doctor": line("doctor"),
     "control give": line("control give 200", ours=7, ArduPilot=7, PX4=7),
     "drive": line("drive --throttle 20 --for 0.3", armed=True),
+    "turn": line("turn 20", armed=True, ArduPilot=4, PX4=4),
     "goto": line("goto --by 3 0", armed=True), "home": line("home", armed=True), "speed": line("speed 0.6", armed=True),
     "messages": line("messages --for 0.2"), "watch": line("watch HEARTBEAT.type --until '>=0' --timeout 10"),
     "send": line("send STATUSTEXT severity=INFO text=hello"), "record": line("record out.tlog --for 1.5 --yes"),
@@ -94,7 +95,7 @@ LINES: dict[str, tuple[Line, ...]] = {
 }  # fmt: skip
 """Verb and action -> what is run, in an order in which each finds what it needs."""
 ELSEWHERE = {
-    "export": "files/test_export.py", "ros1": "ros/test_ros1.py", "ros2": "ros/test_ros2.py",
+    "api": "api/test_api.py", "export": "files/test_export.py", "ros1": "ros/test_ros1.py", "ros2": "ros/test_ros2.py",
     "sign": "setup/test_sign.py",
 }  # fmt: skip
 """Verb without a vehicle, with one on a cable, or that needs another program -> its test."""

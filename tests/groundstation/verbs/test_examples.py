@@ -26,7 +26,22 @@ SHORTER = {
 }  # fmt: skip
 """Verb -> options that make it take less time."""
 ELSEWHERE = frozenset(
-    {"drive", "send", "doctor", "motor", "export", "replay", "record", "ros1", "ros2", "sign", "keys", "completion"}
+    {
+        "api",
+        "drive",
+        "turn",
+        "send",
+        "doctor",
+        "motor",
+        "export",
+        "replay",
+        "record",
+        "ros1",
+        "ros2",
+        "sign",
+        "keys",
+        "completion",
+    }
 )
 """Verbs that other tests run: with a watchdog, with a station, or without a vehicle."""
 OF_HANDS = frozenset({"wp", "compass", "sticks"})
