@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+import os
 import sys
-from typing import Any
+from typing import IO, Any
 
 import msgspec
 
@@ -21,6 +22,7 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.line.parser import LineParser
 from groundstation.verbs.main import build_parser, choose_action
+from groundstation.verbs.session.endpoints import config_error
 from groundstation.verbs.session.session import VerbSession
 from groundstation.verbs.table import VERBS
 
@@ -42,8 +44,8 @@ async def serve(options: argparse.Namespace, output: Output, verb: CompanionChan
     loop = asyncio.get_running_loop()
     reader = asyncio.StreamReader(MAX_LINE)
     try:
-        await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
-        transport, _ = await loop.connect_write_pipe(asyncio.streams.FlowControlMixin, sys.stdout)
+        await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), _copy(sys.stdin))
+        transport, _ = await loop.connect_write_pipe(asyncio.streams.FlowControlMixin, _copy(sys.stdout))
     except (OSError, ValueError) as error:
         raise VerbError(ExitCode.USAGE, f"stdin and stdout must be pipes of the program: {error}") from None
     transport.set_write_buffer_limits(MOST_UNREAD)
@@ -56,6 +58,11 @@ async def serve(options: argparse.Namespace, output: Output, verb: CompanionChan
     finally:
         for task in tasks:
             task.cancel()
+
+
+def _copy(stream: IO[str]) -> IO[bytes]:
+    """Return a copy of a standard stream, which the loop closes at the end."""
+    return os.fdopen(os.dup(stream.fileno()), stream.mode.replace("w", "wb").replace("r", "rb"), buffering=0)
 
 
 class Program:
@@ -81,7 +88,7 @@ class Program:
             if isinstance(call, Call):
                 try:
                     value["given"] = _prepare(call)
-                except (VerbError, FileFormatError) as error:
+                except (VerbError, FileFormatError, config_error()) as error:
                     code = error.code if isinstance(error, VerbError) else ExitCode.USAGE
                     self._write(Ended(call.id, int(code), str(error)))
                     continue

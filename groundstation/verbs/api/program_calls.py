@@ -177,5 +177,9 @@ def _parse(words: list[str], vehicle: int) -> tuple[VerbAction, argparse.Namespa
     action = choose_action(words[0], options)
     if action.offline or action.examines or action.companion is not None:
         raise VerbError(ExitCode.USAGE, f"{words[0]} is not for programs: run `mavhelm {words[0]}`")
+    if options.endpoints or options.vehicle or options.all or options.group:
+        raise VerbError(
+            ExitCode.USAGE, f"{words[0]}: the connection has one vehicle, {vehicle}; no -e, -v, --all, --group"
+        )
     options.vehicle, options.words = vehicle, tuple(words)
     return action, options

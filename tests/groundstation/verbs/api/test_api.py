@@ -14,6 +14,7 @@ import pytest
 from groundstation.rover.protocol import MAX_LINE
 from tests.fakes.params import Param
 from tests.fakes.services import ForeignVehicle, foreign_vehicle
+from tests.ports import free_port
 from tests.waits import PATIENCE, wait_until
 
 
@@ -139,7 +140,7 @@ def test_a_stop_does_not_wait_for_a_drive(vehicle: ForeignVehicle) -> None:
 
 
 REFUSED = {
-    ("param", "get", "NO_SUCH"): (4, "NO_SUCH"),
+    ("param", "get", "NO_SUCH"): (7, "NO_SUCH"),
     ("mode", "FLY"): (4, "no such mode"),
     ("drive", "--throttle", "400", "--for", "1"): (2, "-100 to 100"),
     ("drive", "--throttle", "40", "--for", "1"): (4, "is disarmed"),
@@ -152,6 +153,7 @@ REFUSED = {
     ("param", "--help"): (2, "param"),
     ("mission", "put", "missing.plan"): (2, "missing.plan"),
     ("disarm", "--all"): (2, "one vehicle"),
+    ("status", "-e", "udpin:127.0.0.1:1"): (2, "one vehicle"),
 }
 
 
@@ -176,6 +178,7 @@ def test_mistakes_are_answered_and_end_nothing(vehicle: ForeignVehicle) -> None:
         (b"\xff\xfe\n", "not a call"),
         (b"[" * (MAX_LINE + 1) + b"\n", "longer than"),
     ],
+    ids=["text", "wrong type", "no such call", "bytes", "long"],
 )
 def test_a_line_that_is_not_a_call_ends_it(vehicle: ForeignVehicle, line: bytes, text: str) -> None:
     with api(vehicle) as program:
@@ -188,7 +191,7 @@ def test_a_line_that_is_not_a_call_ends_it(vehicle: ForeignVehicle, line: bytes,
 
 
 def test_no_vehicle() -> None:
-    process = Api("-e", "udpin:127.0.0.1:0", "--wait", "0.3")
+    process = Api("-e", f"udpin:127.0.0.1:{free_port()}", "--wait", "0.3")
     code, errors = process.end()
     assert code == 3
     assert "no vehicle" in errors
