@@ -86,7 +86,7 @@ DAY = 86_400 * 100_000
         ("groundstation.station.driving.motor_test.LONGEST", 2.0),
         ("groundstation.station_socket.verb_run.ALIVE_WITHIN", 0.3),
         ("groundstation.station.driving.handover.ANSWER_WITHIN", 10.0),
-        ("groundstation.input.pad.PAD_WINDOW", 0.25),
+        ("groundstation.intents.driving.PAD_WINDOW", 0.25),
         ("groundstation.station.driving.shutdown.DISARM_TIMEOUT", 2.0),
         ("link.signing.verifier.NEW_STREAM_WINDOW", 6_000_000),
         ("link.signing.verifier.CRASH_WINDOW", 500_000),

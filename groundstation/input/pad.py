@@ -14,10 +14,6 @@ from groundstation.input.pad_mapping import PadMapping
 HELD_PERIOD, IDLE_PERIOD = 0.05, 0.5
 """s between frames while a button is held (20 a second, as the demands), and while none is."""
 
-PAD_WINDOW = 0.25
-"""s after which a demand of the gamepad is neutral unless a newer one follows. Its reader sends 20 a second, so that a
-reader that is killed or hangs is neutral within this time, and three late ones are not."""
-
 EARLY = 0.005
 """s that a frame may be early: half of the time between two readings, so that the rate is kept on average."""
 

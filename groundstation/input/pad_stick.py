@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from dialects.axes import NEUTRAL, Axes
-from groundstation.input.pad import PAD_WINDOW
-from groundstation.intents.driving import DrivePad
+from groundstation.intents.driving import PAD_WINDOW, DrivePad
 
 
 class PadStick:

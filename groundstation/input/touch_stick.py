@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from groundstation.input.pad import PAD_WINDOW, PadCore, PadFrame, PadReading
+from groundstation.input.pad import PadCore, PadFrame, PadReading
 from groundstation.input.pad_mapping import PadMapping
+from groundstation.intents.driving import PAD_WINDOW
 
 NAME = "thumb stick"
 

@@ -14,6 +14,10 @@ HOLD_TIME = 1.0
 STOP_KEY = "stop key"
 """The reason of a Stop that the operator requested with a key; other reasons mean that the screen cannot drive now."""
 
+PAD_WINDOW = 0.25
+"""s after which a demand of the gamepad is neutral unless a newer one follows. Its reader sends 20 a second, so that a
+reader that is killed or hangs is neutral within this time, and three late ones are not."""
+
 
 class DriveKeyDown(Intent, frozen=True):
     """A drive key went down, or repeats; -1, 0 or +1 for each axis."""
@@ -39,7 +43,7 @@ class DrivePad(Intent, frozen=True):
     """-1..1, as steering."""
     steering: float
     read_at: float
-    """When the gamepad was read, CLOCK_MONOTONIC, s: what is older than PAD_WINDOW is neutral (input/pad.py)."""
+    """When the gamepad was read, CLOCK_MONOTONIC, s: what is older than PAD_WINDOW is neutral."""
     repeat: bool = False
     """The button was held in the reading before, too."""
 

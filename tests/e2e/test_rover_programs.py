@@ -190,7 +190,7 @@ BETWEEN_LINES = {
 
 
 @pytest.mark.parametrize("line", BETWEEN_LINES)
-def test_a_program_that_ends_between_two_calls_leaves_it_disarmed(road: Road, line: str) -> None:
+def test_a_program_that_ends_between_calls_leaves_it_disarmed(road: Road, line: str) -> None:
     text, error = BETWEEN_LINES[line]
     driven = "with rover:\n    rover.arm(30)\n    rover.drive(0.5, seconds=0.5)\n    say('driven')\n"
     program = road.start(f"{driven}{text}\n")

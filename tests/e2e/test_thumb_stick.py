@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.input.pad import PAD_WINDOW
+from groundstation.intents.driving import PAD_WINDOW
 from groundstation.web.launch import missing_package
 from tests.e2e.chromium import Browser, pause
 from tests.e2e.tcp_relay import TcpRelay

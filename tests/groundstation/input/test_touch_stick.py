@@ -7,10 +7,10 @@ from typing import get_args
 import pytest
 
 from groundstation.actions import ACTIONS
-from groundstation.input.pad import PAD_WINDOW, PadFrame
+from groundstation.input.pad import PadFrame
 from groundstation.input.pad_stick import PadStick
 from groundstation.input.touch_stick import NAME, STOPS, TOUCH, TouchButton, TouchReading, TouchStick
-from groundstation.intents.driving import DrivePad
+from groundstation.intents.driving import PAD_WINDOW, DrivePad
 
 SINCE = 100.0
 
