@@ -11,7 +11,9 @@ help:  ## List the targets.
 
 setup:  ## Create .venv with everything that development needs.
 	python3 -m venv .venv
-	.venv/bin/pip install -q -c constraints.txt -e '.[dev,interop,pi]'
+	.venv/bin/pip install -q -c constraints.txt -e '.[dev,interop]'
+	@.venv/bin/pip install -q -c constraints.txt --only-binary lgpio lgpio 2>.venv/lgpio.log || \
+		echo "no wheel of lgpio for this Python: the tests of its pins are skipped (.venv/lgpio.log)"
 
 check: | .venv/bin/python  ## Check format, lint, types and import rules.
 	$(NEEDS) dev ruff mypy importlinter
