@@ -51,6 +51,9 @@ class KeyPrinter:
         """Note that the terminal reports releases."""
         self.releases = True
 
+    def handle_plain_key(self) -> None:
+        """Note nothing: the key is shown as it came."""
+
     def close(self, reason: str) -> None:
         """Note why keys would not drive now."""
         self.names.append(reason)

@@ -101,9 +101,9 @@ class Sticks:
         self.reports_releases = True
         self._held.pop(key, None)
 
-    def set_reports_releases(self) -> None:
-        """Stop using timers: the terminal has shown that it reports releases."""
-        self.reports_releases = True
+    def set_reports_releases(self, reports: bool = True) -> None:
+        """Stop using timers: the terminal has shown that it reports releases. False: of this key it does not."""
+        self.reports_releases = reports
 
     def change_keyboard(self, now: float, *, reports_releases: bool) -> None:
         """Go neutral and forget the keys: others follow, of another terminal. One that is held there does not count."""
@@ -187,9 +187,11 @@ class Sticks:
         """Return when a timer changes `axes` if nothing happens before; None: none does."""
         if self.pad.held(now):
             return self.pad.until
-        if self.reports_releases or not self._held:
+        if not self._held:
             return None
-        return min(self._last_event + self._windows.press_window, *(held.until for held in self._held.values()))
+        latest = math.inf if self.reports_releases else self._last_event + self._windows.press_window
+        ends = min(latest, *(held.until for held in self._held.values()))
+        return None if math.isinf(ends) else ends
 
     def held_keys(self, now: float) -> tuple[str, ...]:
         """Return the keys that count as held; the gamepad is one of them while it drives."""

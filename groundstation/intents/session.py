@@ -23,6 +23,8 @@ class ReportKeyReleases(Intent, frozen=True):
 
     is_input = False
     valid_when_late = True
+    reports: bool = True
+    """False: a key has come for which it reports none, and timers are needed again."""
 
 
 QUITTING, SUSPENDED = "quitting", "the ground station was suspended"

@@ -173,7 +173,7 @@ class IntentHandler:
             self._log.add(now, "station", f"drive style {self._operator.sticks.style}{why}", Severity.NOTICE)
 
     def _set_reports_releases(self, intent: ReportKeyReleases, now: float) -> None:
-        self._operator.sticks.set_reports_releases()
+        self._operator.sticks.set_reports_releases(intent.reports)
 
     def _set_gate(self, intent: SetKeyGate, now: float) -> None:
         self._operator.set_gate(intent, now)

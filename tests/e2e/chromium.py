@@ -201,7 +201,7 @@ class Browser:
 def _descendants(pid: int) -> list[int]:
     try:
         found = children(pid)
-    except FileNotFoundError:  # it has ended meanwhile
+    except (FileNotFoundError, ProcessLookupError):  # it has ended meanwhile
         return []
     return [*found, *(each for child in found for each in _descendants(child))]
 

@@ -96,8 +96,8 @@ class ScreenLease(msgspec.Struct):
                 screen.renewed_at = now
             case SetKeyGate():
                 screen.gate = intent
-            case ReportKeyReleases():
-                screen.reports_releases = True
+            case ReportKeyReleases(reports=reports):
+                screen.reports_releases = reports
         if screen is self.holder:
             return None if self._answers(intent, now) else intent
         return intent if self._may_watcher(screen, intent, now) else None

@@ -242,6 +242,13 @@ class KeyGate:
                 self._exact = True
                 self._client.send(ReportKeyReleases())
 
+    def handle_plain_key(self) -> None:
+        """Note that a key came without the protocol that reports releases: timers end it."""
+        with self._lock:
+            if self._exact:
+                self._exact = False
+                self._client.send(ReportKeyReleases(reports=False))
+
     def close(self, reason: str) -> None:
         """Close at once, from any thread. The event loop opens again when its own conditions hold."""
         self.set_closure(GateClosure(reason))

@@ -92,6 +92,9 @@ class KeySink(Protocol):
     def handle_release_support(self) -> None:
         """Note that the terminal reports repeats and releases."""
 
+    def handle_plain_key(self) -> None:
+        """Note that a key came as plain text, of which no release follows, although the terminal has reported some."""
+
     def close(self, reason: str) -> None:
         """Close the gate: the focus is lost, the program suspended or the terminal closed."""
 
@@ -114,6 +117,8 @@ class KeyEventParser(XTermParser):
         self._sequences = SequenceAssembler()
         self._mouse_reports = 0
         self._pasting = False
+        self._proved = False
+        """The newest key had an event type."""
         self._read_at = 0.0
         """Time of the last read with more than an answer to a ping."""
         self._names: dict[str, str] = {}
@@ -144,6 +149,7 @@ class KeyEventParser(XTermParser):
         """Return the events of one read, without repeats, after its keys have gone to the sink as one batch."""
         found, batch = list[Message](), list[KeyEvent]()
         for piece in pieces:
+            self._note_plain_text(piece)
             keys = [_PASTE] if piece.text == PASTE_BEGINS and not self._pasting else []
             tokens = [token for token in self._parse(piece) if not _is_oversized(token)]
             keys += [press for token in tokens if (press := self._key_event(token)) is not None]
@@ -155,6 +161,15 @@ class KeyEventParser(XTermParser):
         self._tell(found, batch)
         found += (report for text in self._sequences.pop_reports() if (report := parse_report(text)) is not None)
         return [token for token in found if not (isinstance(token, events.Key) and self._sink.is_repeat(token.key))]
+
+    def _note_plain_text(self, piece: Piece) -> None:
+        """Tell that a character is a key without a release.
+
+        Terminals without flag 8 report releases of arrows only, and an input method sends text without a key.
+        """
+        if self._proved and not self._pasting and not piece.split and piece.text[:1] not in ("", ESC):
+            self._proved = False
+            self._sink.handle_plain_key()
 
     def _tell(self, found: Iterable[Message], batch: Sequence[KeyEvent]) -> None:
         if self._mouse_reports != self._sequences.mouse_reports:
@@ -225,6 +240,7 @@ class KeyEventParser(XTermParser):
                 else self._unknown(sequence)
             )
         if kind:
+            self._proved = True
             self._sink.handle_release_support()
         latin = find_latin_sequence(code, alternates, modifiers, end)
         if kind == _RELEASE:

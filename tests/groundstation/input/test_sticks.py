@@ -9,6 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from dialects.axes import NEUTRAL, Axes
+from groundstation.input.key_repeat import PRESS_WINDOW
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown, StepLimits
@@ -405,3 +406,16 @@ def test_exact_keys_are_neutral_when_all_are_released(events: list[tuple[DriveKe
     for push in (I, COMMA, J, L, U):
         sticks.release(push.key)
     assert sticks.axes(now) == NEUTRAL
+
+
+def test_a_key_that_comes_without_releases_ends_by_timer() -> None:
+    """An arrow has proved releases, and a letter of the same terminal comes as plain text."""
+    sticks = exact()
+    sticks.set_reports_releases(False)
+    sticks.press(I, 0.0)
+    assert sticks.axes(0.1) != NEUTRAL
+    assert sticks.axes(sticks.stop_bound) == NEUTRAL
+    sticks.press(I, 10.0)
+    sticks.set_reports_releases()
+    assert sticks.changes_at(10.0) == pytest.approx(10.0 + PRESS_WINDOW)
+    assert sticks.axes(10.0 + PRESS_WINDOW) == NEUTRAL, "an arrow that follows does not make it endless"

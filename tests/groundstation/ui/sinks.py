@@ -37,6 +37,9 @@ class Sink:
     def handle_release_support(self) -> None:
         self.told.append("exact")
 
+    def handle_plain_key(self) -> None:
+        self.told.append("plain")
+
     def close(self, reason: str) -> None:
         self.told.append(f"shut: {reason}")
 

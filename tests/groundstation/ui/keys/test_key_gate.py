@@ -177,6 +177,15 @@ def test_proof_of_releases_is_told_once(gate: KeyGate, station: Recorder) -> Non
     assert station.intents == [ReportKeyReleases()]
 
 
+def test_a_key_without_a_release_brings_the_timers_back(gate: KeyGate, station: Recorder) -> None:
+    gate.handle_plain_key()
+    assert station.intents == [], "the timers are on until a release is proved"
+    for _ in range(2):
+        gate.handle_release_support()
+        gate.handle_plain_key()
+    assert station.intents == [ReportKeyReleases(), ReportKeyReleases(reports=False)] * 2
+
+
 def test_what_is_driven_decides_whether_a_strange_key_stops(gate: KeyGate, station: Recorder) -> None:
     gate.handle_keys([press("b")])
     assert station.intents == []

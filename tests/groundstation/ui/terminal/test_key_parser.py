@@ -100,6 +100,14 @@ def test_only_a_subfield_proves_that_releases_come() -> None:
     assert feed(RELEASE_W)[0].told == ["exact"]
 
 
+def test_a_character_without_the_protocol_has_no_release() -> None:
+    """Terminals without flag 8 report releases of arrows and send letters as text, and so does an input method."""
+    assert feed("\x1b[1;1:3A", "i", "i")[0].told == ["exact", "plain"]
+    assert feed("\x1b[1;1:3A", "i", "\x1b[1;1:3A")[0].told == ["exact", "plain", "exact"]
+    assert feed("i", "i")[0].told == []
+    assert feed("\x1b[1;1:3A", "\x1b[200~i\x1b[201~", "\x1b[0n", "\x1b[119;;119u")[0].told == ["exact", "pong"]
+
+
 @pytest.mark.parametrize("report", ["\x1b[?27u", "\x1b[?0u", "\x1b[0n", "\x1b[3n"])
 def test_reports_are_not_typed(report: str) -> None:
     sink, found = feed(report, report + "i")
