@@ -14,6 +14,7 @@ from groundstation.intents.driving import Stop
 from groundstation.intents.plan import ChooseMode, GoTo, JumpToItem, SetHome
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
+from groundstation.station.verbs.running_verbs import VerbMessage
 from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.map.plan.fields import change_command
@@ -267,6 +268,7 @@ def test_verb_that_only_looks_does_not_end_auto_without_station() -> None:
         for kind in (m.SysStatus, m.VfrHud, m.AutopilotVersion, m.ControlStatus):
             for command in (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL):
                 params = (float(kind.id), 1e6) if command == Command.SET_MESSAGE_INTERVAL else (float(kind.id), 0.0)
-                verbs.handle(verb, m.CommandLong(1, 1, command, 0, *params, 0, 0, 0, 0, 0), drive.world.now)
+                asked = m.CommandLong(1, 1, command, 0, *params, 0, 0, 0, 0, 0)
+                verbs.handle(verb, VerbMessage(asked), drive.world.now)
             drive.run(0.1)
     assert (drive.is_in(Mode.AUTO), drive.power > 0.2) == (True, True)

@@ -57,6 +57,6 @@ class CoreParts:
         self.handover = Handover(fleet, commander, self.driving, log, system)
         self.link_closing = LinkClosing(operator, fleet, stats)
         self.queries = VehicleQueries(fleet, commander, stats, log, self.services)
-        self.verbs = RunningVerbs(fleet, operator, commander, log)
+        self.verbs = RunningVerbs(fleet, operator, log)
         self.refusals = Refusals(fleet, commander, self.verbs, log)
         self.operator_log = OperatorLog(log)

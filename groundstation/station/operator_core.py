@@ -100,6 +100,10 @@ class OperatorCore:
         """Stop a vehicle, which need not be the selected one."""
         self._commander.stop(contact.state, kind, now)
 
+    def claim(self, contact: Contact, now: float) -> None:
+        """Note that a vehicle has accepted arming from a verb: without CONTROL_STATUS that is control."""
+        self._commander.claim(contact.state, now)
+
     def _receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
         """Handle what answers a request, makes one, or decides on something."""
         self._handover.receive(contact, received, now)

@@ -178,7 +178,7 @@ class Commander:
         return self._client.is_waiting(command, vehicle.system)
 
     def claim(self, vehicle: VehicleState, now: float) -> None:
-        """Note that a vehicle has accepted arming from a verb that goes through this station."""
+        """Note that a vehicle has accepted arming from a verb."""
         self._claims.add(vehicle, now, by_arming=True)
 
     def is_claimed(self, system: int) -> bool:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 from dialects import messages as m
-from dialects.enums import Severity
+from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.enums import OperatorFlag, Severity
+from dialects.messages import INVALID_AXIS
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
-from groundstation.station.verbs.running_verbs import RunningVerbs, moves
+from groundstation.station.verbs.running_verbs import RunningVerbs
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.state.message_log import MessageLog
 
@@ -47,4 +49,17 @@ class Refusals:
 
 def _is_wanted(message: m.Message, contact: Contact) -> bool:
     """Return whether the operator wants it: proofs of the session and neutral demands the station sends by itself."""
-    return not isinstance(message, _DEMANDS) or moves(message, contact)
+    return not isinstance(message, _DEMANDS) or _moves(message, contact)
+
+
+def _moves(message: m.ManualControl | m.RoverOperatorPresence, contact: Contact) -> bool:
+    """Return whether a demand requests motion, and does not only show that somebody is there."""
+    if isinstance(message, m.RoverOperatorPresence):
+        axes = (message.x, message.y, message.z, message.r) if message.flags & OperatorFlag.AXES else ()
+        return any(axis not in (0, INVALID_AXIS) for axis in axes)
+    neutral = build_manual_control(NEUTRAL, message.target, axis_map(contact.state.autopilot))
+    axes = (message.x, message.y, message.z, message.r)
+    return any(
+        axis not in (rest, INVALID_AXIS)
+        for axis, rest in zip(axes, (neutral.x, neutral.y, neutral.z, neutral.r), strict=True)
+    )

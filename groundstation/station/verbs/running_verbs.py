@@ -1,8 +1,9 @@
 """RunningVerbs: the verbs that run in this station. Their messages leave as the station's own. Time is an argument.
 
-Commands and stops always pass: they are the user's. A demand that moves passes only while no screen drives and no other
-verb does, and ends with neutral when the verb ends, is killed or stands still. The station proves its session to the
-vehicle that its screen drives; for others, and without a screen, a verb's proofs become those of the session.
+A verb says what it sends each message for (Purpose). Commands and stops always pass: they are the user's. A demand that
+moves passes only while no screen drives and no other verb does, and ends with neutral when the verb ends, is killed or
+stands still. The station proves its session to the vehicle that its screen drives; for others, and without a screen, a
+verb's proofs become those of the session.
 
 A verb that only looks keeps no vehicle from its failsafe, unless it follows: it begins at most KEEP s after a verb that
 took part, and goes on with the session until a screen drives. It steps aside while another verb takes part.
@@ -12,16 +13,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from enum import Enum, auto
+from typing import Any, NamedTuple, Protocol
 
 import msgspec
 
 from dialects import messages as m
-from dialects.axes import NEUTRAL, axis_map, build_manual_control
-from dialects.enums import Command, OperatorFlag, Result, Severity
-from dialects.messages import INVALID_AXIS
+from dialects.enums import Severity
 from dialects.traits import ACKED
-from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.vehicles.demand.demand_neutrals import DEMANDS
@@ -40,8 +39,26 @@ CONSTANT = frozenset((m.AutopilotVersion.id, m.RoverDriveInfo.id, m.HomePosition
 MAX_KINDS = 64 * MAX_VEHICLES
 """Kinds of messages, of all senders together, whose newest is kept."""
 
-ARMS_WITHIN = 5.0
-"""s for a vehicle to answer the arming of a verb."""
+
+class Purpose(Enum):
+    """What a verb sends a message for."""
+
+    OTHER = auto()
+    PRESENCE = auto()
+    """A HEARTBEAT, so that vehicles do not miss their ground station."""
+    PROOF = auto()
+    """Proves the session to its vehicle."""
+    NEUTRAL = auto()
+    """A demand without motion; it ends a MOTION of its kind."""
+    MOTION = auto()
+    """A demand that moves, or that only a neutral ends."""
+
+
+class VerbMessage(NamedTuple):
+    """A message of a verb."""
+
+    message: m.Message
+    purpose: Purpose = Purpose.OTHER
 
 
 class VerbSeat(Protocol):
@@ -92,10 +109,9 @@ class _Ending(msgspec.Struct):
 class RunningVerbs:
     """The verbs of one station."""
 
-    def __init__(self, fleet: Fleet, operator: OperatorSession, commander: Commander, log: MessageLog) -> None:
+    def __init__(self, fleet: Fleet, operator: OperatorSession, log: MessageLog) -> None:
         self._fleet = fleet
         self._operator = operator
-        self._commander = commander
         self._log = log
         self.screen_that_drives: Callable[[], str | None] = lambda: None
         """Returns its name; None without one."""
@@ -104,8 +120,6 @@ class RunningVerbs:
         """System, component and message id -> the newest; a HEARTBEAT of each sender, because two may have one id."""
         self._reports: tuple[LinkReport, ...] = ()
         self._endings: list[_Ending] = []
-        self._arming: dict[int, float] = {}
-        """System id -> until when its acceptance of arming is the answer to a verb."""
         self._used_at = -math.inf
         """When a verb without a screen beside it last used the session."""
         self._proven: dict[int, float] = {}
@@ -155,8 +169,6 @@ class RunningVerbs:
             self._newest[received.system, received.component, number, peer] = (received, now)
         for verb in list(self._verbs):
             verb.seat.deliver(received, now)
-        if isinstance(received.message, m.CommandAck):
-            self._note_arming(received.message, received.system, now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Pass the state of the links on."""
@@ -169,35 +181,25 @@ class RunningVerbs:
         contact = self._fleet.get(received.system) if type(received.message).id in CONSTANT else None
         return contact is not None and contact.state.monitor.is_alive(now)
 
-    def _note_arming(self, ack: m.CommandAck, system: int, now: float) -> None:
-        """Note that a vehicle was armed for a verb: without CONTROL_STATUS that is control."""
-        contact = self._fleet.get(system)
-        if ack.command != Command.COMPONENT_ARM_DISARM or now > self._arming.pop(system, 0.0) or contact is None:
-            return
-        if ack.result == Result.ACCEPTED:
-            self._commander.claim(contact.state, now)
-
     # ---- from the verbs ----
 
-    def handle(self, verb: Verb, message: m.Message, now: float) -> None:
+    def handle(self, verb: Verb, said: VerbMessage, now: float) -> None:
         """Send a message of a verb, if it may be sent."""
-        if verb.alone:
-            passes = True
-        elif isinstance(message, m.Heartbeat):
-            passes = not self._operator.live and (self._keeps(verb) or not self._any_armed)
-        elif isinstance(message, m.RoverOperatorPresence) or type(message) in DEMANDS:
-            passes = self._keeps(verb) and self._may_demand(verb, message, now)
-        else:
-            passes = True
-        if not passes:
+        message = said.message
+        if not verb.alone and not self._may_pass(verb, said, now):
             return
         if isinstance(message, m.RoverOperatorPresence):
             self._operator.adopt_presence(message, now)
-        if isinstance(message, m.CommandLong) and message.command == Command.COMPONENT_ARM_DISARM and message.param1:
-            self._arming[message.target_system] = now + ARMS_WITHIN
         self._prove(verb, message, now)
         self._outbox.append(Outgoing(message))
         self._senders.append((message, verb))
+
+    def _may_pass(self, verb: Verb, said: VerbMessage, now: float) -> bool:
+        if said.purpose is Purpose.OTHER:
+            return True
+        if said.purpose is Purpose.PRESENCE:
+            return not self._operator.live and (self._keeps(verb) or not self._any_armed)
+        return self._keeps(verb) and self._may_demand(verb, said, now)
 
     def hear(self, verb: Verb, now: float) -> None:
         """Note that a verb runs. One that stood still has lost its demands, and makes no others."""
@@ -253,12 +255,12 @@ class RunningVerbs:
             verb.alone or verb.needs_session or (verb.follows and not any(each.needs_session for each in self._verbs))
         )
 
-    def _may_demand(self, verb: Verb, message: m.Message, now: float) -> bool:
+    def _may_demand(self, verb: Verb, said: VerbMessage, now: float) -> bool:
         """Return whether to send a demand or a proof; refuse one that moves while somebody else drives."""
-        contact = self._fleet.get(m.target_system(message))
+        message, contact = said.message, self._fleet.get(m.target_system(said.message))
         if contact is None:
             return False
-        if not moves(message, contact):
+        if said.purpose is not Purpose.MOTION:
             verb.demands.pop((type(message), contact.state.system), None)
             return not contact.demand_stream.streaming  # else the station sends them
         other = next((each for each in self._verbs if each is not verb and each.demands), None)
@@ -324,18 +326,3 @@ class RunningVerbs:
 
 def _values(message: m.Message) -> dict[str, Any]:
     return {name: getattr(message, name) for name in message.fieldnames}
-
-
-def moves(message: m.Message, contact: Contact) -> bool:
-    """Return whether a demand requests motion, and does not only show that somebody is there."""
-    if isinstance(message, m.RoverOperatorPresence):
-        axes = (message.x, message.y, message.z, message.r) if message.flags & OperatorFlag.AXES else ()
-        return any(axis not in (0, INVALID_AXIS) for axis in axes)
-    if not isinstance(message, m.ManualControl):
-        return True
-    neutral = build_manual_control(NEUTRAL, message.target, axis_map(contact.state.autopilot))
-    axes = (message.x, message.y, message.z, message.r)
-    return any(
-        axis not in (rest, INVALID_AXIS)
-        for axis, rest in zip(axes, (neutral.x, neutral.y, neutral.z, neutral.r), strict=True)
-    )

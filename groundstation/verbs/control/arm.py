@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+from collections.abc import Callable
 
 import msgspec
 
@@ -37,6 +38,8 @@ class ArmJob(msgspec.Struct):
 
     number: int
     sequence: ArmSequence
+    claim: Callable[[float], None]
+    """Called with the time when the vehicle has accepted, which is control of one that does not report it."""
 
     def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
         """Take the next step; the last one is that the heartbeat reports armed."""
@@ -53,6 +56,8 @@ class ArmJob(msgspec.Struct):
         """End with the first refusal."""
         before = self.sequence.step
         self.sequence.handle_outcome(outcome, client, now)
+        if before is ArmStep.ARM and self.sequence.step is ArmStep.CONFIRM:
+            self.claim(now)
         if before is ArmStep.DONE or self.sequence.step is not ArmStep.DONE:
             return
         mode = "MANUAL: " if outcome.command == Command.DO_SET_MODE else ""
@@ -111,7 +116,7 @@ async def _arm_when_possible(session: VerbSession, until: float) -> RequestRepor
     contact = session.contact
     while True:
         report = await run_job(
-            session, "arm", lambda number, now: ArmJob(number, ArmSequence.start(contact.state, now))
+            session, "arm", lambda number, now: ArmJob(number, ArmSequence.start(contact.state, now), contact.claim)
         )
         for_now = report.state is RequestState.REFUSED and report.detail.startswith(FOR_NOW)
         if not for_now or session.now + ASK_PERIOD > until:

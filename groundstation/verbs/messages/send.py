@@ -84,21 +84,24 @@ async def _send_demand(session: VerbSession, options: argparse.Namespace) -> int
     demand = build_demand(options.kind, options.values, neutrals(state, options.values, session.now)[0])
     demand = demand or build(options.kind, options.values)
     try:
-        for message in neutrals(state, options.values, session.now)[:1]:
-            await _repeat(session, _sender(session, message), 1 / DRIVING_PERIOD, NEUTRAL_LEAD)
-        driving = _until_standstill(session, _sender(session, demand))
+        first, *more = neutrals(state, options.values, session.now)
+        lead = _sender(session, first, moves=bool(more))
+        await _repeat(session, lead, 1 / DRIVING_PERIOD, NEUTRAL_LEAD)
+        driving = _until_standstill(session, _sender(session, demand, moves=True))
         return await _repeat(session, driving, options.rate, options.seconds)
     finally:
-        for message in neutrals(state, options.values, session.now):
-            await _repeat(session, _sender(session, message), 1 / DRIVING_PERIOD, FINAL_NEUTRALS * DRIVING_PERIOD)
+        ends = neutrals(state, options.values, session.now)
+        for message in ends:
+            ending = _sender(session, message, moves=message is not ends[-1])
+            await _repeat(session, ending, 1 / DRIVING_PERIOD, FINAL_NEUTRALS * DRIVING_PERIOD)
 
 
-def _sender(session: VerbSession, message: m.Message) -> Callable[[float], None]:
-    """Return what sends a demand: to our vehicle inside the proof of the session."""
+def _sender(session: VerbSession, message: m.Message, *, moves: bool) -> Callable[[float], None]:
+    """Return what sends a demand: to our vehicle inside the proof of the session. `moves`: a neutral must follow it."""
     if isinstance(message, m.ManualControl):
         demand = message
-        return lambda now: session.contact.operator.send_demand(demand, now)
-    return lambda now: session.core.outbox.append(message)
+        return lambda now: session.contact.operator.send_demand(demand, now, moves=moves)
+    return lambda now: session.core.demand(message, moves=moves)
 
 
 def _until_standstill(session: VerbSession, send: Callable[[float], None]) -> Callable[[float], None]:

@@ -95,6 +95,7 @@ class ShellVerb:
             needs_session=not action.watches,
             follows=self._follows,
             silence=self._silence,
+            speak=session.speak,
         )
         session.flush = seat.flush
         may_prove = (lambda now: True) if self._follows else None  # the station sees to that no other one does

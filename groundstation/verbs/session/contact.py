@@ -8,13 +8,14 @@ from dialects import messages as m
 from dialects.enums import Command
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.operator_core import OperatorCore
+from groundstation.station.verbs.running_verbs import VerbMessage
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_details import VehicleDetails
 from groundstation.verbs.session.operator import VerbOperator
-from link.core import Outgoing, Received
+from link.core import Received
 from link.services.command.client import CommandClient, CommandOutcome
 
 
@@ -34,6 +35,7 @@ class VehicleContact:
     """A vehicle of `station`. State and services are those of the contact; jobs and proofs are those of the verb."""
 
     def __init__(self, station: OperatorCore, contact: Contact, now: float) -> None:
+        self._station = station
         self.ids, self.session = station.parts.ids, station.operator.session
         self.found_at = now
         """When it was heard first."""
@@ -83,6 +85,10 @@ class VehicleContact:
         self.services.lasting.add(job.number)
         job.tick(self.client, self.services.book, now)
 
+    def claim(self, now: float) -> None:
+        """Note that the vehicle has accepted arming."""
+        self._station.claim(self.contact, now)
+
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle, which its state and its services have already."""
         if isinstance(received.message, m.StatusText):
@@ -105,9 +111,10 @@ class VehicleContact:
         asks = self.services.commands.is_waiting(Command.REQUEST_MESSAGE)
         self.operator.tick(self.client, now, may_query=not asks)
 
-    def messages_to_send(self) -> list[Outgoing]:
+    def messages_to_send(self) -> list[VerbMessage]:
         """Return the messages to send now, and remove them; those of the services are the core's."""
-        return self.operator.messages_to_send() + self.client.messages_to_send()
+        commands = [VerbMessage(each.message) for each in self.client.messages_to_send()]
+        return self.operator.messages_to_send() + commands
 
     def _advance(self, now: float) -> None:
         book = self.services.book

@@ -13,10 +13,11 @@ from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.stall import Standstill
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.station.operator_core import OperatorCore
+from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.session.contact import VehicleContact
-from link.core import LinkReport, Outgoing, Received
+from link.core import LinkReport, Received
 from link.protocol.log_tap import LogTap
 
 WATCHER = 25
@@ -56,7 +57,9 @@ class VerbCore:
         self.standstill = Standstill()
         """Of this process, while a watchdog stands by."""
         self.outbox: list[m.Message] = []
-        """Messages of a verb, to all or to their target."""
+        """Messages of a verb, to all or to their target, which are no demands."""
+        self._said: list[VerbMessage] = []
+        """Heartbeats, and demands in other forms than those of the operator."""
         self.ids = station.parts.ids
         """Our system and component id."""
         self._wanted = wanted
@@ -124,7 +127,8 @@ class VerbCore:
             self.standstill.record_report(now)
         self.add_vehicles(now)
         demanding = self.chosen is not None and self.chosen.operator.demanding
-        self.outbox += [each.message for each in self._heartbeat.tick(now, driving=demanding)]
+        beats = self._heartbeat.tick(now, driving=demanding)
+        self._said += [VerbMessage(each.message, Purpose.PRESENCE) for each in beats]
         if self.chosen is None:
             self._choose(now)
         for contact in self.contacts.values():
@@ -136,10 +140,15 @@ class VerbCore:
         self.add_vehicles(now)
         self.reports = tuple(reports)
 
-    def messages_to_send(self) -> list[Outgoing]:
+    def demand(self, message: m.Message, *, moves: bool) -> None:
+        """Send a demand that moves, or the neutral one that ends it."""
+        self._said.append(VerbMessage(message, Purpose.MOTION if moves else Purpose.NEUTRAL))
+
+    def messages_to_send(self) -> list[VerbMessage]:
         """Return the messages to send now, and remove them."""
+        said, self._said = self._said, []
         outbox, self.outbox = self.outbox, []
-        found = [Outgoing(message) for message in outbox]
+        found = said + [VerbMessage(message) for message in outbox]
         return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
 
     def explain_silence(self, system: int) -> str:

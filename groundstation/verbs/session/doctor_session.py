@@ -7,6 +7,7 @@ import asyncio
 import time
 from collections.abc import Callable, Sequence
 
+from dialects import messages as m
 from groundstation.intents.base import Intent
 from groundstation.intents.session import RenewLease
 from groundstation.intents.vehicle import SelectVehicle
@@ -15,6 +16,7 @@ from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.operator_core import OperatorCore
+from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.files import Files
@@ -23,6 +25,14 @@ from groundstation.views.doctor import DoctorRequest, DoctorView
 
 LEASE_PERIOD = 0.1
 """s between renewals of the lease, as of the screen; each also looks whether something has changed."""
+
+
+PURPOSES: dict[type[m.Message], Purpose] = {
+    m.Heartbeat: Purpose.PRESENCE,
+    m.RoverOperatorPresence: Purpose.PROOF,
+    m.ManualControl: Purpose.NEUTRAL,
+}
+"""What its core sends these for; it does not drive."""
 
 
 class DoctorSession:
@@ -51,6 +61,11 @@ class DoctorSession:
     def station(self) -> OperatorCore:
         """The core, which has vehicles of its own."""
         return self.core
+
+    def speak(self) -> list[VerbMessage]:
+        """Return the messages to send now, and remove them: demands of its core are neutral."""
+        found = [each.message for each in self.core.messages_to_send()]
+        return [VerbMessage(message, PURPOSES.get(type(message), Purpose.OTHER)) for message in found]
 
     def driven(self) -> tuple[WatchdogTarget, ...]:
         """Return nothing: it never drives."""

@@ -14,10 +14,10 @@ from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
 from dialects.enums import Command, OperatorFlag, Result
 from groundstation.input.style import HIGHEST_LIMIT, Style
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.vehicles.demand.demand_stream import DemandStream
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS, DialectProbe
 from groundstation.vehicles.state.vehicle_state import VehicleState
-from link.core import Outgoing
 from link.services.command.client import CommandClient, CommandOutcome
 
 PROOFS_FIRST, FIRST_PERIOD = 5, 0.008
@@ -45,7 +45,7 @@ class VerbOperator:
         self._settled_at = -math.inf
         self._proven_at = -math.inf
         self._stream = DemandStream()
-        self._outbox: list[m.Message] = []
+        self._outbox: list[VerbMessage] = []
         self.demanding = False
         """Demands are sent, those of `demand`. When it ends, final neutral ones follow."""
         self.demand: Callable[[float], Axes] = lambda _: NEUTRAL
@@ -95,7 +95,7 @@ class VerbOperator:
         if axes is not None:
             self._session.record_demand(axes)
             frame = axis_map(self._state.autopilot, self.frame)
-            self.send_demand(build_manual_control(axes, self._state.system, frame), now)
+            self.send_demand(build_manual_control(axes, self._state.system, frame), now, moves=not axes.neutral)
         self._prove(now)
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
@@ -104,16 +104,20 @@ class VerbOperator:
             self._probe.handle_outcome(outcome, now)
             self._foreign |= outcome.result not in (Result.ACCEPTED, Result.TEMPORARILY_REJECTED)
 
-    def send_demand(self, demand: m.ManualControl, now: float) -> None:
-        """Send a demand, as the station does: our vehicle takes it from the proof, others from MANUAL_CONTROL."""
-        if self.proves or self._state.has_rover_dialect:
-            self._add_proof(demand, now)
-        self._outbox.append(demand)
+    def send_demand(self, demand: m.ManualControl, now: float, *, moves: bool) -> None:
+        """Send a demand, as the station does: our vehicle takes it from the proof, others from MANUAL_CONTROL.
 
-    def messages_to_send(self) -> list[Outgoing]:
+        `moves`: it is not neutral.
+        """
+        purpose = Purpose.MOTION if moves else Purpose.NEUTRAL
+        if self.proves or self._state.has_rover_dialect:
+            self._add_proof(demand, now, purpose)
+        self._outbox.append(VerbMessage(demand, purpose))
+
+    def messages_to_send(self) -> list[VerbMessage]:
         """Return the messages to send now, and remove them."""
         outbox, self._outbox = self._outbox, []
-        return [Outgoing(message) for message in outbox]
+        return outbox
 
     def _query_dialect(self, client: CommandClient, now: float, may_query: bool) -> None:
         state = self._state
@@ -133,9 +137,9 @@ class VerbOperator:
         period, age = (FIRST_PERIOD, FRESH_TIME) if self._first_left else (IDLE_PROOF_PERIOD, math.inf)
         known = self._state.has_rover_dialect and self._state.boot_time is not None
         if known and now - self._state.boot_time_at <= age and now - self._proven_at >= period and self.may_prove(now):
-            self._add_proof(None, now)
+            self._add_proof(None, now, Purpose.PROOF)
 
-    def _add_proof(self, demand: m.ManualControl | None, now: float) -> None:
+    def _add_proof(self, demand: m.ManualControl | None, now: float, purpose: Purpose) -> None:
         target = (self._state.system, self._state.component)
         proof = self._session.build_presence(target, self._state.boot_time, now, demand)
         proof.flags |= OperatorFlag.SCRIPT
@@ -144,4 +148,4 @@ class VerbOperator:
         if self._first_left:
             self._first_left -= 1
             self._settled_at = now
-        self._outbox.append(proof)
+        self._outbox.append(VerbMessage(proof, purpose))

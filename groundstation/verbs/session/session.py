@@ -13,6 +13,7 @@ from dialects.enums import Command
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.operator import NEUTRAL_LEAD
 from groundstation.station.operator_core import OperatorCore
+from groundstation.station.verbs.running_verbs import VerbMessage
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.vehicle_state import VehicleState
@@ -75,6 +76,10 @@ class VerbSession:
     def station(self) -> OperatorCore:
         """The core that has the vehicles: of a station that runs, or of this process."""
         return self.core.station
+
+    def speak(self) -> list[VerbMessage]:
+        """Return the messages to send now, and remove them."""
+        return self.core.messages_to_send()
 
     def driven(self) -> tuple[WatchdogTarget, ...]:
         """Return what the watchdog must know."""

@@ -10,9 +10,10 @@ from typing import Any
 
 from dialects import messages as m
 from groundstation.station.operator_core import OperatorCore
-from groundstation.station.verbs.running_verbs import Verb
+from groundstation.station.verbs.running_verbs import Verb, VerbMessage
 from groundstation.station_socket.verb_run import STILL_WITHIN
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.session.core import VerbCore
 from link.core import Core, LinkReport, Received, RefusalListener
 
 log = logging.getLogger(__name__)
@@ -30,7 +31,7 @@ class StationSeat:
     def __init__(
         self,
         station: OperatorCore,
-        core: Core,
+        core: VerbCore | Core,
         name: str,
         flush: Callable[[], None],
         *,
@@ -38,13 +39,16 @@ class StationSeat:
         follows: bool = False,
         silence: Callable[[float], float] = lambda now: 0.0,
         alone: bool = False,
+        speak: Callable[[], list[VerbMessage]] | None = None,
     ) -> None:
         """`flush` sends what the station has queued; `silence`: for how many s the shell of the verb was silent.
 
-        `alone`: the station is that of the verb's own process.
+        `alone`: the station is that of the verb's own process. `speak` returns what the verb sends now; None: what
+        its VerbCore does.
         """
         self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
+        self._speak = core.messages_to_send if isinstance(core, VerbCore) else speak
         self._verb = Verb(name, needs_session, self, follows=follows, alone=alone)
 
     @cached_property
@@ -94,8 +98,8 @@ class StationSeat:
         """Give the messages of the verb to the station, which sends them; later if the shell stands still."""
         if self._silence(now) > STILL_WITHIN:
             return
-        for outgoing in self._core.messages_to_send():
-            self._verbs.handle(self._verb, outgoing.message, now)
+        for said in self._speak() if self._speak is not None else ():
+            self._verbs.handle(self._verb, said, now)
 
     @property
     def _now(self) -> float:

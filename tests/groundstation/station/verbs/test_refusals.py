@@ -11,6 +11,7 @@ from dialects.enums import Command
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.plan import ClearPlan
 from groundstation.intents.vehicle import Arm, Disarm
+from groundstation.station.verbs.running_verbs import VerbMessage
 from groundstation.views.requests import RequestsRequest
 from link.fleet.keys import read_frame
 from link.fleet.roles import needed_role
@@ -90,7 +91,7 @@ def test_a_verb_is_told_of_its_own_messages_only(cockpit: Cockpit) -> None:
     verb = verb_of("arm", needs_session=True, seat=seat)
     verbs.join(verb, cockpit.now)
     arm = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
-    verbs.handle(verb, arm, cockpit.now)
+    verbs.handle(verb, VerbMessage(arm), cockpit.now)
     cockpit.world.settle()
     assert told == [(arm, WHY)]
     cockpit.do(Arm(held=1.0))

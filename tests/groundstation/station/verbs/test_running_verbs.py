@@ -5,11 +5,15 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, OperatorFlag, SystemState, VehicleType
+from dialects.enums import Autopilot, OperatorFlag, SystemState, VehicleType
 from dialects.messages import INVALID_AXIS, UINT16_MAX
 from groundstation.intents.session import Quit
-from groundstation.station.verbs.running_verbs import RunningVerbs, Verb
+from groundstation.station.driving.arming import ArmSequence
+from groundstation.station.verbs.running_verbs import Purpose, RunningVerbs, Verb, VerbMessage
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
+from groundstation.verbs.control.arm import ArmJob
+from groundstation.verbs.session.core import VerbCore
+from groundstation.verbs.session.station_seat import StationSeat
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.fakes.verb_seat import SeatLog, verb_of
@@ -17,6 +21,13 @@ from tests.groundstation.cockpits import Cockpit, armed_cockpit
 
 BEAT = m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)
 STEP = 0.05
+
+
+def said(message: m.Message) -> VerbMessage:
+    """Return a message with what the verbs say of it."""
+    kinds = {m.Heartbeat: Purpose.PRESENCE, m.RoverOperatorPresence: Purpose.PROOF, m.ManualControl: Purpose.MOTION}
+    kinds[m.RcChannelsOverride] = Purpose.MOTION
+    return VerbMessage(message, Purpose.NEUTRAL if message is CENTRE else kinds.get(type(message), Purpose.OTHER))
 
 
 class Ashore:
@@ -43,7 +54,7 @@ class Ashore:
 
     def send(self, *messages: m.Message, verb: Verb | None = None) -> None:
         for message in messages:
-            self.verbs.handle(verb or self.verb, message, self.cockpit.now)
+            self.verbs.handle(verb or self.verb, said(message), self.cockpit.now)
         self.cockpit.world.settle()
 
     def run(self, seconds: float, *messages: m.Message) -> None:
@@ -147,7 +158,7 @@ def test_a_thawed_verb_is_found_out_by_its_first_packet() -> None:
     ashore.run(0.5, FULL)
     now = ashore.cockpit.now + 1.0
     ashore.verbs.hear(ashore.verb, now)
-    ashore.verbs.handle(ashore.verb, FULL, now)
+    ashore.verbs.handle(ashore.verb, said(FULL), now)
     assert "stood still for 1." in ashore.refusals[0]
     sent = [each.message for each in ashore.verbs.messages_to_send() if isinstance(each.message, m.ManualControl)]
     assert {message.x for message in sent} == {0}
@@ -200,10 +211,11 @@ def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:
 def test_arming_by_verb_is_control_of_a_vehicle_that_tells_none() -> None:
     cockpit = Cockpit(FakeArduPilot())
     cockpit.run(1.5)
-    verb = verb_of("mavhelm arm", needs_session=True)
-    cockpit.station.verbs.join(verb, cockpit.now)
-    command = m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
-    cockpit.station.verbs.handle(verb, command, cockpit.now)
+    core = VerbCore(cockpit.station, 1)
+    StationSeat(cockpit.station, core, "mavhelm arm", lambda: None, needs_session=True).join(cockpit.now)
+    contact = core.contacts[1]
+    assert contact.services.book.begin(1, "arm")
+    contact.start(ArmJob(1, ArmSequence.start(contact.state, cockpit.now), contact.claim), cockpit.now)
     cockpit.run(1.5)
     assert cockpit.view.armed
     assert cockpit.view.in_control

@@ -184,12 +184,12 @@ def test_the_demand_of_a_shell_that_stands_still_ends() -> None:
         seat = StationSeat(station, core, "a shell", flush, needs_session=True, silence=lambda now: silence[0])
         seat.join(asyncio.get_running_loop().time())
         await shells.see(lambda: core.chosen is not None)
-        core.outbox.append(ahead)
+        core.demand(ahead, moves=True)
         seat.flush()
         await shells.see(lambda: [each.z for each in vehicle.of("MANUAL_CONTROL")][-1:] == [ahead.z])
         silence[0] = ALIVE_WITHIN + 0.05
         await shells.see(lambda: vehicle.of("MANUAL_CONTROL")[-1].z == neutral.z)
-        core.outbox.append(ahead)
+        core.demand(ahead, moves=True)
         seat.flush()
         with pytest.raises(VerbError, match=r"a shell stood still for .* s: its demand has ended"):
             await seat.broken
