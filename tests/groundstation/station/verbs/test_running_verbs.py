@@ -193,6 +193,17 @@ def test_channels_are_centred_and_given_back() -> None:
     assert [message.chan3_raw for _, message in sent[-2:]] == [1500, 0]
 
 
+def test_channels_that_a_verb_has_given_back_are_left_alone() -> None:
+    ashore = Ashore(FakeArduPilot())
+    ashore.run(0.2, m.RcChannelsOverride(1, 1, 1500, UINT16_MAX, 1900, *[UINT16_MAX] * 5))
+    given_back = VerbMessage(m.RcChannelsOverride(1, 1, 0, UINT16_MAX, 0, *[UINT16_MAX] * 5), Purpose.NEUTRAL)
+    ashore.verbs.handle(ashore.verb, given_back, ashore.cockpit.now)
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
+    ashore.cockpit.run(1.0)
+    sent = ashore.cockpit.vehicle.all(m.RcChannelsOverride)
+    assert [message.chan3_raw for _, message in sent[-2:]] == [1900, 0]
+
+
 def test_a_demand_to_nobody_is_not_sent() -> None:
     ashore = Ashore()
     ashore.send(m.ManualControl(9, 1000, 0, 0, 0, 0))
