@@ -55,6 +55,8 @@ class OperatorCore:
         self._outbox: list[Outgoing] = []
         self._active_at = parts.started
         """When something was under way last."""
+        self._tick_due = parts.started
+        """When everything is to tick again while only verbs need all ticks."""
         self.on_rest_end: Callable[[], None] = lambda: None
         """Called at once when `rests` becomes False."""
 
@@ -121,7 +123,11 @@ class OperatorCore:
         self._commander.receive(received, now)
 
     def tick(self, now: float) -> None:
-        """Send what is due and handle what has timed out."""
+        """Send what is due and handle what has timed out; often only for verbs, as nothing else needs all ticks."""
+        if self.verbs.busy and now < self._tick_due and not self._works:
+            self.verbs.tick(now)
+            return
+        self._tick_due = now + TICK_PERIOD
         self._expire_lease(now)
         self._handle_texts(self.log.expire(now), now)
         self.fleet.update(now)
@@ -173,10 +179,14 @@ class OperatorCore:
     @property
     def _busy(self) -> bool:
         """More than demands is under way."""
+        return self.verbs.busy or self._works
+
+    @property
+    def _works(self) -> bool:
+        """The same of all but verbs."""
         return (
             self._commander.busy
             or self.services.busy
-            or self.verbs.busy
             or self._handover.busy
             or self._listener.busy
             or self.driving.ending
