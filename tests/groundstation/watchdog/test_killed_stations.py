@@ -86,7 +86,7 @@ def test_stopped_stations_held_key_moves_nothing_when_it_goes_on(line: str, stac
     wait_until(lambda: send(REPEAT) is None and time.monotonic() > back + 1.5)
     assert not drive.rover.moves, "the key was held all along"
     assert drive.rover.stopped_at < back, [(at - back, *outputs) for at, *outputs in drive.rover.turning]
-    assert drive.outage() == ""
+    wait_until(lambda: drive.outage() == "")
     drive.screen.see(lambda seen: any("station stopped for" in line.text for line in seen.texts))
     drive.screen.insist(lambda: send(DriveKeyUp(key="i"), FORWARD), lambda seen: seen.operator.throttle > 0)
     wait_until(lambda: drive.rover.moves)
@@ -139,7 +139,7 @@ def test_station_whose_watchdog_is_killed_says_so_and_drives_on(stack: ExitStack
     drive.screen.see(lambda seen: any(line.text == text for line in seen.texts))
     seen = drive.screen.snapshot.number
     drive.screen.see(lambda snapshot: snapshot.number > seen + 10)
-    assert drive.rover.moves
+    drive.screen.turn_wheels(lambda: drive.rover.moves)  # a late machine may have released the key
     assert sum(line.count for line in drive.screen.snapshot.texts if line.text == text) == 1
 
 
