@@ -39,7 +39,7 @@ def main(words: list[str]) -> int:
     """Run the tests, with workers unless there are words; return pytest's exit code."""
     named = any(not each.startswith("-") for each in words)
     chosen = [] if named else [*SELECTION, *(f"--deselect={each}" for each in LEFT_OUT)]
-    workers = [] if words else [f"-n{WORKERS}", "--dist=loadgroup"]
+    workers = [] if words else [f"-n{WORKERS}", "--dist=loadfile"]  # keeps the names for --last-failed
     begun = time.monotonic()
     common = ["-p", "tests.macos_rules.forced", "-o", f"cache_dir={CACHE}", "-q", "--durations=8"]
     code = pytest.main([*common, *workers, *chosen, *words])
