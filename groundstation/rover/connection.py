@@ -7,6 +7,7 @@ import contextlib
 import os
 import signal
 import sys
+import tempfile
 from collections import deque
 from collections.abc import AsyncGenerator, Callable, Sequence
 from itertools import count
@@ -37,7 +38,8 @@ MAX_ANSWER = 16 << 20
 END_WITHIN = 3.0
 """s for it to send neutral, to disarm and to end, before it is killed."""
 TEXTS_KEPT = 100
-NOTES_KEPT = 20
+TAIL_SIZE = 4000
+"""Bytes of what it has printed to stderr that are read."""
 
 
 _OPEN: WeakSet[Connection] = WeakSet()
@@ -82,7 +84,7 @@ class Connection:
         self._running: dict[int, _Running] = {}
         self._cancelled: set[asyncio.Future[Ended]] = set()
         self._changed: asyncio.Future[None] | None = None
-        self._errors: deque[str] = deque(maxlen=NOTES_KEPT)
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # not a pipe, which the watchdog of a killed one keeps open
         self._pid = os.getpid()
         self.state: State | None = None
         """The newest one."""
@@ -95,7 +97,7 @@ class Connection:
         """Start the process, and wait until it has found the vehicle. Raises RoverError."""
         self._process = await asyncio.create_subprocess_exec(
             sys.executable, "-m", "groundstation", "api", *self._arguments,
-            stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+            stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=self._errors,
             limit=MAX_ANSWER, process_group=0,  # a Ctrl-C is for the program, which ends it in order
         )  # fmt: skip
         self._reading = asyncio.ensure_future(self._read())
@@ -231,24 +233,16 @@ class Connection:
         process = self._process
         assert process is not None
         assert process.stdout is not None
-        assert process.stderr is not None
-        errors = asyncio.ensure_future(self._read_errors(process.stderr))
         try:
             while line := await process.stdout.readline():
                 self._handle(line)
-            await errors
             await process.wait()
         finally:
-            errors.cancel()
             self._tell_changed()
             for running in self._running.values():
                 running.records.put_nowait(None)
                 if not running.ended.done():
-                    running.ended.set_exception(Disconnected(self._how_it_ended))
-
-    async def _read_errors(self, stream: asyncio.StreamReader) -> None:
-        while line := await stream.readline():
-            self._errors.append(line.decode(errors="replace").strip().removeprefix("mavhelm: "))
+                    running.ended.set_exception(self._end_error())
 
     def _handle(self, line: bytes) -> None:
         match answer := decode_answer(line):
@@ -279,6 +273,11 @@ class Connection:
         code = await self._process.wait()
         return BY_CODE.get(code, RoverError)(self._last_error)
 
+    def _end_error(self) -> RoverError:
+        """Return why calls that run have failed with the process: a person at a screen drives, for example."""
+        kind = None if self._process is None else BY_CODE.get(self._process.returncode or 0)
+        return Disconnected(self._how_it_ended) if kind is None else kind(self._last_error)
+
     @property
     def _how_it_ended(self) -> str:
         code = None if self._process is None else self._process.returncode
@@ -288,4 +287,7 @@ class Connection:
 
     @property
     def _last_error(self) -> str:
-        return self._errors[-1] if self._errors else "no error was printed"
+        """The last line that it has printed to stderr."""
+        size = os.fstat(self._errors.fileno()).st_size
+        tail = os.pread(self._errors.fileno(), TAIL_SIZE, max(0, size - TAIL_SIZE)).decode(errors="replace")
+        return tail.strip().rpartition("\n")[2].removeprefix("mavhelm: ") or "no error was printed"

@@ -19,6 +19,8 @@ from groundstation.rover.errors import Disconnected
 from groundstation.rover.protocol import WAITING_PERIOD
 from groundstation.rover.telemetry import State, Telemetry
 
+CLOSES_WITHIN = 0.02
+"""s for the pipes of a process that has ended to be closed by the loop, which then closes, too."""
 Result = TypeVar("Result")
 
 
@@ -252,5 +254,6 @@ def _run(loop: asyncio.AbstractEventLoop) -> None:
     asyncio.set_event_loop(loop)
     try:
         loop.run_forever()
+        loop.run_until_complete(asyncio.sleep(CLOSES_WITHIN))
     finally:
         loop.close()

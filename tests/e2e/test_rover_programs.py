@@ -14,6 +14,7 @@ import pytest
 
 from groundstation.station_socket.connect import running_stations
 from tests.e2e.programs import Vehicle
+from tests.groundstation.screen import Screen
 from tests.ports import free_port
 from tests.waits import wait_until
 
@@ -178,7 +179,7 @@ def test_the_program_is_told_that_its_connection_was_killed(road: Road) -> None:
     road.see_it_stop()
     assert program.process.wait(30) == 1
     assert "Disconnected: mavhelm has ended: SIGKILL" in program.errors, program.errors
-    assert "Event loop is closed" not in program.errors
+    assert "Event loop is closed" not in program.errors, program.errors
 
 
 BETWEEN_LINES = {
@@ -312,6 +313,20 @@ def test_a_station_that_is_killed_ends_the_call(road: Road, station: subprocess.
     road.see_it_stop()
     assert program.process.wait(30) == 1
     assert "rover.errors." in program.errors
+
+
+def test_a_person_at_a_screen_ends_the_call(road: Road, station: subprocess.Popen[bytes]) -> None:
+    program = road.start_driving(f"""\
+with rover:
+    rover.arm(30)
+    try:
+        rover.drive(0.5, seconds={LONG})
+    except NotInControl as error:
+        say(error)
+""")
+    with Screen.attach(station.pid, "the screen"):
+        road.see_it_stop()
+        wait_until(lambda: "the screen drives" in program.said, lambda: program.errors)
 
 
 @pytest.mark.usefixtures("station")

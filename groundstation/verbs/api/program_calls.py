@@ -52,6 +52,7 @@ class ProgramCalls:
         self._waited_at = -math.inf
         self._stands_still = False
         self._armed_here = False
+        self._ends = False
 
     async def run(self) -> None:
         """Handle calls until the program ends; then neutral, and disarm what it has armed. Raises VerbError."""
@@ -65,6 +66,7 @@ class ProgramCalls:
         except ChannelEndedError:
             pass
         finally:
+            self._ends = True
             for task in (*beside, *self._tasks.values()):
                 task.cancel()
             await asyncio.wait({*beside, *self._tasks.values()})
@@ -116,6 +118,8 @@ class ProgramCalls:
         try:
             code = await self._run(number, words, given, output)
         except asyncio.CancelledError:
+            if self._ends:  # the program gets the reason of that
+                return
             code = int(ExitCode.BROKEN)
             text = f"the program stood still for {SILENCE:g} s: neutral" if self._stands_still else "cancelled"
         except (VerbError, FileFormatError) as error:
