@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import math
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Coroutine, Iterator
@@ -94,8 +95,9 @@ class Rover(Telemetry):
 
     def __del__(self) -> None:
         """Disconnect a Rover that was opened without `with` and is forgotten."""
-        with contextlib.suppress(Exception):
-            self.close()
+        if not sys.is_finalizing():  # then its thread is gone, and the end of the process ends the connection
+            with contextlib.suppress(Exception):
+                self.close()
 
     def open(self) -> None:
         """Connect, and wait for the vehicle. Raises NoVehicle, RoverError."""
