@@ -27,13 +27,15 @@ class Stage(IntEnum):
     DISARMED = 0
     ARMED = 1
     MOVING = 2
-    STOPPING = 3
-    IN_CONTROL = 4
+    STOPPED = 3
+    """Armed, in HOLD."""
+    STOPPING = 4
+    IN_CONTROL = 5
     """Disarmed again, and in control: erases and clears."""
-    AFTERWARDS = 5
-    KEYS = 6
+    AFTERWARDS = 6
+    KEYS = 7
     """Changes the key that signs, so that the vehicles before are not heard any more."""
-    OTHER_VEHICLE = 7
+    OTHER_VEHICLE = 8
     """Needs an autopilot with a compass, a radio control receiver or a file system to write to."""
 
 

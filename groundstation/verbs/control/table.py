@@ -37,7 +37,7 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm, finds=False,
                                 own_timeout=True, many=True, stops=True)}),
     "stop": Verb(Group.DRIVE, (
-        Example("mavhelm stop", "to HOLD", Stage.STOPPING),
+        Example("mavhelm stop", "to HOLD", Stage.STOPPED),
     ), {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop, finds=False,
                               own_timeout=True, many=True, stops=True)}),
     "estop": Verb(Group.DRIVE, (

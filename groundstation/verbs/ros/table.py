@@ -27,11 +27,11 @@ VERBS: dict[str, Verb] = {
         (("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what the program has armed"}),),
         needs_session=True, guarded=lambda _: True, companion=api.serve)}),
     "ros1": Verb(Group.LINKS, (
-        Example("mavhelm ros1 --arm", "a node of ROS 1: /command and /cmd_vel drive; docs/ros.md", Stage.MOVING),
+        Example("mavhelm ros1 --arm", "a node of ROS 1: /command and /cmd_vel drive; docs/ros.md", Stage.STOPPED),
     ), {ONLY: VerbAction("be a node of ROS 1: /command and /cmd_vel drive, telemetry is published; until Ctrl-C",
         ros1.run, ros1.ARGUMENTS, needs_session=True, guarded=lambda _: True, companion=ros1.serve)}),
     "ros2": Verb(Group.LINKS, (
-        Example("mavhelm ros2 --arm --max-speed 0.5", "a node of ROS 2: /cmd_vel drives; docs/ros.md", Stage.MOVING),
+        Example("mavhelm ros2 --arm --max-speed 0.5", "a node of ROS 2: /cmd_vel drives; docs/ros.md", Stage.STOPPED),
     ), {ONLY: VerbAction(
         "be a node of ROS 2 over rmw_zenoh: /cmd_vel and /command drive, telemetry is published; until Ctrl-C",
         ros2.run, ros2.ARGUMENTS, needs_session=True, prepare=ros2.prepare, guarded=lambda _: True,
