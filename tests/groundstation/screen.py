@@ -112,12 +112,12 @@ class Screen:
 
         self.insist(press, lambda _: turning())
 
-    def insist(self, act: Callable[[], None], condition: Callable[[Snapshot], bool]) -> None:
-        """Do it again until it shows."""
-        for _ in range(round(PATIENCE / TRY)):
+    def insist(self, act: Callable[[], None], condition: Callable[[Snapshot], bool], within: float = TRY) -> None:
+        """Do it again until it shows, which takes `within` s at most."""
+        for _ in range(round(PATIENCE / within)):
             act()
             with suppress(AssertionError):
-                self.see(condition, TRY)
+                self.see(condition, within)
                 return
         raise AssertionError(f"not seen: {self.snapshot}")
 

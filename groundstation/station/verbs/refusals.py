@@ -31,6 +31,7 @@ class Refusals:
         """Note that `message` was not sent."""
         if self._verbs.handle_refused(message, why, now):
             return
+        self._verbs.tell_alone(message, why, now)
         contact = self._fleet.get(m.target_system(message))
         if contact is None or not _is_wanted(message, contact):
             return

@@ -235,6 +235,12 @@ class RunningVerbs:
             verb.seat.tell_refusal(message, why, now)
         return verb is not None
 
+    def tell_alone(self, message: m.Message, why: str, now: float) -> None:
+        """Tell a verb that has the station for itself: whatever is requested here is its own."""
+        for verb in self._verbs:
+            if verb.alone:
+                verb.seat.tell_refusal(message, why, now)
+
     @property
     def busy(self) -> bool:
         """Whether a verb runs, which may send its last messages yet, or what one demanded is being ended."""

@@ -128,7 +128,9 @@ class ModeRequests:
             self._confirm()
             return
         self._change = None
-        if outcome.number is None:
+        if outcome.refusal:  # it was not sent
+            self._book.refuse(change.number, outcome.refusal, now, by_vehicle=False)
+        elif outcome.number is None:
             self._book.fail(change.number, f"after {TRIES} tries")
         else:
             self._book.refuse(change.number, result_token(outcome.number), now)

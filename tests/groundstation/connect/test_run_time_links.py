@@ -14,6 +14,7 @@ from groundstation.intents.links import AddLink, CloseLink
 from groundstation.intents.session import StartSimulator
 from groundstation.intents.vehicle import Disarm
 from groundstation.intents.watch import Watch
+from groundstation.station.driving.commander import STOP_TIMEOUT
 from groundstation.views.connect import ConnectRequest, ConnectView, LinkAttempt
 from groundstation.views.links import LinksRequest, LinksView
 from tests.fakes.lines import on_line
@@ -124,6 +125,7 @@ def test_a_link_that_only_watches_never_sends_a_byte() -> None:
             screen.insist(
                 lambda: screen.client.send(Disarm()),
                 lambda seen: any("no answer" in line.text for line in seen.texts),
+                within=2 * STOP_TIMEOUT,
             )
             assert vehicle.received == []
             assert [link.watch_only for link in screen.snapshot.links] == [False, True]

@@ -43,3 +43,14 @@ def test_the_first_heartbeat_decides_however_late(mode: int, state: RequestState
 def test_without_any_heartbeat_there_is_no_answer() -> None:
     report = tick(accepted(), 8.2)
     assert (report.state, report.detail) == (RequestState.NO_ANSWER, "accepted, but no heartbeat came for 8 s")
+
+
+def test_a_change_that_our_role_does_not_allow_is_refused() -> None:
+    services = VehicleServices(255, 190, (1, 1))
+    services.autopilot, services.kind = Autopilot.ARDUPILOT, ROVER
+    services.modes.set(1, "HOLD", 0.0)
+    [sent] = [each.message for each in services.messages_to_send() if isinstance(each.message, m.CommandLong)]
+    services.handle_refused(sent, "the key may only watch", 0.1)
+    services.receive(received(m.Heartbeat(ROVER, Autopilot.ARDUPILOT, 1, MANUAL, 4, 3), 1, 1), 0.2)
+    report = tick(services, 0.2)
+    assert (report.state, report.text) == (RequestState.REFUSED, "mode HOLD: refused, the key may only watch")
