@@ -31,7 +31,7 @@ test-fast: | .venv/bin/python  ## Test the cores and the safety code, in less th
 	$(NEEDS) test pytest xdist
 	$(PYTEST) -q $(PARALLEL) -m 'not slow' $(FAST)
 
-test: | .venv/bin/python  ## Run the short suite, as README.md does: 160 s of CPU.
+test: | .venv/bin/python  ## Run the short suite, as README.md does: 190 s of CPU.
 	$(NEEDS) test pytest xdist
 	$(PYTEST) $(PARALLEL)
 

@@ -1,7 +1,7 @@
 """Which tests run: `pytest` alone runs the short suite, `--suite all` every test, `--suite rest` those that are left.
 
 The short suite is for everybody who has a clone: the cores and the safety code in virtual time, all that needs no other
-program, and the main job with the real ones. It takes 160 s of CPU and skips nothing with the packages of the extra
+program, and the main job with the real ones. It takes 190 s of CPU and skips nothing with the packages of the extra
 `test`. A new test belongs to it, unless one of MARKERS or a row of LONG says otherwise; of a long table of parameters
 ROWS do. Tests that are named on the command line always run.
 """
