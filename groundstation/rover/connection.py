@@ -35,6 +35,8 @@ from groundstation.rover.telemetry import State
 
 MAX_ANSWER = 16 << 20
 """Bytes of one line of `mavhelm api`."""
+HANGS_AFTER = 5.0
+"""s without any line after which a call fails."""
 END_WITHIN = 3.0
 """s for it to send neutral, to disarm and to end, before it is killed."""
 TEXTS_KEPT = 100
@@ -86,6 +88,8 @@ class Connection:
         self._changed: asyncio.Future[None] | None = None
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # not a pipe, which the watchdog of a killed one keeps open
         self._pid = os.getpid()
+        self._lines = 0
+        """How many have arrived; a state comes ten times a second."""
         self.state: State | None = None
         """The newest one."""
         self.texts: deque[Text] = deque(maxlen=TEXTS_KEPT)
@@ -201,13 +205,16 @@ class Connection:
         return number, running
 
     async def _wait(self, running: _Running, *, drives: bool) -> Ended:
-        """Wait for the end of a call, and say meanwhile that the program waits for it."""
-        while drives:
-            ended, _ = await asyncio.wait({running.ended}, timeout=WAITING_PERIOD)
-            if ended:
-                break
-            if self.waits():
+        """Wait for the end of a call; while it drives, say that the program waits. Raises Disconnected."""
+        silent = 0
+        while not running.ended.done():
+            before = self._lines
+            await asyncio.wait({running.ended}, timeout=WAITING_PERIOD)
+            if drives and self.waits() and not running.ended.done():
                 self._send(Waiting())
+            silent = 0 if self._lines != before else silent + 1  # counted, because this program may have stood still
+            if silent * WAITING_PERIOD > HANGS_AFTER:
+                raise Disconnected(f"mavhelm has not answered for {HANGS_AFTER:g} s")
         return await running.ended
 
     def _send(self, value: Call | Cancel | Waiting) -> None:
@@ -217,7 +224,7 @@ class Connection:
         if process is None:
             raise Disconnected("this Rover is not connected")
         if process.returncode is not None:
-            raise Disconnected(self._how_it_ended)
+            raise self._end_error()
         assert process.stdin is not None
         process.stdin.write(encode(value) + b"\n")
 
@@ -245,6 +252,7 @@ class Connection:
                     running.ended.set_exception(self._end_error())
 
     def _handle(self, line: bytes) -> None:
+        self._lines += 1
         match answer := decode_answer(line):
             case Ready():
                 pass  # the first state follows

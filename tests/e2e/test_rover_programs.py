@@ -145,7 +145,7 @@ def freeze_the_connection(program: Program) -> None:
 
 @pytest.mark.parametrize(
     "way",
-    [kill, interrupt, terminate, freeze, kill_the_connection, freeze_the_connection],
+    [kill, interrupt, terminate, freeze, kill_the_connection],
     ids=lambda way: str(way.__name__),
 )
 def test_a_call_that_drives_ends_with_its_program(road: Road, way: Callable[[Program], None]) -> None:
@@ -180,6 +180,14 @@ def test_the_program_is_told_that_its_connection_was_killed(road: Road) -> None:
     assert program.process.wait(30) == 1
     assert "Disconnected: mavhelm has ended: SIGKILL" in program.errors, program.errors
     assert "Event loop is closed" not in program.errors, program.errors
+
+
+def test_the_program_is_told_that_its_connection_stands_still(road: Road) -> None:
+    program = road.start_driving()
+    freeze_the_connection(program)
+    road.see_it_stop()
+    assert program.process.wait(60) == 1
+    assert "Disconnected: mavhelm has not answered for 5 s" in program.errors
 
 
 BETWEEN_LINES = {
@@ -324,9 +332,9 @@ with rover:
     except NotInControl as error:
         say(error)
 """)
-    with Screen.attach(station.pid, "the screen"):
+    with Screen.attach(station.pid, "screen of a test"):
         road.see_it_stop()
-        wait_until(lambda: "the screen drives" in program.said, lambda: program.errors)
+        wait_until(lambda: "the screen of a test drives" in program.said, lambda: program.errors)
 
 
 @pytest.mark.usefixtures("station")
