@@ -84,6 +84,12 @@ def test_without_procfs_ps_tells_the_ancestors(tmp_path: Path, monkeypatch: pyte
     assert find_proxy({}, 22, nowhere) == ""
 
 
+def needs(program: str, package: str) -> pytest.MarkDecorator:
+    missing = shutil.which(program) is None and "MAVHELM_CI" not in os.environ
+    return pytest.mark.skipif(missing, reason=f"{program} is not installed: `sudo apt install {package}`")
+
+
+@needs("ps", "procps")
 def test_the_real_ps_lists_this_process() -> None:
     name, parent = _list_processes()[os.getpid()]
     assert (parent, bool(name)) == (os.getppid(), True)
@@ -106,11 +112,6 @@ def test_the_gate_lets_no_other_style_pass(proxy: str, chosen: str) -> None:
     assert [each for each in recorder.intents if isinstance(each, SetStyle)] == [SetStyle(style=chosen, why=why)]
     assert gate.allow(SetStyle(style="next")) == SetStyle(style=chosen, why=why)
     recorder.close()
-
-
-def needs(program: str, package: str) -> pytest.MarkDecorator:
-    missing = shutil.which(program) is None and "MAVHELM_CI" not in os.environ
-    return pytest.mark.skipif(missing, reason=f"{program} is not installed: `sudo apt install {package}`")
 
 
 class Inside:
