@@ -8,9 +8,9 @@ from collections.abc import AsyncGenerator, Callable, Sequence
 from types import TracebackType
 from typing import Any, Self
 
-from groundstation.rover.connection import Connection, Outcome
+from groundstation.rover.connection import ApiConnection, Outcome
 from groundstation.rover.errors import Disconnected, InvalidCall, NoAnswer, RoverError
-from groundstation.rover.telemetry import State, Telemetry
+from groundstation.rover.telemetry import State, StateValues
 from groundstation.sitl.sitl import SimulatorControl, free_port
 from link.endpoint import parse_endpoint
 
@@ -20,7 +20,7 @@ SITL_WAIT = 10.0
 """s for a simulator to start."""
 
 
-class AsyncRover(Telemetry):
+class AsyncRover(StateValues):
     """One vehicle, while `async with` runs.
 
     `endpoints`: as for `mavhelm`, such as "udpin:0.0.0.0:14550"; without one the ground station that runs here, or the
@@ -35,7 +35,7 @@ class AsyncRover(Telemetry):
         self._endpoints, self._vehicle = list(endpoints), vehicle
         self._wait, self._stay_armed = wait, stay_armed
         self._simulator: SimulatorControl | None = None
-        self._connection: Connection | None = None
+        self._connection: ApiConnection | None = None
         self.waits: Callable[[], bool] = lambda: True
         """Whether the program waits for the call that drives; Rover sets it."""
 
@@ -67,7 +67,7 @@ class AsyncRover(Telemetry):
         arguments += ["--station", "never"] if self._simulator is not None else []
         arguments += [] if self._vehicle is None else ["-v", str(self._vehicle)]
         arguments += ["--stay-armed"] if self._stay_armed else []
-        self._connection = connection = Connection(("--wait", f"{self._wait:g}", *arguments))
+        self._connection = connection = ApiConnection(("--wait", f"{self._wait:g}", *arguments))
         connection.waits = self.waits
         try:
             await connection.open()
@@ -212,7 +212,7 @@ class AsyncRover(Telemetry):
         return await self._connected.call(*words, drives=words[:1] in (("drive",), ("turn",)))
 
     @property
-    def _connected(self) -> Connection:
+    def _connected(self) -> ApiConnection:
         if self._connection is None:
             raise Disconnected("this Rover is not connected: use it in `with`")
         return self._connection

@@ -20,13 +20,13 @@ from groundstation.rover.errors import BY_CODE, Disconnected, LinkLost, NoAnswer
 from groundstation.rover.protocol import (
     WAITING_PERIOD,
     Call,
+    CallNote,
+    CallRecord,
     Cancel,
     CurrentState,
     Ended,
-    Note,
     Ready,
-    Record,
-    Text,
+    VehicleText,
     Waiting,
     decode_answer,
     encode,
@@ -44,7 +44,7 @@ TAIL_SIZE = 4000
 """Bytes of what it has printed to stderr that are read."""
 
 
-_OPEN: WeakSet[Connection] = WeakSet()
+_OPEN: WeakSet[ApiConnection] = WeakSet()
 
 
 def _close_in_fork() -> None:
@@ -75,7 +75,7 @@ class _Running:
         self.ended: asyncio.Future[Ended] = asyncio.get_running_loop().create_future()
 
 
-class Connection:
+class ApiConnection:
     """One process. All methods are called in the event loop that has opened it."""
 
     def __init__(self, arguments: Sequence[str]) -> None:
@@ -92,7 +92,7 @@ class Connection:
         """How many have arrived; a state comes ten times a second."""
         self.state: State | None = None
         """The newest one."""
-        self.texts: deque[Text] = deque(maxlen=TEXTS_KEPT)
+        self.texts: deque[VehicleText] = deque(maxlen=TEXTS_KEPT)
         """The newest STATUSTEXT messages of the vehicle."""
         self.waits: Callable[[], bool] = lambda: True
         """Whether the program waits for the call that drives."""
@@ -259,11 +259,11 @@ class Connection:
             case CurrentState():
                 self.state = answer.state
                 self._tell_changed()
-            case Text():
+            case VehicleText():
                 self.texts.append(answer)
-            case Record() if answer.id in self._running:
+            case CallRecord() if answer.id in self._running:
                 self._running[answer.id].records.put_nowait(answer.fields)
-            case Note() if answer.id in self._running:
+            case CallNote() if answer.id in self._running:
                 self._running[answer.id].notes.append(answer.text)
             case Ended() if answer.id in self._running:
                 running = self._running[answer.id]

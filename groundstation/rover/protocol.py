@@ -1,7 +1,7 @@
 """Protocol between a Python program and `mavhelm api`: one JSON object a line, in both directions.
 
-The program sends Call, Cancel and Waiting. It gets Ready once, State ten times a second, Text, and for each call any
-number of Record and Note, then Ended.
+The program sends Call, Cancel and Waiting. It gets Ready once, CurrentState ten times a second, VehicleText, and for
+each call any number of CallRecord and CallNote, then Ended.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class CurrentState(msgspec.Struct, frozen=True, tag="state"):
     state: State
 
 
-class Text(msgspec.Struct, frozen=True, tag="text"):
+class VehicleText(msgspec.Struct, frozen=True, tag="text"):
     """A STATUSTEXT of the vehicle."""
 
     severity: int
@@ -60,14 +60,14 @@ class Text(msgspec.Struct, frozen=True, tag="text"):
     text: str
 
 
-class Record(msgspec.Struct, frozen=True, tag="record"):
+class CallRecord(msgspec.Struct, frozen=True, tag="record"):
     """Data of a call, as `--json` prints them."""
 
     id: int
     fields: dict[str, Any]
 
 
-class Note(msgspec.Struct, frozen=True, tag="note"):
+class CallNote(msgspec.Struct, frozen=True, tag="note"):
     """A line of a call for a person."""
 
     id: int
@@ -84,7 +84,7 @@ class Ended(msgspec.Struct, frozen=True, tag="ended"):
 
 
 FromProgram = Call | Cancel | Waiting
-ToProgram = Ready | CurrentState | Text | Record | Note | Ended
+ToProgram = Ready | CurrentState | VehicleText | CallRecord | CallNote | Ended
 
 encode = msgspec.json.Encoder().encode
 decode_call = msgspec.json.Decoder(FromProgram).decode

@@ -18,14 +18,14 @@ from groundstation.rover.async_rover import AsyncRover
 from groundstation.rover.connection import END_WITHIN, Outcome
 from groundstation.rover.errors import Disconnected
 from groundstation.rover.protocol import WAITING_PERIOD
-from groundstation.rover.telemetry import State, Telemetry
+from groundstation.rover.telemetry import State, StateValues
 
 CLOSES_WITHIN = 0.02
 """s for the pipes of a process that has ended to be closed by the loop, which then closes, too."""
 Result = TypeVar("Result")
 
 
-class Params:
+class RoverParams:
     """The parameters of a vehicle: `rover.params["FS_TIMEOUT"]` asks for one, an assignment sets it."""
 
     def __init__(self, rover: Rover) -> None:
@@ -55,7 +55,7 @@ class _Waiting:
         return time.monotonic() - self._at < 2 * WAITING_PERIOD
 
 
-class Rover(Telemetry):
+class Rover(StateValues):
     """One vehicle, inside `with`: see AsyncRover for the arguments.
 
     Every call blocks until it is done. The thread that has called is what keeps a call driving: if it hangs, or its
@@ -238,9 +238,9 @@ class Rover(Telemetry):
     # ---- parameters, commands ----
 
     @property
-    def params(self) -> Params:
+    def params(self) -> RoverParams:
         """The parameters of the vehicle: `params["FS_TIMEOUT"] = 2`."""
-        return Params(self)
+        return RoverParams(self)
 
     def command(self, name: str, *params: float) -> None:
         """Send a MAV_CMD by its name, with up to 7 parameters; done when the vehicle has accepted."""

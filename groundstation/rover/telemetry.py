@@ -1,4 +1,4 @@
-"""State: what a program sees of its vehicle, and Telemetry: its values as attributes. Units are SI, angles degrees."""
+"""State: what a program sees of its vehicle, and StateValues: its values as attributes. SI, angles in degrees."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class State(msgspec.Struct, frozen=True, kw_only=True):
     """Demand that the vehicle applies, -1 to 1, positive to the right."""
 
 
-class Telemetry(ABC):
+class StateValues(ABC):
     """The values of the newest state that programs ask for most."""
 
     @property

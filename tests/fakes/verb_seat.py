@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from groundstation.station.verbs.running_verbs import Verb
+from groundstation.station.verbs.running_verbs import RunningVerb
 from link.core import LinkReport, Received
 
 
@@ -36,6 +36,8 @@ class SeatLog:
         """Do nothing."""
 
 
-def verb_of(name: str, *, needs_session: bool = False, follows: bool = False, seat: SeatLog | None = None) -> Verb:
+def verb_of(
+    name: str, *, needs_session: bool = False, follows: bool = False, seat: SeatLog | None = None
+) -> RunningVerb:
     """Return a verb for a station to join."""
-    return Verb(name, needs_session, seat or SeatLog(), follows=follows)
+    return RunningVerb(name, needs_session, seat or SeatLog(), follows=follows)

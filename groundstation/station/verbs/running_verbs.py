@@ -80,7 +80,7 @@ class VerbSeat(Protocol):
         """Let the verb send what is due."""
 
 
-class Verb(msgspec.Struct, eq=False):
+class RunningVerb(msgspec.Struct, eq=False):
     """One verb."""
 
     name: str
@@ -115,7 +115,7 @@ class RunningVerbs:
         self._log = log
         self.screen_that_drives: Callable[[], str | None] = lambda: None
         """Returns its name; None without one."""
-        self._verbs: list[Verb] = []
+        self._verbs: list[RunningVerb] = []
         self._newest: dict[tuple[int, int, int, Peer | None], tuple[Received, float]] = {}
         """System, component and message id -> the newest; a HEARTBEAT of each sender, because two may have one id."""
         self._reports: tuple[LinkReport, ...] = ()
@@ -125,16 +125,16 @@ class RunningVerbs:
         self._proven: dict[int, float] = {}
         """System id -> when the session was last proven to it for a verb."""
         self._outbox: list[Outgoing] = []
-        self._senders: list[tuple[m.Message, Verb]] = []
+        self._senders: list[tuple[m.Message, RunningVerb]] = []
         """Of the messages of verbs in `_outbox`."""
-        self._sent: list[tuple[m.Message, Verb]] = []
+        self._sent: list[tuple[m.Message, RunningVerb]] = []
         """The same of those that are being sent."""
 
     def may_follow(self, now: float) -> bool:
         """Return whether a verb that only looks may go on with the session of the verb before."""
         return not self._operator.live and now - self._used_at <= KEEP
 
-    def join(self, verb: Verb, now: float) -> None:
+    def join(self, verb: RunningVerb, now: float) -> None:
         """Start a verb, and report the present state to it."""
         verb.heard_at = now
         verb.seat.report(self._reports, now)
@@ -145,7 +145,7 @@ class RunningVerbs:
                 verb.seat.deliver(received, now)
         self._verbs.append(verb)
 
-    def leave(self, verb: Verb, now: float) -> None:
+    def leave(self, verb: RunningVerb, now: float) -> None:
         """Forget a verb that has ended; what it demanded ends with neutral."""
         self._verbs.remove(verb)
         self._end_demands(verb, now)
@@ -183,7 +183,7 @@ class RunningVerbs:
 
     # ---- from the verbs ----
 
-    def handle(self, verb: Verb, said: VerbMessage, now: float) -> None:
+    def handle(self, verb: RunningVerb, said: VerbMessage, now: float) -> None:
         """Send a message of a verb, if it may be sent."""
         message = said.message
         if not verb.alone and not self._may_pass(verb, said, now):
@@ -194,14 +194,14 @@ class RunningVerbs:
         self._outbox.append(Outgoing(message))
         self._senders.append((message, verb))
 
-    def _may_pass(self, verb: Verb, said: VerbMessage, now: float) -> bool:
+    def _may_pass(self, verb: RunningVerb, said: VerbMessage, now: float) -> bool:
         if said.purpose is Purpose.OTHER:
             return True
         if said.purpose is Purpose.PRESENCE:
             return not self._operator.live and (self._keeps(verb) or not self._any_armed)
         return self._keeps(verb) and self._may_demand(verb, said, now)
 
-    def hear(self, verb: Verb, now: float) -> None:
+    def hear(self, verb: RunningVerb, now: float) -> None:
         """Note that a verb runs. One that stood still has lost its demands, and makes no others."""
         self._check_silence(verb, now)
         verb.heard_at = now
@@ -255,13 +255,13 @@ class RunningVerbs:
     def _any_armed(self) -> bool:
         return any(contact.state.armed for contact in self._fleet)
 
-    def _keeps(self, verb: Verb) -> bool:
+    def _keeps(self, verb: RunningVerb) -> bool:
         """Return whether a verb keeps vehicles from missing their ground station."""
         return (
             verb.alone or verb.needs_session or (verb.follows and not any(each.needs_session for each in self._verbs))
         )
 
-    def _may_demand(self, verb: Verb, said: VerbMessage, now: float) -> bool:
+    def _may_demand(self, verb: RunningVerb, said: VerbMessage, now: float) -> bool:
         """Return whether to send a demand or a proof; refuse one that moves while somebody else drives."""
         message, contact = said.message, self._fleet.get(m.target_system(said.message))
         if contact is None:
@@ -279,7 +279,7 @@ class RunningVerbs:
         verb.demands[type(message), contact.state.system] = message
         return True
 
-    def _prove(self, verb: Verb, message: m.Message, now: float) -> None:
+    def _prove(self, verb: RunningVerb, message: m.Message, now: float) -> None:
         """Prove the session before a message that may need control; a live screen does so all the time."""
         contact = self._fleet.get(getattr(message, "target_system", 0))
         if contact is None or not contact.state.has_rover_dialect or not verb.needs_session or self._operator.live:
@@ -293,18 +293,18 @@ class RunningVerbs:
         if proof:
             self._proven[contact.state.system] = now
 
-    def _check_silence(self, verb: Verb, now: float) -> None:
+    def _check_silence(self, verb: RunningVerb, now: float) -> None:
         silence = now - verb.heard_at
         if verb.demands and silence > ALIVE_WITHIN:
             self._refuse(verb, f"{verb.name} stood still for {silence:.1f} s: its demand has ended", now)
 
-    def _refuse(self, verb: Verb, reason: str, now: float) -> None:
+    def _refuse(self, verb: RunningVerb, reason: str, now: float) -> None:
         verb.refused = reason
         if verb.demands:
             self._log.add(now, "station", f"{verb.name} stopped: {reason}", Severity.WARNING)
         self._end_demands(verb, now)
 
-    def _end_demands(self, verb: Verb, now: float) -> None:
+    def _end_demands(self, verb: RunningVerb, now: float) -> None:
         """Send neutral in the place of a verb, several times."""
         for (kind, system), demand in verb.demands.items():
             contact = self._fleet.get(system)

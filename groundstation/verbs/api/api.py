@@ -49,7 +49,7 @@ async def serve(options: argparse.Namespace, output: Output, verb: CompanionChan
     except (OSError, ValueError) as error:
         raise VerbError(ExitCode.USAGE, f"stdin and stdout must be pipes of the program: {error}") from None
     transport.set_write_buffer_limits(MOST_UNREAD)
-    program = Program(verb, transport)
+    program = ProgramPipe(verb, transport)
     tasks = asyncio.ensure_future(program.read(reader)), asyncio.ensure_future(program.answer())
     try:
         ended, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -65,7 +65,7 @@ def _copy(stream: IO[str]) -> IO[bytes]:
     return os.fdopen(os.dup(stream.fileno()), stream.mode.replace("w", "wb").replace("r", "rb"), buffering=0)
 
 
-class Program:
+class ProgramPipe:
     """The program at the other end of stdin and stdout."""
 
     def __init__(self, verb: CompanionChannel, transport: asyncio.WriteTransport) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from groundstation.rover.protocol import Note, Record
+from groundstation.rover.protocol import CallNote, CallRecord
 from groundstation.vehicles.requests.requests import RequestReport
 
 
@@ -27,7 +27,7 @@ class CallOutput:
 
     def record(self, **fields: Any) -> None:
         """Send an object."""
-        self._send(Record(self._call, fields))
+        self._send(CallRecord(self._call, fields))
 
     def result(self, ok: bool, vehicle: int | None, **fields: Any) -> None:
         """Keep how the verb ended."""
@@ -38,7 +38,7 @@ class CallOutput:
 
     def note(self, text: str) -> None:
         """Send a note."""
-        self._send(Note(self._call, text))
+        self._send(CallNote(self._call, text))
 
     def error(self, text: str) -> None:
         """Keep an error, and send it as a note."""

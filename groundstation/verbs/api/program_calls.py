@@ -17,7 +17,7 @@ import msgspec
 
 from dialects import messages as m
 from groundstation.formats.errors import FileFormatError
-from groundstation.rover.protocol import SILENCE, STATE_PERIOD, CurrentState, Ended, Ready, Text
+from groundstation.rover.protocol import SILENCE, STATE_PERIOD, CurrentState, Ended, Ready, VehicleText
 from groundstation.verbs.action import VerbAction
 from groundstation.verbs.api.call_output import CallOutput
 from groundstation.verbs.api.state import build_state
@@ -98,7 +98,7 @@ class ProgramCalls:
     def _tap(self, received: Received, now: float) -> None:
         message = received.message
         if isinstance(message, m.StatusText) and received.system == self._session.vehicle.system:
-            self._send(Text(message.severity, message.text))
+            self._send(VehicleText(message.severity, message.text))
 
     # ---- calls ----
 
@@ -127,8 +127,7 @@ class ProgramCalls:
         except Exception as error:  # of the verb: it must not end the connection
             log.exception("a call failed")
             code, text = int(ExitCode.BROKEN), f"{type(error).__name__}: {error}"
-        fields = dict(output.fields)
-        self._send(Ended(number, code, text or (output.error_text if code else ""), fields))
+        self._send(Ended(number, code, text or (output.error_text if code else ""), output.fields))
 
     async def _run(self, number: int, words: list[str], given: Any, output: CallOutput) -> int:
         action, options = await asyncio.to_thread(_parse, words, self._session.vehicle.system)

@@ -10,7 +10,7 @@ from typing import Any
 
 from dialects import messages as m
 from groundstation.station.operator_core import OperatorCore
-from groundstation.station.verbs.running_verbs import Verb, VerbMessage
+from groundstation.station.verbs.running_verbs import RunningVerb, VerbMessage
 from groundstation.station_socket.verb_run import STILL_WITHIN
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.core import VerbCore
@@ -49,7 +49,7 @@ class StationSeat:
         self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
         self._speak = core.messages_to_send if isinstance(core, VerbCore) else speak
-        self._verb = Verb(name, needs_session, self, follows=follows, alone=alone)
+        self._verb = RunningVerb(name, needs_session, self, follows=follows, alone=alone)
 
     @cached_property
     def broken(self) -> asyncio.Future[None]:

@@ -9,7 +9,7 @@ from dialects.enums import Autopilot, OperatorFlag, SystemState, VehicleType
 from dialects.messages import INVALID_AXIS, UINT16_MAX
 from groundstation.intents.session import Quit
 from groundstation.station.driving.arming import ArmSequence
-from groundstation.station.verbs.running_verbs import Purpose, RunningVerbs, Verb, VerbMessage
+from groundstation.station.verbs.running_verbs import Purpose, RunningVerb, RunningVerbs, VerbMessage
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.verbs.control.arm import ArmJob
 from groundstation.verbs.session.core import VerbCore
@@ -43,7 +43,7 @@ class Ashore:
         self.verb = self.add("mavhelm send", needs_session=needs_session)
         self.alive = True
 
-    def add(self, name: str, *, needs_session: bool = True, follows: bool = False) -> Verb:
+    def add(self, name: str, *, needs_session: bool = True, follows: bool = False) -> RunningVerb:
         verb = verb_of(name, needs_session=needs_session, follows=follows, seat=self.seat)
         self.verbs.join(verb, self.cockpit.now)
         return verb
@@ -52,7 +52,7 @@ class Ashore:
     def verbs(self) -> RunningVerbs:
         return self.cockpit.station.verbs
 
-    def send(self, *messages: m.Message, verb: Verb | None = None) -> None:
+    def send(self, *messages: m.Message, verb: RunningVerb | None = None) -> None:
         for message in messages:
             self.verbs.handle(verb or self.verb, said(message), self.cockpit.now)
         self.cockpit.world.settle()
@@ -66,7 +66,7 @@ class Ashore:
                 self.send(*messages)
             self.cockpit.run(STEP)
 
-    def passed(self, *messages: m.Message, verb: Verb) -> list[int]:
+    def passed(self, *messages: m.Message, verb: RunningVerb) -> list[int]:
         """Send messages of a verb; return how many of each kind reach the vehicle."""
         before = [len(self.of(type(each))) for each in messages]
         self.verbs.hear(verb, self.cockpit.now)
