@@ -16,7 +16,7 @@ from groundstation.input.keymap import KeymapError
 from groundstation.input.keymap_file import load_keymap, parse_bindings, rebind
 from groundstation.input.pad_mapping import find_pad_conflict, find_pad_problems
 from link.endpoint import EndpointError, parse_endpoint, parse_endpoints
-from link.runtime.toml_errors import suggest
+from link.toml.errors import suggest
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 """A name of an endpoint: without `:` and `/`, which endpoints have, and not like an option."""

@@ -14,8 +14,8 @@ from platformdirs import user_config_path
 from groundstation.config.checks import Problem, find_problems
 from groundstation.input.keymap import KEYMAPS
 from groundstation.input.keymap_file import flatten
-from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read_text
-from link.runtime.toml_lines import find_line
+from link.toml.file import TomlError, find_unsupported, parse_toml, read_text
+from link.toml.lines import find_line
 
 VARIABLE = "MAVHELM_CONFIG"
 """Environment variable with the path of another file."""

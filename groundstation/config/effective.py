@@ -13,7 +13,7 @@ from groundstation.config.settings import ROWS, Settings, ThemeName
 from groundstation.input.keymap import Keymap
 from groundstation.input.keymap_file import load_keymap, rebind
 from link.endpoint import EndpointError, parse_endpoint
-from link.runtime.toml_errors import suggest
+from link.toml.errors import suggest
 
 
 class Effective(msgspec.Struct, frozen=True):

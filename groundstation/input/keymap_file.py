@@ -10,7 +10,7 @@ from pathlib import Path
 
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, Keymap, KeymapError
-from link.runtime.toml_file import TomlError, parse_toml, read_text
+from link.toml.file import TomlError, parse_toml, read_text
 
 PUNCTUATION = {
     "!": "exclamation_mark", '"': "quotation_mark", "#": "number_sign", "$": "dollar_sign", "%": "percent_sign",

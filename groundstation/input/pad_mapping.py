@@ -13,7 +13,7 @@ import msgspec
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import Keymap
 from groundstation.intents.driving import DriveKeyDown
-from link.runtime.toml_errors import suggest
+from link.toml.errors import suggest
 
 BUTTONS = {
     "a": "A", "b": "B", "x": "X", "y": "Y", "back": "BACK", "guide": "GUIDE", "start": "START",

@@ -12,8 +12,8 @@ from pathlib import Path
 from platformdirs import user_state_path
 
 from groundstation.recent.recent import RecentEndpoints, RecentError, decode, encode
-from link.runtime.toml_file import read_regular_file
 from link.runtime.whole_file import PRIVATE, replace_file
+from link.toml.file import read_regular_file
 
 FILE = "recent.json"
 

@@ -1,1 +1,1 @@
-"""Program plumbing: command line, standard streams, journal, TOML files, worker thread, event loop."""
+"""Program plumbing: command line, standard streams, journal, worker thread, event loop."""

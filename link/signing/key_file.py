@@ -15,11 +15,11 @@ from typing import Annotated
 
 import msgspec
 
-from link.runtime.toml_errors import explain_error
-from link.runtime.toml_file import TomlError, parse_toml
 from link.runtime.whole_file import PRIVATE, replace_file
 from link.signing.keys import SECRET_SIZE, KeyRing, SigningKey
 from link.signing.role import ROLES
+from link.toml.errors import explain_error
+from link.toml.file import TomlError, parse_toml
 
 FILE = "keys.toml"
 """Name of the file: in the state folder of a vehicle, in the config folder of a ground station's user."""

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from enum import Enum
 from pathlib import Path
 
-from link.runtime.toml_file import read_regular_file
 from link.signing.key_words import WORDS, WordsError, complete_word, secret_from_words
 from link.signing.keys import PassphraseKind, find_secret_problem, key_from_passphrase
+from link.toml.file import read_regular_file
 
 MAX_HEX = 4096
 """Bytes of a file or pipe with hex digits: far more than the 64 digits, with spaces and line ends."""

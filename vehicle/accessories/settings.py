@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from link.runtime.toml_errors import explain_errors
+from link.toml.errors import explain_errors
 from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, OFF, Accessory
 from vehicle.accessories.drivers import DRIVERS, Kind
 from vehicle.accessories.output import AccessorySpec, PulseRange, Until

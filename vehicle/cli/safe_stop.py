@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from link.runtime import journald
-from link.runtime.toml_file import TomlError, read_toml
+from link.toml.file import TomlError, read_toml
 
 
 def stop_all(config: str) -> None:

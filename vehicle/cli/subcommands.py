@@ -13,8 +13,8 @@ from typing import Any
 
 from link.runtime import stdio
 from link.runtime.command_line import USAGE_ERROR, CommandLineParser
-from link.runtime.toml_file import TomlError, read_toml
 from link.signing.key_options import ENTERED, SHOWN, Options
+from link.toml.file import TomlError, read_toml
 from vehicle.cli.subcommand import DONE, FAULT, Subcommand, SubcommandError
 
 

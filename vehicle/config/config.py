@@ -13,8 +13,8 @@ from typing import Annotated, Any, get_type_hints
 import msgspec
 
 from link.endpoint import EndpointError, parse_endpoint
-from link.runtime.toml_errors import explain_errors, suggest
-from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read_toml
+from link.toml.errors import explain_errors, suggest
+from link.toml.file import TomlError, find_unsupported, parse_toml, read_toml
 from vehicle.accessories import settings as accessory_settings
 from vehicle.accessories.settings import Accessories
 from vehicle.config.conflicts import find_conflicts

@@ -37,7 +37,7 @@ def _find_group(text: str, options: argparse.Namespace, environment: Mapping[str
         if not NAME.fullmatch(text):
             return parse_group(text)
         from groundstation.config.effective import load_config
-        from link.runtime.toml_errors import suggest
+        from link.toml.errors import suggest
 
         file = load_config(options.config, environment, options.reserved)
         groups = {} if file is None else file.values.get("groups", {})

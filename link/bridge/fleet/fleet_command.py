@@ -12,8 +12,8 @@ from link.bridge.fleet.fleet_file import FILE, ROUTER, read_fleet_file
 from link.bridge.fleet.members import PORT, FleetError, add_member, new_fleet, renew
 from link.fleet.config import VEHICLE_ROLE
 from link.runtime.command_line import CommandLineParser
-from link.runtime.toml_file import TomlError
 from link.signing.role import ROLES
+from link.toml.file import TomlError
 
 HELP = """\
 examples:

@@ -10,8 +10,8 @@ from typing import Annotated, Literal
 import msgspec
 
 from link.endpoint import FLEET_NAME, FLEET_NAME_RULE, EndpointError, parse_endpoint
-from link.runtime.toml_errors import explain_error
-from link.runtime.toml_file import TomlError, read_toml
+from link.toml.errors import explain_error
+from link.toml.file import TomlError, read_toml
 
 FILE = "fleet.toml"
 AUTHORITY, AUTHORITY_KEY = "authority.pem", "authority.key"

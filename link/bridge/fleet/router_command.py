@@ -30,7 +30,7 @@ from link.fleet.router_session import direct
 from link.fleet.validity import warning_of
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
-from link.runtime.toml_file import TomlError
+from link.toml.file import TomlError
 from link.transport.transport import LinkError
 
 log = logging.getLogger(__name__)

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from link.endpoint import parse_endpoint
-from link.runtime.toml_file import read_toml
 from link.signing.key_file import FILE, KeyFileError, load_keys
+from link.toml.file import read_toml
 from link.transport.reach import find_trust, missing_interfaces
 from link.transport.serial_ports import find_holders
 from vehicle.cli.check import run_checks

@@ -18,8 +18,8 @@ from link.bridge.fleet.members import FleetError, add_member, new_fleet, renew
 from link.bridge.fleet.router_command import run as run_router
 from link.endpoint import parse_endpoint
 from link.fleet.config import load_config
-from link.runtime.toml_file import TomlError
 from link.signing.role import SigningRole
+from link.toml.file import TomlError
 
 FILE = """
 fleet = "farm"

@@ -7,7 +7,7 @@ from typing import Annotated
 import msgspec
 import pytest
 
-from link.runtime.toml_errors import explain_errors
+from link.toml.errors import explain_errors
 
 
 class Inner(msgspec.Struct, forbid_unknown_fields=True):

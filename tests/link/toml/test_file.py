@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read_toml
+from link.toml.file import TomlError, find_unsupported, parse_toml, read_toml
 
 
 def test_a_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:

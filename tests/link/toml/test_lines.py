@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from link.runtime.toml_lines import find_line
+from link.toml.lines import find_line
 
 TEXT = '''\
 # speed = 1
