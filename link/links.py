@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from link.endpoint import Side
@@ -29,11 +29,12 @@ def open_links(
     places: int = MAX_PEERS,
     side: Side | None = None,
     devices: Mapping[str, str] | None = None,
+    wrap: Callable[[Transport], Transport] | None = None,
 ) -> list[Link]:
     """Open all endpoints, or none. Raises EndpointError or LinkError.
 
     `wanted`, `sent`, `places`: see Channel. `side`: which end this program is; a ground station downloads files.
-    `devices`: see open_transports().
+    `devices`: see open_transports(). `wrap` puts something around each transport, such as faults.
     """
     build = partial(
         build_link,
@@ -46,7 +47,8 @@ def open_links(
         downloads=side is Side.GROUND_STATION,
         bounded=side is not Side.GROUND_STATION,  # its demands and stops never wait
     )
-    return [build(transport, index) for index, transport in enumerate(open_transports(endpoints, side, devices))]
+    transports = open_transports(endpoints, side, devices)
+    return [build(wrap(each) if wrap else each, index) for index, each in enumerate(transports)]
 
 
 def build_link(

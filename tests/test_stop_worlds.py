@@ -74,8 +74,8 @@ class StopWorld(CrowdedLink):
     """A rover that is driven by a station with its key, and an `estop` that is started beside it."""
 
     def __init__(self, facts: WorldFacts) -> None:
-        self.up = LossyPipe(delay=facts.delay, jitter=facts.delay / 2, loss=facts.loss, seed=facts.seed)
-        self.down = LossyPipe(delay=facts.delay, jitter=facts.delay / 2, loss=facts.loss, seed=facts.seed + 1)
+        self.up = LossyPipe[bytes](delay=facts.delay, jitter=facts.delay / 2, loss=facts.loss, seed=facts.seed)
+        self.down = LossyPipe[bytes](delay=facts.delay, jitter=facts.delay / 2, loss=facts.loss, seed=facts.seed + 1)
         super().__init__(keep(OWNER, WATCHER, wall=facts.clock, now=100.0), facts.strangers)
         assert self.channel.guard is not None
         self.channel.guard = SigningGuard(

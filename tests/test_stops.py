@@ -60,8 +60,8 @@ class Drive:
         self.world = World(
             self.station,
             ControlLoop(self.rover, self.motors, body),
-            up=LossyPipe(loss=loss, delay=delay, seed=seed),
-            down=LossyPipe(loss=loss, delay=delay, seed=seed + 1),
+            up=LossyPipe[bytes](loss=loss, delay=delay, seed=seed),
+            down=LossyPipe[bytes](loss=loss, delay=delay, seed=seed + 1),
             now=start,
         )
         self.held: str | None = None

@@ -108,15 +108,15 @@ class World:
         near_ids: tuple[int, int] = (255, 190),
         far_ids: tuple[int, int] = (1, 1),
         period: float = 0.02,
-        up: LossyPipe | None = None,
-        down: LossyPipe | None = None,
+        up: LossyPipe[bytes] | None = None,
+        down: LossyPipe[bytes] | None = None,
         now: float = 100.0,
         step: float = 0.005,
     ) -> None:
         self.now = now
         self.step = step
-        self.up = up or LossyPipe()
-        self.down = down or LossyPipe()
+        self.up = up or LossyPipe[bytes]()
+        self.down = down or LossyPipe[bytes]()
         self.near = Host(near, self._channel("near", near_ids, "far"), period)
         self.far = Host(far, self._channel("far", far_ids, "near"), period)
         self.near_address: Hashable = "near"

@@ -1,12 +1,15 @@
-"""In-memory link with delay, jitter, loss and cuts, for tests without a network or a clock."""
+"""In-memory link with delay, jitter, loss and cuts: for tests in virtual time, and for faults on real links."""
 
 from __future__ import annotations
 
 import random
 from collections import deque
+from typing import Generic, TypeVar
+
+Item = TypeVar("Item")
 
 
-class LossyPipe:
+class LossyPipe(Generic[Item]):
     """One direction of a link. Frames stay in order: jitter delays those behind as well, as on a radio.
 
     `delay` and `jitter` in s (one way, jitter uniform in +-jitter), `loss` 0..1; `seed` makes the losses repeatable.
@@ -21,9 +24,19 @@ class LossyPipe:
         self.lost = 0
         """Frames lost by chance or sent during a cut; those under way when it began are not counted."""
         self._random = random.Random(seed)
-        self._under_way: deque[tuple[float, bytes]] = deque()
+        self._under_way: deque[tuple[float, Item]] = deque()
 
-    def send(self, data: bytes, now: float) -> None:
+    @property
+    def next_arrival(self) -> float | None:
+        """When the next frame arrives; None while none is under way."""
+        return self._under_way[0][0] if self._under_way else None
+
+    @property
+    def waiting(self) -> int:
+        """How many frames are under way."""
+        return len(self._under_way)
+
+    def send(self, data: Item, now: float) -> None:
         """Send `data`, or lose it."""
         if self.cut or self._random.random() < self.loss:
             self.lost += 1
@@ -33,11 +46,11 @@ class LossyPipe:
             arrival = max(arrival, self._under_way[-1][0])
         self._under_way.append((arrival, data))
 
-    def receive(self, now: float) -> list[bytes]:
+    def receive(self, now: float) -> list[Item]:
         """Return what has arrived by now."""
         if self.cut:
             self._under_way.clear()
-        arrived: list[bytes] = []
+        arrived: list[Item] = []
         while self._under_way and self._under_way[0][0] <= now:
             arrived.append(self._under_way.popleft()[1])
         return arrived

@@ -42,14 +42,16 @@ class Transport(Protocol):
     """A non-blocking socket or serial port. Of messages it knows only which go first (priority_queue.py)."""
 
     endpoint: Endpoint
-    problem: str | None
-    """Why the transport does not work now, in one line, or None."""
     stream: bool
     """Bytes have no datagram boundaries."""
     fixed_address: Hashable | None
     """The address that the user named, for transports that send first."""
     capacity: float | None
     """Bytes/s that the transport carries, or None where that is not known."""
+
+    @property
+    def problem(self) -> str | None:
+        """Why the transport does not work now, in one line, or None."""
 
     @property
     def dropped(self) -> int:

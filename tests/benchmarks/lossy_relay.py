@@ -22,7 +22,7 @@ LOCALHOST = "127.0.0.1"
 class Relay:
     """The vehicle sends to `vehicle_port`, which is ours; we forward to the ground station at `ground_port`."""
 
-    def __init__(self, vehicle_port: int, ground_port: int, pipes: tuple[LossyPipe, LossyPipe]) -> None:
+    def __init__(self, vehicle_port: int, ground_port: int, pipes: tuple[LossyPipe[bytes], LossyPipe[bytes]]) -> None:
         self._vehicle = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._vehicle.bind((LOCALHOST, vehicle_port))
         self._ground = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -62,8 +62,8 @@ class Relay:
 def main(vehicle_port: int, ground_port: int, loss: float, delay: float, jitter: float) -> None:
     """Run until killed."""
     pipes = (
-        LossyPipe(loss=loss, delay=delay, jitter=jitter, seed=1),
-        LossyPipe(loss=loss, delay=delay, jitter=jitter, seed=2),
+        LossyPipe[bytes](loss=loss, delay=delay, jitter=jitter, seed=1),
+        LossyPipe[bytes](loss=loss, delay=delay, jitter=jitter, seed=2),
     )
     relay = Relay(vehicle_port, ground_port, pipes)
     print("relay ready", flush=True)

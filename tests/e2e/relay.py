@@ -37,8 +37,8 @@ class Relay:
     """Relay between a vehicle (`udpout` to `vehicle_side`) and a ground station (`udpin` on `ground_port`)."""
 
     def __init__(self, *, loss: float = 0.0, delay: float = 0.0) -> None:
-        self.up = LossyPipe(loss=loss, delay=delay, seed=1)
-        self.down = LossyPipe(loss=loss, delay=delay, seed=2)
+        self.up = LossyPipe[bytes](loss=loss, delay=delay, seed=1)
+        self.down = LossyPipe[bytes](loss=loss, delay=delay, seed=2)
         self._vehicle_socket = _bound()
         self._ground_socket = _bound()
         self.vehicle_port: int = self._vehicle_socket.getsockname()[1]

@@ -28,7 +28,7 @@ class Cockpit:
         self.vehicle = vehicle or FakeVehicle()
         self.station = Station(["udpin:127.0.0.1:14550"], session=7, now=100.0)
         self.core = CrashNeutral(self.station)
-        up, down = LossyPipe(loss=loss, seed=1), LossyPipe(loss=loss, seed=2)
+        up, down = LossyPipe[bytes](loss=loss, seed=1), LossyPipe[bytes](loss=loss, seed=2)
         self.world = World(self.core, self.vehicle, up=up, down=down)
         self.leasing = True
         self._lease_due = 0.0

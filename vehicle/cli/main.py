@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from link.endpoint import ZENOH, parse_endpoint
 from link.runtime import startup_gc, stdio, without_openssl
 from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
@@ -21,6 +22,7 @@ from vehicle.cli.options import (
 )
 
 if TYPE_CHECKING:
+    from link.transport.faults.settings import FaultSettings
     from vehicle.config.config import Config
     from vehicle.config.run_settings import RunSettings
 
@@ -110,6 +112,7 @@ def _build_settings(options: argparse.Namespace, config: Config, parser: Command
         battery=1.0 if options.sim_battery is None else options.sim_battery,
         seed=1 if options.sim_seed is None else options.sim_seed,
         truth=options.sim_truth,
+        faults=_build_faults(options, config, parser),
     )
     pinned = dict(config.params)
     if config.identity.system is not None:
@@ -128,6 +131,24 @@ def _build_settings(options: argparse.Namespace, config: Config, parser: Command
         logs=_log_folder(options, config),
         signing=config.signing,
         announce=options.announce or config.announce,
+    )
+
+
+def _build_faults(options: argparse.Namespace, config: Config, parser: CommandLineParser) -> FaultSettings | None:
+    """Return the faults that --loss, --delay, --jitter and --cut ask for; None without any of them."""
+    from link.transport.faults.settings import FaultSettings
+
+    if all(each is None for each in (options.loss, options.delay, options.jitter, options.cut)):
+        return None
+    for text in config.endpoints:
+        if parse_endpoint(text).scheme == ZENOH:
+            parser.error(f"--loss, --delay, --jitter and --cut do not work on {text}: use udp, tcp or serial")
+    return FaultSettings(
+        loss=(options.loss or 0.0) / 100,
+        delay=(options.delay or 0.0) / 1000,
+        jitter=(options.jitter or 0.0) / 1000,
+        cut=options.cut or 0.0,
+        seed=1 if options.sim_seed is None else options.sim_seed,
     )
 
 

@@ -8,10 +8,12 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Callable
 from typing import Any
 
 from link.endpoint import EndpointError, endpoint_help, parse_endpoint
 from link.runtime.command_line import CommandLineParser
+from link.transport.faults.settings import CUT_AFTER
 from vehicle.cli import subcommands
 from vehicle.motors.drivers import DRIVERS
 from vehicle.params import PARAMETERS, ParamError, Params
@@ -31,6 +33,7 @@ examples:
   mavhelm vehicle --sim                            simulated rover; open `mavhelm` beside it
   mavhelm vehicle --sim udpout:192.168.1.20:14550  ... for a ground station on another machine
   mavhelm vehicle --sim --param SPEED_MAX=3 --param DRIVE_TYPE=2   ... a faster one that steers like a car
+  mavhelm vehicle --sim --loss 20 --delay 200 --jitter 50 --cut 3  ... over a bad network: docs/simulator.md
   mavhelm vehicle --sim --param DRIVE_TYPE=4       ... one with mecanum wheels (3: omni), that also moves sideways
   mavhelm vehicle init                             write rover.toml, with every setting and its description
   mavhelm vehicle check                            check rover.toml and the hardware; nothing moves
@@ -149,6 +152,21 @@ def _charge(text: str) -> float:
     return charge
 
 
+def _between(least: float, most: float, what: str) -> Callable[[str], float]:
+    """Return a type of argparse: a number in this range, `what` in its message."""
+
+    def parse(text: str) -> float:
+        try:
+            number = float(text)
+        except ValueError:
+            number = math.nan
+        if not least <= number <= most:
+            raise argparse.ArgumentTypeError(f"{text!r} is not {what} from {least:g} to {most:g}")
+        return number
+
+    return parse
+
+
 OPTIONS: dict[str, dict[str, Any]] = {
     "endpoints": {"nargs": "*", "metavar": "ENDPOINT", "type": _endpoint,
                   "help": f"link to ground stations; with --sim {GROUND_STATION} by default"},
@@ -176,8 +194,15 @@ OPTIONS: dict[str, dict[str, Any]] = {
 SIMULATION_OPTIONS: dict[str, dict[str, Any]] = {
     "--home": {"metavar": "LAT,LON", "type": _home, "help": "start of the simulated rover, degrees"},
     "--sim-battery": {"metavar": "CHARGE", "type": _charge, "help": "charge of its battery, 0 to 1 (default 1)"},
-    "--sim-seed": {"metavar": "N", "type": int, "help": "seed of its sensor noise (default 1)"},
+    "--sim-seed": {"metavar": "N", "type": int, "help": "seed of noise, --loss and --jitter (default 1)"},
     "--sim-truth": {"metavar": "FILE",
                     "help": "append its true position and speed: CLOCK_MONOTONIC ns, m, m, rad, m/s"},
+    "--loss": {"metavar": "PERCENT", "type": _between(0, 100, "a loss in percent"),
+               "help": "lose so many of the frames of its links, each way"},
+    "--delay": {"metavar": "MS", "type": _between(0, 60_000, "a delay in ms"), "help": "deliver frames late, each way"},
+    "--jitter": {"metavar": "MS", "type": _between(0, 60_000, "a jitter in ms"),
+                 "help": "vary the delay by up to this, up and down; frames stay in order"},
+    "--cut": {"metavar": "S", "type": _between(0.1, 3600, "a time in s"),
+              "help": f"cut its links for S seconds each time the wheels have turned for {CUT_AFTER:g} s"},
 }  # fmt: skip
 """Options for --sim only, as OPTIONS."""

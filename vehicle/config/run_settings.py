@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 
+from link.transport.faults.settings import FaultSettings
 from vehicle.accessories.settings import Accessories
 from vehicle.config.signing import SigningSettings
 from vehicle.sensors.suite import SensorSettings
@@ -27,6 +28,8 @@ class Simulation(msgspec.Struct, frozen=True):
     """Seed of the sensor noise."""
     truth: str | None = None
     """File to which the true position is appended."""
+    faults: FaultSettings | None = None
+    """Faults of its links; None: they work."""
 
 
 class RunSettings(msgspec.Struct, frozen=True):

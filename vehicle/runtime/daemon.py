@@ -33,7 +33,13 @@ from vehicle.motors import MotorError, UnknownDriverError
 from vehicle.params import ParamError
 from vehicle.rover import Rover
 from vehicle.runtime.announcement import announce
-from vehicle.runtime.factory import build_accessories, build_control_loop, build_params, build_recorder
+from vehicle.runtime.factory import (
+    build_accessories,
+    build_control_loop,
+    build_faults,
+    build_params,
+    build_recorder,
+)
 from vehicle.runtime.host_info import HostMonitor, read_uid
 from vehicle.runtime.link_guards import LinkGuards
 from vehicle.runtime.lock import lock_state_folder
@@ -162,7 +168,8 @@ async def _serve(settings: RunSettings) -> int:
             rack=rack,
         )
         host_monitor = HostMonitor(host, lambda: loop.idle_time, time.time, now)
-        cycles = CycleObserver(rover, notifier, host_monitor, vehicle_keys, guards)
+        faults = build_faults(settings)
+        cycles = CycleObserver(rover, notifier, host_monitor, vehicle_keys, guards, faults)
         control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
         log_tap = recorder.log_tap if recorder else None
         try:
@@ -173,6 +180,7 @@ async def _serve(settings: RunSettings) -> int:
                 wanted=rover.message_ids,
                 side=Side.VEHICLE,
                 devices=guards.devices,
+                wrap=None if faults is None else faults.wrap,
             )
             guards.attach(links)
             if guards.warning:

@@ -11,6 +11,7 @@ from msgspec import to_builtins
 from msgspec.structs import replace
 
 from dialects.enums import DriveType
+from link.transport.faults.faulty_transport import LinkFaults
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.settings import build_specs
@@ -76,6 +77,12 @@ def build_accessories(settings: RunSettings, params: Params) -> AccessorySet:
         specs = [replace(spec, make=SimulatedAccessory) for spec in specs]
         return AccessorySet(specs or SIMULATED_ACCESSORIES)
     return AccessorySet(specs)
+
+
+def build_faults(settings: RunSettings) -> LinkFaults | None:
+    """Return the faults of a simulated rover's links, None without any."""
+    faults = settings.simulation.faults if settings.simulation else None
+    return None if faults is None else LinkFaults(faults)
 
 
 def build_recorder(settings: RunSettings, system: int, opened: contextlib.ExitStack) -> VehicleRecorder | None:

@@ -8,6 +8,7 @@ import signal
 from collections.abc import Callable
 
 from link.runner import Runner
+from link.transport.faults.faulty_transport import LinkFaults
 from vehicle.commands.reboot import RebootRequest
 from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError
@@ -73,7 +74,7 @@ class Shutdown:
 
 
 class CycleObserver:
-    """The daemon's work after a control cycle: feed the watchdog, update host info and keys, obey a reboot request."""
+    """The daemon's work after a control cycle: watchdog, host info, keys, faults of the links, a reboot request."""
 
     def __init__(
         self,
@@ -82,6 +83,7 @@ class CycleObserver:
         host_monitor: HostMonitor,
         keys: VehicleKeys | None = None,
         guards: LinkGuards | None = None,
+        faults: LinkFaults | None = None,
     ) -> None:
         self.shutdown: Shutdown | None = None
         self._rover = rover
@@ -89,15 +91,18 @@ class CycleObserver:
         self._host_monitor = host_monitor
         self._keys = keys
         self._guards = guards
+        self._faults = faults
 
     def handle_cycle(self, now: float) -> None:
-        """Feed the watchdog, update host info and keys, and handle a reboot request."""
+        """Feed the watchdog, update host info, keys and faults of the links, and handle a reboot request."""
         self._notifier.alive(now)
         self._host_monitor.update(now)
         if self._keys is not None:
             self._keys.poll(now)
         if self._guards is not None:
             self._guards.poll(now)
+        if self._faults is not None:
+            self._faults.update(any(self._rover.outputs.throttles), now)
         leave = self._rover.reboot_request(now)
         if leave is not None and self.shutdown is not None:
             self.shutdown.handle_reboot_request(leave)

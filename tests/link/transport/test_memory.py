@@ -6,7 +6,7 @@ from link.transport.memory import LossyPipe
 
 
 def test_a_plain_pipe_delivers_in_order_at_once() -> None:
-    pipe = LossyPipe()
+    pipe = LossyPipe[bytes]()
     pipe.send(b"1", 0.0)
     pipe.send(b"2", 0.0)
     assert pipe.receive(0.0) == [b"1", b"2"]
@@ -14,7 +14,7 @@ def test_a_plain_pipe_delivers_in_order_at_once() -> None:
 
 
 def test_delay_and_jitter_keep_the_order() -> None:
-    pipe = LossyPipe(delay=0.1, jitter=0.09, seed=4)
+    pipe = LossyPipe[bytes](delay=0.1, jitter=0.09, seed=4)
     for number in range(100):
         pipe.send(bytes([number]), number * 0.001)
     assert pipe.receive(0.009) == []
@@ -23,7 +23,7 @@ def test_delay_and_jitter_keep_the_order() -> None:
 
 def test_loss_is_about_what_was_asked_for_and_repeatable() -> None:
     def survivors(seed: int) -> list[bytes]:
-        pipe = LossyPipe(loss=0.3, seed=seed)
+        pipe = LossyPipe[bytes](loss=0.3, seed=seed)
         for number in range(1000):
             pipe.send(number.to_bytes(2, "big"), 0.0)
         return pipe.receive(0.0)
@@ -34,7 +34,7 @@ def test_loss_is_about_what_was_asked_for_and_repeatable() -> None:
 
 
 def test_a_cut_loses_what_is_under_way() -> None:
-    pipe = LossyPipe(delay=1.0)
+    pipe = LossyPipe[bytes](delay=1.0)
     pipe.send(b"old", 0.0)
     pipe.cut = True
     assert pipe.receive(2.0) == []

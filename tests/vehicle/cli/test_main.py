@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from link.signing.key_file import FILE
+from link.transport.faults.settings import FaultSettings
 from vehicle.cli.main import main
 from vehicle.cli.options import GROUND_STATION
 from vehicle.config.run_settings import RunSettings, Simulation
@@ -46,10 +47,12 @@ def test_an_endpoint_may_stand_anywhere(monkeypatch: pytest.MonkeyPatch, words: 
 
 def test_everything_a_simulation_takes(monkeypatch: pytest.MonkeyPatch) -> None:
     words = "--sim --system 7 --home -33.5,151.25 --sim-battery 0.3 --sim-seed 5 --sim-truth t"
+    words += " --loss 20 --delay 200 --jitter 50 --cut 3"
     settings = settings_of(monkeypatch, *words.split(), *["--motor-log", "m", "--param", "speed_max=3"])
     assert settings.simulation is not None
     assert settings.simulation.home[:2] == (-33.5, 151.25)
     assert (settings.simulation.battery, settings.simulation.seed, settings.simulation.truth) == (0.3, 5, "t")
+    assert settings.simulation.faults == FaultSettings(loss=0.2, delay=0.2, jitter=0.05, cut=3.0, seed=5)
     assert settings.params == {"FS_LOOP_TIMEOUT": 1.0, "SPEED_MAX": 3.0}
     assert settings.pinned == {"MAV_SYSID": 7}
     assert settings.motor_log == "m"
@@ -147,6 +150,13 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         ("--sim --home nan,0", "'nan,0' is not LAT,LON"),
         ("--sim --sim-battery 2", "'2' is not a charge from 0 to 1"),
         ("--sim --sim-seed x", "invalid int value: 'x'"),
+        ("--motors simulated udpout:127.0.0.1:1 --loss 20", "--loss is for --sim only"),
+        ("--motors simulated udpout:127.0.0.1:1 --cut 3", "--cut is for --sim only"),
+        ("--sim --loss 120", "'120' is not a loss in percent from 0 to 100"),
+        ("--sim --delay soon", "'soon' is not a delay in ms from 0 to 60000"),
+        ("--sim --jitter nan", "'nan' is not a jitter in ms from 0 to 60000"),
+        ("--sim --cut 0", "'0' is not a time in s from 0.1 to 3600"),
+        ("--sim zenoh:tcp/127.0.0.1:7447/farm/one --loss 5", "do not work on zenoh:tcp/127.0.0.1:7447/farm/one"),
         ("--sim --log-file /no/such/folder/log", "log file /no/such/folder/log: No such file or directory"),
         ("--simm", "unknown option --simm; did you mean --sim?"),
         ("--sim --parm SPEED_MAX=3", "unknown option --parm; did you mean --param?"),

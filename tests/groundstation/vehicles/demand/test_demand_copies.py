@@ -108,7 +108,7 @@ def test_without_a_known_capacity_the_vehicle_takes_all_copies() -> None:
 
 @pytest.mark.parametrize(("loss", "within"), [(0.1, 0.010), (0.2, 0.020)])
 def test_p99_over_a_bad_network(loss: float, within: float) -> None:
-    stream, pipe = DemandStream(DemandCopies()), LossyPipe(delay=0.010, jitter=0.003, loss=loss, seed=5)
+    stream, pipe = DemandStream(DemandCopies()), LossyPipe[bytes](delay=0.010, jitter=0.003, loss=loss, seed=5)
     stream.adapt(loss, None)
     late = []
     for change in range(1000):
