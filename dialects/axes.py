@@ -1,8 +1,9 @@
-"""Axis conventions of MANUAL_CONTROL by autopilot: converts Axes in -1..1 to and from the message.
+"""Axis conventions of MANUAL_CONTROL by autopilot and MAV_TYPE: converts Axes in -1..1 to and from the message.
 
-Three conventions are in use: our rover reads x and r as the specification says, ArduPilot Rover reads z and y (z = 0 is
-neutral), PX4 rovers read z with 500 as neutral, and y or r. To add one, add a row to AXIS_MAPS; if the frame decides,
-to PX4_FRAMES or ROVER_FRAMES.
+Our rover reads x and r as the specification says, ArduPilot Rover reads z and y (z = 0 is neutral), PX4 rovers read z
+with 500 as neutral, and y or r. What flies reads four axes, and its neutral is z = 500. Every neutral of the project
+comes from `build_neutral`. To add a convention, add a row to AXIS_MAPS; if the frame decides, to PX4_FRAMES or
+ROVER_FRAMES.
 Definition: https://mavlink.io/en/messages/common.html#MANUAL_CONTROL.
 """
 
@@ -13,7 +14,7 @@ import math
 import msgspec
 from msgspec.structs import replace
 
-from dialects.enums import Autopilot, DriveType
+from dialects.enums import Autopilot, DriveType, VehicleType
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence
 
 FULL_DEFLECTION = 1000
@@ -21,22 +22,27 @@ FULL_DEFLECTION = 1000
 
 
 class Axes(msgspec.Struct, frozen=True):
-    """A demand: throttle forward positive, steering clockwise (right) positive, each -1..1."""
+    """A demand: throttle forward positive, steering clockwise (right) positive, each -1..1.
+
+    What flies has two more: to the right, and up. There throttle is forward, and steering turns the nose.
+    """
 
     throttle: float = 0.0
     steering: float = 0.0
+    side: float = 0.0
+    climb: float = 0.0
 
     @property
     def neutral(self) -> bool:
-        """True if both axes are 0."""
-        return self.throttle == 0.0 and self.steering == 0.0
+        """True if all axes are 0."""
+        return self.throttle == self.steering == self.side == self.climb == 0.0
 
 
 NEUTRAL = Axes()
 
 
 class AxisMap(msgspec.Struct, frozen=True):
-    """Which axis carries what; `throttle_neutral` and `throttle_span` are in axis units."""
+    """Which axis carries what; neutrals and spans are in axis units."""
 
     throttle: str
     steering: str
@@ -49,18 +55,45 @@ class AxisMap(msgspec.Struct, frozen=True):
     `Axes.steering` always means the nose, so that the sign changes with the throttle."""
     unused: int = INVALID_AXIS
     """Sent on the axes that the vehicle does not use."""
+    side: str = ""
+    """"": the vehicle does not move sideways."""
+    climb: str = ""
+    """"": the vehicle does not climb."""
+    climb_neutral: int = 0
+    climb_span: int = FULL_DEFLECTION
 
 
 _PX4 = AxisMap(throttle="z", steering="y", throttle_neutral=500, throttle_span=500, unused=0)
 """x is pitch, y roll, z throttle from 0 to 1000, r yaw (mavlink/mavlink_receiver.cpp). A rover ignores pitch; the
 others are sent as 0, because versions without a check of the range take INT16_MAX for a deflection of 32.767."""
 
+HOVER = 500
+"""z in the middle of its range: zero climb in every mode that holds altitude, of ArduCopter and of PX4.
+
+z = 0 is full descent there. In STABILIZE it is no thrust, and the vehicle falls."""
+
+CLIMB_SPAN = 300
+"""Largest distance of z from HOVER: half of the speeds that ArduCopter has at full deflection (its dead zone ends at
+100), so that no key asks for the end of the range."""
+
+LOWEST_THROTTLE = HOVER - CLIMB_SPAN
+"""The least z that any path may send to what flies."""
+
+COPTER_AXES = AxisMap(throttle="x", steering="r", side="y", climb="z", climb_neutral=HOVER, climb_span=CLIMB_SPAN)
+"""x is pitch (forward positive), y roll, z throttle from 0 to 1000, r yaw.
+
+ArduCopter ignores a message with z < 0 (GCS_MAVLINK_Copter.cpp, handle_manual_control_axes); PX4 leaves out axes beyond
+their range (mavlink_receiver.cpp). INT16_MAX releases ArduPilot's override, so that all four are sent."""
+
+GROUND_TYPES = frozenset((VehicleType.GROUND_ROVER, VehicleType.SURFACE_BOAT))
+"""MAV_TYPEs whose neutral is that of their autopilot; every other one has that of what flies."""
+
 AXIS_MAPS: dict[int, AxisMap] = {
     Autopilot.GENERIC: AxisMap(throttle="x", steering="r"),
     Autopilot.ARDUPILOT: AxisMap(throttle="z", steering="y", reverse_flips_steering=True),
     Autopilot.PX4: _PX4,
 }
-"""MAV_AUTOPILOT of the vehicle's HEARTBEAT -> its axes."""
+"""MAV_AUTOPILOT of the HEARTBEAT of a rover or a boat -> its axes."""
 
 PX4_FRAMES: dict[int, AxisMap] = {
     5: replace(_PX4, reverse_flips_steering=True),
@@ -83,14 +116,21 @@ FRAMES: dict[int, dict[int, AxisMap]] = {Autopilot.PX4: PX4_FRAMES, Autopilot.GE
 """MAV_AUTOPILOT -> the axes of frames that differ from AXIS_MAPS."""
 
 
-def axis_map(autopilot: int, frame: int | None = None) -> AxisMap:
-    """Return the axes of a vehicle; for an unknown autopilot those of the specification.
+def axis_map(autopilot: int, kind: int, frame: int | None = None) -> AxisMap:
+    """Return the axes of a vehicle; for an unknown autopilot of a rover those of the specification.
 
-    `frame`: PX4's CA_AIRFRAME, or the drive type of our own vehicle. While it is not known, the axes are those of a
-    rover that turns by its wheels.
+    `kind`: its MAV_TYPE. `frame`: PX4's CA_AIRFRAME, or the drive type of our own vehicle. While that is not known, the
+    axes are those of a rover that turns by its wheels.
     """
+    if kind not in GROUND_TYPES:
+        return COPTER_AXES
     default = AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
     return default if frame is None else FRAMES.get(autopilot, {}).get(frame, default)
+
+
+def build_neutral(target: int, autopilot: int, kind: int) -> ManualControl:
+    """Return the message that ends every demand to this vehicle. `kind`: its MAV_TYPE."""
+    return build_manual_control(NEUTRAL, target, axis_map(autopilot, kind))
 
 
 def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:
@@ -106,6 +146,10 @@ def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[
     steering = round((steering if -1.0 <= steering <= 1.0 else _clamp(steering)) * FULL_DEFLECTION)
     setattr(message, axis_map.throttle, axis_map.throttle_neutral + throttle)
     setattr(message, axis_map.steering, -steering if axis_map.reverse_flips_steering and throttle < 0 else steering)
+    if axis_map.side:
+        setattr(message, axis_map.side, round(_clamp(axes.side) * FULL_DEFLECTION))
+    if axis_map.climb:
+        setattr(message, axis_map.climb, axis_map.climb_neutral + round(_clamp(axes.climb) * axis_map.climb_span))
     return message
 
 

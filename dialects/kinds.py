@@ -1,7 +1,8 @@
 """KINDS and DRIVEN: the kinds of vehicles by MAV_TYPE and MAV_AUTOPILOT, and those of them that keys drive.
 
 Only what neutral demands, HOLD and disarming stop is driven. Every other kind is shown, with one line why it is not
-driven. To drive another kind, give it a row in DRIVEN, and its axes (dialects/axes.py).
+driven. To drive another kind, give it a row in DRIVEN, and its axes (dialects/axes.py). PREPARED has the rows of
+multicopters: whoever moves them to DRIVEN switches them on.
 """
 
 from __future__ import annotations
@@ -12,8 +13,20 @@ from functools import lru_cache
 import msgspec
 
 from dialects import rover
+from dialects.axes import AXIS_MAPS, COPTER_AXES, AxisMap
 from dialects.enums import Autopilot, ModeFlag, VehicleType, type_name
-from dialects.mode_tables import ARDUPILOT, AUTO_MAIN, HOLD, PX4, PX4_ALIASES, ROVER, VTOL, ModeTable, px4_number
+from dialects.mode_tables import (
+    ARDUPILOT,
+    AUTO_MAIN,
+    COPTER,
+    HOLD,
+    PX4,
+    PX4_ALIASES,
+    ROVER,
+    VTOL,
+    ModeTable,
+    px4_number,
+)
 from dialects.modes import Mode
 
 NO_VEHICLES = frozenset(
@@ -52,6 +65,22 @@ MANUAL = "MANUAL"
 """The mode in which the demand goes to the motors, of all autopilots that have one."""
 
 
+class SpeedParam(msgspec.Struct, frozen=True):
+    """A parameter that says how fast full deflection is."""
+
+    name: str
+    scale: float = 1.0
+    """Its unit in m/s or deg/s."""
+
+
+class AxisLimits(msgspec.Struct, frozen=True):
+    """Which parameters limit what keys demand: the first that the vehicle has counts."""
+
+    speed: tuple[SpeedParam, ...] = ()
+    climb: tuple[SpeedParam, ...] = ()
+    turn: tuple[SpeedParam, ...] = ()
+
+
 class VehicleKind(msgspec.Struct, frozen=True):
     """One kind of vehicle of one autopilot. The default is a kind that is only shown."""
 
@@ -75,6 +104,28 @@ class VehicleKind(msgspec.Struct, frozen=True):
     """Its HOLD keeps a place by driving, instead of keeping the motors neutral."""
     falls: bool = False
     """Without power it falls: the emergency stop of one that is in the air asks first."""
+    axes: AxisMap = COPTER_AXES
+    """Its axes and their neutral, as dialects.axes.axis_map returns them; those of what flies for every other kind."""
+    drive_mode: str = MANUAL
+    """The mode to which arming changes, and the key of MANUAL."""
+    land: str = ""
+    """The mode that lands it: what the emergency stop means in the air. "" for what does not fly."""
+    home: str = ""
+    """The mode that flies home and lands there."""
+    thrust: frozenset[str] = frozenset()
+    """Names of the modes in which the throttle is thrust, so that no demand goes out, not even a neutral one."""
+    limits: AxisLimits = AxisLimits()
+    instruments: tuple[str, ...] = ()
+    """Names of the instruments of its own, beside those of all."""
+
+    @property
+    def flies(self) -> bool:
+        """Whether keys fly it."""
+        return bool(self.land)
+
+    def takes_neutral(self, mode: str) -> bool:
+        """Return whether a neutral demand may go out in this mode: with thrust for throttle it would be a command."""
+        return not self.flies or (mode in self.modes.values() and mode not in self.thrust)
 
     @property
     def is_driven(self) -> bool:
@@ -121,8 +172,39 @@ _PX4_ROVER = VehicleKind(
     hold_moves=True, hidden=frozenset(name for number, name in PX4.items() if number not in _PX4_ROVER_MODES),
 )  # fmt: skip
 
+_COPTER_THRUST = frozenset(
+    {"STABILIZE", "ACRO", "DRIFT", "FLIP", "THROW", "TURTLE", "SYSTEMID", "AUTOROTATE", "RATE_ACRO", "GUIDED_NOGPS"}
+)
+_ARDU_COPTER = VehicleKind(
+    "copter", modes=COPTER, aliases={MANUAL: "LOITER", HOLD: "BRAKE"},
+    keys=frozenset({"LOITER", "POSHOLD", "ALT_HOLD"}), standing=frozenset({"BRAKE"}), falls=True,
+    drive_mode="LOITER", land="LAND", home="RTL", thrust=_COPTER_THRUST,
+    hidden=_COPTER_THRUST | {"SPORT", "POSITION", "OF_LOITER", "AUTOTUNE", "AVOID_ADSB", "AUTO_RTL"},
+    limits=AxisLimits(
+        (SpeedParam("LOIT_SPEED_MS"), SpeedParam("LOIT_SPEED", 0.01)),
+        (SpeedParam("PILOT_SPD_UP"), SpeedParam("PILOT_SPEED_UP", 0.01)),
+        (SpeedParam("PILOT_Y_RATE"),),
+    ),
+    instruments=("flight",),
+)  # fmt: skip
+"""Keys fly it in what holds altitude: LOITER and POSHOLD keep the place, too, ALT_HOLD drifts with the wind."""
+_PX4_THRUST = frozenset({MANUAL, "ACRO", "STABILIZED", "RATTITUDE", "TERMINATION", "OFFBOARD"})
+_PX4_COPTER_MODES = (
+    *(px4_number(main) for main in (2, 3)), px4_number(3, 2), *(px4_number(AUTO_MAIN, sub) for sub in (2, 3, 4, 5, 6)),
+)  # fmt: skip
+"""custom_mode of what the operator may select of a multicopter of PX4."""
+_PX4_COPTER = VehicleKind(
+    "copter", modes=PX4, aliases={**PX4_ALIASES, MANUAL: "POSCTL"}, keys=frozenset({"ALTCTL", "POSCTL", "POSCTL_SLOW"}),
+    standing=frozenset({HOLD}), falls=True, hold_moves=True, drive_mode="POSCTL", land="AUTO_LAND", home="AUTO_RTL",
+    thrust=_PX4_THRUST, hidden=frozenset(name for number, name in PX4.items() if number not in _PX4_COPTER_MODES),
+    limits=AxisLimits(
+        (SpeedParam("MPC_VEL_MANUAL"),), (SpeedParam("MPC_Z_VEL_MAX_UP"),), (SpeedParam("MPC_MAN_Y_MAX"),)
+    ),
+    instruments=("flight",),
+)  # fmt: skip
+
 DRIVEN: Mapping[tuple[str, int], VehicleKind] = {
-    (word, autopilot): msgspec.structs.replace(kind, word=word)
+    (word, autopilot): msgspec.structs.replace(kind, word=word, axes=AXIS_MAPS[autopilot])
     for word in ("rover", "boat")
     for autopilot, kind in (
         (Autopilot.GENERIC, _ROVER),
@@ -131,6 +213,12 @@ DRIVEN: Mapping[tuple[str, int], VehicleKind] = {
     )
 }
 """Word of KINDS and MAV_AUTOPILOT -> the kinds that keys drive."""
+
+PREPARED: Mapping[tuple[str, int], VehicleKind] = {
+    ("copter", Autopilot.ARDUPILOT): _ARDU_COPTER,
+    ("copter", Autopilot.PX4): _PX4_COPTER,
+}
+"""Rows for DRIVEN that are not in it: tests fly them (tests/flight.py), the programs only show them."""
 
 
 class TypeRow(msgspec.Struct, frozen=True):

@@ -13,7 +13,7 @@ import msgspec
 import pytest
 
 from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
-from dialects.enums import Autopilot, DriveType
+from dialects.enums import Autopilot, DriveType, VehicleType
 from dialects.messages import ManualControl
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS
@@ -67,7 +67,7 @@ def drive_ours(kind: DriveType, keys: tuple[str, ...], seconds: float = 0.6) -> 
 
 
 def steer(field: Field, kind: DriveType, keys: tuple[str, ...], seconds: float) -> None:
-    message = build_manual_control(axes_of(keys), 1, axis_map(Autopilot.GENERIC, kind))
+    message = build_manual_control(axes_of(keys), 1, axis_map(Autopilot.GENERIC, VehicleType.GROUND_ROVER, kind))
     for _ in range(round(seconds / 0.05)):
         field.say(message)
         field.wait(0.05)
@@ -119,7 +119,7 @@ def test_every_key_and_chord_moves_ardurover_as_its_label_says(
     rover: Callable[[ManualControl], tuple[float, float]], car: bool
 ) -> None:
     for keys in HELD:
-        message = build_manual_control(axes_of(keys), 1, axis_map(Autopilot.ARDUPILOT))
+        message = build_manual_control(axes_of(keys), 1, axis_map(Autopilot.ARDUPILOT, VehicleType.GROUND_ROVER))
         forward, turn = rover(message)
         assert (sign(forward), sign(turn)) == expected(keys, car=car), keys
 
@@ -130,7 +130,8 @@ def test_ardurover_comes_back_on_the_same_arc(
     rover: Callable[[ManualControl], tuple[float, float]], out: str, back: str
 ) -> None:
     there, here = (
-        rover(build_manual_control(axes_of((key,)), 1, axis_map(Autopilot.ARDUPILOT))) for key in (out, back)
+        rover(build_manual_control(axes_of((key,)), 1, axis_map(Autopilot.ARDUPILOT, VehicleType.GROUND_ROVER)))
+        for key in (out, back)
     )
     assert there[0] == -here[0] == 1.0
     assert there[1] / there[0] == here[1] / here[0], "the curvature"

@@ -128,6 +128,8 @@ class _Vehicle(msgspec.Struct):
     found: float
     heard: float
     autopilot: int
+    kind: int
+    """MAV_TYPE."""
     model: VehicleKind
     mode: str = ""
     armed: bool = False
@@ -185,8 +187,9 @@ def _heartbeat(finder: EventFinder, found: Found) -> Parts:
     mode, armed = model.mode_name(beat.custom_mode), bool(beat.base_mode & ModeFlag.ARMED)
     if known is None or known.component != found.component:
         finder.vehicles[found.system] = _Vehicle(
-            found.time, found.time, beat.autopilot, model, mode, armed, beat.system_status, component=found.component
-        )
+            found.time, found.time, beat.autopilot, beat.type, model, mode, armed, beat.system_status,
+            component=found.component,
+        )  # fmt: skip
         finder.beating[found.system, found.component] = finder.vehicles[found.system]
         yield "MODE", Severity.INFO, mode
         if armed:

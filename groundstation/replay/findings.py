@@ -181,7 +181,7 @@ class Findings:
         target = message.target if isinstance(message, m.ManualControl) else message.target_system
         vehicle = self.finder.vehicles.get(target)
         if vehicle is not None:
-            axes = parse_manual_control(message, axis_map(vehicle.autopilot))
+            axes = parse_manual_control(message, axis_map(vehicle.autopilot, vehicle.kind))
             self.demand.add(time, max(abs(axis) for axis in axes if axis is not None) if any(axes) else 0.0)
 
     def params_before(self, offset: int) -> list[int]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from dialects import messages as m
 from dialects.axes import axis_map, parse_manual_control
-from dialects.enums import Autopilot, OperatorFlag
+from dialects.enums import Autopilot, OperatorFlag, VehicleType
 from groundstation.geo import FIX_2D, read_place
 from groundstation.ros.frames import Quaternion, Vector, attitude_to_enu, frd_to_flu, into_body, ned_to_enu
 
@@ -44,6 +44,7 @@ class RosVehicle:
         self.prefix = prefix
         self._base, self._odom, self._gps = (f"{prefix}{frame}" for frame in (BASE, ODOM, GPS))
         self.autopilot = int(Autopilot.INVALID)
+        self._kind = int(VehicleType.GROUND_ROVER)
         self._drive_type: int | None = None
         self._attitude: tuple[int, Quaternion, Vector] | None = None
         """Time, rotation, rates of the body."""
@@ -63,7 +64,7 @@ class RosVehicle:
         """Return the operator's demand: throttle and steering as parts of full deflection, left positive."""
         if isinstance(message, m.RoverOperatorPresence) and not message.flags & OperatorFlag.AXES:
             return None
-        throttle, steering = parse_manual_control(message, axis_map(self.autopilot, self._drive_type))
+        throttle, steering = parse_manual_control(message, axis_map(self.autopilot, self._kind, self._drive_type))
         if throttle is None or steering is None:
             return None
         twist = _twist((throttle, 0.0, 0.0), (0.0, 0.0, -steering + 0.0))
@@ -72,7 +73,7 @@ class RosVehicle:
     # ---- rows ----
 
     def _heartbeat(self, message: m.Heartbeat, now: int) -> None:
-        self.autopilot = message.autopilot
+        self.autopilot, self._kind = message.autopilot, message.type
 
     def _drive_info(self, message: m.RoverDriveInfo, now: int) -> None:
         self._drive_type = message.drive_type

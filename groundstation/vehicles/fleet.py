@@ -78,9 +78,8 @@ class Contact(msgspec.Struct):
         They change only with a neutral demand: a frame that is read late must not turn the steering while driving.
         """
         if self.axes is None or demand.neutral:
-            self.axes = axis_map(
-                self.state.autopilot, self.settings_check.frame if self.settings_check else self._drive
-            )
+            frame = self.settings_check.frame if self.settings_check else self._drive
+            self.axes = axis_map(self.state.autopilot, self.state.kind, frame)
         return self.axes
 
     @property

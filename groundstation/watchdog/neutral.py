@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects import codec
-from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.axes import build_neutral
 from dialects.enums import OperatorFlag
 from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, Message, RoverOperatorPresence, boot_ms
 from groundstation.station.driving.driven import WatchdogTarget
@@ -57,7 +57,7 @@ class NeutralFrames:
 
     def _build(self, now: float) -> Message:
         vehicle = self._vehicle
-        neutral = build_manual_control(NEUTRAL, vehicle.system, axis_map(vehicle.autopilot))
+        neutral = build_neutral(vehicle.system, vehicle.autopilot, vehicle.kind)
         return neutral if vehicle.session is None else self._build_proof(vehicle.session, neutral, now)
 
     def _build_proof(self, session: int, neutral: ManualControl, now: float) -> RoverOperatorPresence:

@@ -12,8 +12,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dialects.axes import AXIS_MAPS, NEUTRAL, PX4_FRAMES, Axes, axis_map, build_manual_control, parse_manual_control
-from dialects.enums import Autopilot
+from dialects.axes import (
+    AXIS_MAPS,
+    CLIMB_SPAN,
+    HOVER,
+    LOWEST_THROTTLE,
+    NEUTRAL,
+    PX4_FRAMES,
+    Axes,
+    axis_map,
+    build_manual_control,
+    build_neutral,
+    parse_manual_control,
+)
+from dialects.enums import Autopilot, VehicleType
 from dialects.messages import INVALID_AXIS, ManualControl
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS
@@ -21,12 +33,13 @@ from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown
 
+ROVER = VehicleType.GROUND_ROVER
 unit = st.floats(-1.0, 1.0)
 
 
 @given(unit, unit, st.sampled_from(sorted(AXIS_MAPS)))
 def test_a_demand_comes_back_as_it_was_sent(throttle: float, steering: float, autopilot: int) -> None:
-    axes = axis_map(autopilot)
+    axes = axis_map(autopilot, ROVER)
     back = parse_manual_control(build_manual_control(Axes(throttle, steering), 1, axes), axes)
     assert back == pytest.approx((throttle, steering), abs=0.0011)
 
@@ -38,9 +51,9 @@ def test_our_rover_reads_x_and_r() -> None:
 
 
 def test_ardupilot_reads_z_and_y_with_zero_as_neutral() -> None:
-    message = build_manual_control(Axes(0.5, -1.0), 1, axis_map(Autopilot.ARDUPILOT))
+    message = build_manual_control(Axes(0.5, -1.0), 1, axis_map(Autopilot.ARDUPILOT, ROVER))
     assert (message.z, message.y) == (500, -1000)
-    assert build_manual_control(NEUTRAL, 1, axis_map(Autopilot.ARDUPILOT)).z == 0
+    assert build_manual_control(NEUTRAL, 1, axis_map(Autopilot.ARDUPILOT, ROVER)).z == 0
 
 
 FORWARD, BACKWARD, LEFT, RIGHT = 1, -1, -1, 1
@@ -59,12 +72,12 @@ FORWARD, BACKWARD, LEFT, RIGHT = 1, -1, -1, 1
     ],
 )
 def test_ardupilot_turns_the_other_way_in_reverse(throttle: int, nose: int, y: int) -> None:
-    message = build_manual_control(Axes(throttle, nose), 1, axis_map(Autopilot.ARDUPILOT))
+    message = build_manual_control(Axes(throttle, nose), 1, axis_map(Autopilot.ARDUPILOT, ROVER))
     assert message.y == y
 
 
 def test_px4_reads_z_with_500_as_neutral() -> None:
-    px4 = axis_map(Autopilot.PX4)
+    px4 = axis_map(Autopilot.PX4, ROVER)
     assert build_manual_control(NEUTRAL, 1, px4).z == 500
     assert build_manual_control(Axes(-1.0, 0.0), 1, px4).z == 0
     assert build_manual_control(Axes(1.0, 0.0), 1, px4).z == 1000
@@ -73,7 +86,7 @@ def test_px4_reads_z_with_500_as_neutral() -> None:
 def test_px4_gets_zero_on_unused_axes() -> None:
     """Old versions divide INT16_MAX by 1000; a mecanum rover would move sideways."""
     for frame in PX4_FRAMES:
-        message = build_manual_control(Axes(0.5, 0.5), 1, axis_map(Autopilot.PX4, frame))
+        message = build_manual_control(Axes(0.5, 0.5), 1, axis_map(Autopilot.PX4, ROVER, frame))
         assert sorted((message.x, message.y, message.r)) == [0, 0, 500]
 
 
@@ -132,7 +145,7 @@ def px4_motion(keys: tuple[str, ...], frame: int, rover: Callable[[ManualControl
     sticks.set_reports_releases()
     for key in keys:
         sticks.press(msgspec.structs.replace(DRIVE_KEYS[key], key=key), 0.0)
-    return rover(build_manual_control(sticks.axes(0.0), 1, axis_map(Autopilot.PX4, frame)))
+    return rover(build_manual_control(sticks.axes(0.0), 1, axis_map(Autopilot.PX4, ROVER, frame)))
 
 
 def sign(value: float) -> int:
@@ -164,7 +177,7 @@ def test_a_px4_rover_comes_back_on_the_same_arc(
 
 
 def test_an_unknown_autopilot_is_treated_as_specified() -> None:
-    assert axis_map(99) is axis_map(Autopilot.GENERIC)
+    assert axis_map(99, ROVER) is axis_map(Autopilot.GENERIC, ROVER)
 
 
 @pytest.mark.parametrize(("asked", "sent"), [(2.0, 1000), (-1e30, -1000), (math.nan, 0), (math.inf, 1000)])
@@ -178,3 +191,28 @@ def test_an_axis_that_is_invalid_or_out_of_range_is_no_demand(raw: int) -> None:
     throttle, steering = parse_manual_control(ManualControl(target=1, x=raw, y=0, z=0, r=250, buttons=0))
     assert throttle is None
     assert steering == 0.25
+
+
+def test_the_neutral_of_what_flies_is_the_middle_of_z() -> None:
+    flying = [kind for kind in range(46) if kind not in (10, 11)]
+    for autopilot in (0, 3, 12, 5):
+        assert [build_neutral(1, autopilot, kind).z for kind in flying] == [HOVER] * len(flying)
+    assert build_neutral(1, Autopilot.ARDUPILOT, VehicleType.GROUND_ROVER).z == 0
+    neutral = build_neutral(7, Autopilot.ARDUPILOT, 2)
+    assert (neutral.target, neutral.x, neutral.y, neutral.r) == (7, 0, 0, 0)
+
+
+anything = st.floats()
+
+
+@given(anything, anything, anything, anything)
+def test_no_demand_of_what_flies_is_below_the_least_z(a: float, b: float, c: float, d: float) -> None:
+    message = build_manual_control(Axes(a, b, c, d), 1, axis_map(Autopilot.ARDUPILOT, 2))
+    assert LOWEST_THROTTLE <= message.z <= HOVER + CLIMB_SPAN
+    assert max(map(abs, (message.x, message.y, message.r))) <= 1000
+    assert d < 0 or message.z >= HOVER
+
+
+def test_each_axis_of_what_flies_has_its_own() -> None:
+    message = build_manual_control(Axes(0.5, -0.2, 1.0, -0.6), 1, axis_map(Autopilot.PX4, 2))
+    assert (message.x, message.r, message.y, message.z) == (500, -200, 1000, 320)

@@ -6,8 +6,9 @@ import pytest
 from pymavlink import mavutil
 
 from dialects import rover
+from dialects.axes import axis_map
 from dialects.enums import Autopilot, type_name
-from dialects.kinds import find_kind
+from dialects.kinds import PREPARED, find_kind
 from dialects.mode_tables import ARDUPILOT, PX4
 
 ARDU, PX, OURS = Autopilot.ARDUPILOT, Autopilot.PX4, Autopilot.GENERIC
@@ -100,3 +101,26 @@ def test_px4_moves_itself_in_its_auto_modes_but_hold() -> None:
     assert rovers.moves_itself("AUTO_MISSION")
     assert rovers.moves_itself("OFFBOARD")
     assert rovers.moves_itself("mode 589824")
+
+
+def test_the_axes_of_a_kind_are_those_of_its_types() -> None:
+    for kind in TYPES:
+        for autopilot in (ARDU, PX, OURS):
+            assert find_kind(autopilot, kind).axes is axis_map(autopilot, kind)
+
+
+@pytest.mark.parametrize("autopilot", [ARDU, PX])
+def test_copters_are_flown_only_where_altitude_is_held(autopilot: int) -> None:
+    copter = PREPARED["copter", autopilot]
+    names = set(copter.modes.values())
+    assert {copter.drive_mode, copter.land, copter.home, *copter.thrust, *copter.hidden} <= names
+    assert copter.drive_mode in copter.keys
+    assert not copter.keys & copter.thrust
+    assert not set(copter.choices) & copter.thrust
+    assert copter.mode_name(copter.number_of("MANUAL") or 0) == copter.drive_mode
+    assert copter.number_of("LAND") is not None
+    assert copter.number_of("RTL") is not None
+    assert copter.mode_name(copter.number_of("HOLD") or 0) in copter.standing
+    assert not any(map(copter.takes_neutral, (*copter.thrust, "mode 99")))
+    assert all(map(copter.takes_neutral, copter.keys))
+    assert copter.axes.climb_neutral == 500

@@ -21,7 +21,9 @@ class WatchdogTarget(msgspec.Struct, frozen=True, kw_only=True):
     component: int
     name: str
     autopilot: int
-    """MAV_AUTOPILOT: decides on the axes."""
+    """MAV_AUTOPILOT: decides on the axes and their neutral, with `kind`."""
+    kind: int
+    """MAV_TYPE."""
     session: int | None = None
     """Our session, for a vehicle that takes its demands from ROVER_OPERATOR_PRESENCE; else None."""
     boot_time: int = 0
@@ -37,6 +39,7 @@ class WatchdogTarget(msgspec.Struct, frozen=True, kw_only=True):
             component=state.component,
             name=state.name,
             autopilot=state.autopilot,
+            kind=state.kind,
             session=session if state.has_rover_dialect else None,
             boot_time=state.boot_time or 0,
             verified=verified,

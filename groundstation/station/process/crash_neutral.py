@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import msgspec
 
-from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.axes import build_neutral
 from dialects.enums import Severity
 from dialects.kinds import find_kind
 from dialects.messages import Heartbeat, ManualControl, Message
@@ -28,8 +28,8 @@ class CrashNeutral:
 
     def __init__(self, station: Station) -> None:
         self._station = station
-        self._autopilots: dict[int, int] = {}
-        """MAV_AUTOPILOT of the vehicles that keys drive. Others get no neutral: it would let a copter fall."""
+        self._kinds: dict[int, tuple[int, int]] = {}
+        """MAV_AUTOPILOT and MAV_TYPE of the vehicles that keys drive. Others get no neutral."""
         self._driven: dict[int, float] = {}
         """System id -> when the vehicle last got a demand from us."""
         self._active = False
@@ -41,7 +41,7 @@ class CrashNeutral:
         """Take over from the station: send the final neutrals, and do not call the station any more."""
         self._active = True
         recent = (system for system, at in self._driven.items() if now - at <= DEMAND_MEMORY)
-        self._driven = {system: self._driven[system] for system in recent if system in self._autopilots}
+        self._driven = {system: self._driven[system] for system in recent if system in self._kinds}
         self._left, self._due = FINAL_NEUTRALS if self._driven else 0, now
         self.tick(now)
 
@@ -118,12 +118,12 @@ class CrashNeutral:
 
     def _note_kind(self, system: int, beat: Heartbeat) -> None:
         if find_kind(beat.autopilot, beat.type).is_driven:
-            self._autopilots[system] = beat.autopilot
+            self._kinds[system] = (beat.autopilot, beat.type)
         else:
-            self._autopilots.pop(system, None)
+            self._kinds.pop(system, None)
 
     def _neutral(self, system: int) -> ManualControl:
-        return build_manual_control(NEUTRAL, system, axis_map(self._autopilots[system]))
+        return build_neutral(system, *self._kinds[system])
 
 
 def crash_snapshot(last: Snapshot, what: str, wall: float) -> Snapshot:

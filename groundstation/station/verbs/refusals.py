@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from dialects import messages as m
-from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.axes import build_neutral
 from dialects.enums import OperatorFlag, Severity
 from dialects.messages import INVALID_AXIS
 from groundstation.snapshot.log_origin import LogOrigin
@@ -58,7 +58,7 @@ def _moves(message: m.ManualControl | m.RoverOperatorPresence, contact: Contact)
     if isinstance(message, m.RoverOperatorPresence):
         axes = (message.x, message.y, message.z, message.r) if message.flags & OperatorFlag.AXES else ()
         return any(axis not in (0, INVALID_AXIS) for axis in axes)
-    neutral = build_manual_control(NEUTRAL, message.target, axis_map(contact.state.autopilot))
+    neutral = build_neutral(message.target, contact.state.autopilot, contact.state.kind)
     axes = (message.x, message.y, message.z, message.r)
     return any(
         axis not in (rest, INVALID_AXIS)

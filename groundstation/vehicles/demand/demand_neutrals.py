@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from dialects import messages as m
-from dialects.axes import NEUTRAL, axis_map, build_manual_control
+from dialects.axes import build_neutral
 from dialects.messages import UINT16_MAX, boot_ms
 from groundstation.vehicles.state.vehicle_state import VehicleState
 
@@ -20,7 +20,7 @@ CENTRE, RELEASE = 1500, 0
 
 
 def _neutral_manual(state: VehicleState, values: Mapping[str, Any], now: float) -> list[m.Message]:
-    return [build_manual_control(NEUTRAL, state.system, axis_map(state.autopilot))]
+    return [build_neutral(state.system, state.autopilot, state.kind)]
 
 
 def _neutral_channels(state: VehicleState, values: Mapping[str, Any], now: float) -> list[m.Message]:
@@ -46,6 +46,8 @@ def _neutral_global(state: VehicleState, values: Mapping[str, Any], now: float) 
 
 
 def _neutral_attitude(state: VehicleState, values: Mapping[str, Any], now: float) -> list[m.Message]:
+    if state.model.falls:  # no thrust would let it fall: velocity 0 holds it, of ArduCopter and of PX4
+        return _neutral_local(state, {}, now)
     mask, target = values.get("type_mask", 0), (boot_ms(now), state.system, state.component)
     return [m.SetAttitudeTarget(*target, mask, values.get("q", [1.0, 0.0, 0.0, 0.0]), 0.0, 0.0, 0.0, 0.0)]
 

@@ -94,7 +94,7 @@ class VerbOperator:
         axes = self._stream.next_due(self.demand(now) if self.demanding else NEUTRAL, self.demanding, now)
         if axes is not None:
             self._session.record_demand(axes)
-            frame = axis_map(self._state.autopilot, self.frame)
+            frame = axis_map(self._state.autopilot, self._state.kind, self.frame)
             self.send_demand(build_manual_control(axes, self._state.system, frame), now, moves=not axes.neutral)
         self._prove(now)
 

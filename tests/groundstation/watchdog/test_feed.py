@@ -19,7 +19,7 @@ from link.links import open_links
 from link.runtime.local_socket import open_pair
 from link.transport.transport import Link
 
-ROVER = WatchdogTarget(system=1, component=1, name="rover 1", autopilot=3)
+ROVER = WatchdogTarget(system=1, component=1, name="rover 1", autopilot=3, kind=10)
 DEMAND = ManualControl(target=1, x=600, y=0, z=0, r=0, buttons=0)
 
 
@@ -143,7 +143,7 @@ def test_overrides_are_demands_and_other_messages_are_not(rig: Rig) -> None:
 
 
 def test_a_route_is_that_of_its_own_vehicle(rig: Rig) -> None:
-    other = WatchdogTarget(system=2, component=1, name="rover 2", autopilot=3)
+    other = WatchdogTarget(system=2, component=1, name="rover 2", autopilot=3, kind=10)
     assert rig.feed.report([other, ROVER], rig.now)
     data, descriptors, _, _ = socket.recv_fds(rig.theirs, MAX_REPORT, MAX_OUTLETS)
     assert [route.vehicle for route in decode_report(data).routes] == [1]

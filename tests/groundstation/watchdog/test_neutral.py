@@ -17,7 +17,9 @@ from link.signing.keys import KeyRing
 from link.signing.signature import is_signed, link_and_stamp
 from tests.link.signing.signed import DRIVER, NOW, keep
 
-ROVER = WatchdogTarget(system=4, component=9, name="Rover 4", autopilot=Autopilot.GENERIC, session=77, boot_time=5000)
+ROVER = WatchdogTarget(
+    system=4, component=9, name="Rover 4", autopilot=Autopilot.GENERIC, kind=10, session=77, boot_time=5000
+)
 WAY = SigningContext(DRIVER.name, 250, 128)
 
 

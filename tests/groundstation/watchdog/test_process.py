@@ -33,7 +33,7 @@ from link.runtime.local_socket import open_pair
 from tests.groundstation.watchdog.test_terminal_guard import ignores_hangup
 from tests.waits import wait_until
 
-ARDUROVER = WatchdogTarget(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
+ARDUROVER = WatchdogTarget(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT, kind=10)
 DRIVING = StationReport(vehicles=(ARDUROVER,), routes=(DemandRoute(0, None, 10),))
 ENDED = "station process ended: "
 

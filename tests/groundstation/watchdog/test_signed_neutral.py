@@ -17,7 +17,9 @@ from link.signing.signature import is_signed, link_and_stamp
 from tests.link.frames import frame as unsigned
 from tests.link.signing.signed import DAY, DRIVER, HERE, NOW, STRANGER, THERE, keep, send, signed, station, vehicle
 
-ROVER = WatchdogTarget(system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, session=7, boot_time=1000)
+ROVER = WatchdogTarget(
+    system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, kind=10, session=7, boot_time=1000
+)
 
 DISARMED = Heartbeat(10, 0, 0, 0, 3, 3)
 

@@ -15,8 +15,10 @@ from groundstation.watchdog.watchdog import SEND_FOR, Watchdog
 from link.protocol.framer import Framer
 
 STEP = 0.005
-ROVER = WatchdogTarget(system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, session=7, boot_time=1000)
-ARDUROVER = WatchdogTarget(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT)
+ROVER = WatchdogTarget(
+    system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, kind=10, session=7, boot_time=1000
+)
+ARDUROVER = WatchdogTarget(system=2, component=1, name="ArduPilot rover 2", autopilot=Autopilot.ARDUPILOT, kind=10)
 
 
 def watching(*vehicles: WatchdogTarget) -> Watchdog:

@@ -10,6 +10,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.axes import Axes, axis_map, build_manual_control
+from dialects.enums import VehicleType
 from groundstation.host.run_port import RunPort
 from groundstation.intents.session import RenewLease
 from groundstation.station.component import COMPONENT
@@ -196,7 +197,7 @@ def test_the_demand_of_a_shell_that_stands_still_ends() -> None:
         seat.leave()
         assert vehicle.of("MANUAL_CONTROL")[-1].z == neutral.z
 
-    axes = axis_map(ARDUPILOT)
+    axes = axis_map(ARDUPILOT, VehicleType.GROUND_ROVER)
     ahead, neutral = (build_manual_control(Axes(throttle, 0.0), 1, axes) for throttle in (0.4, 0.0))
     assert (ahead.z, neutral.z) == (400, 0)
     with foreign_vehicle() as vehicle:

@@ -1,0 +1,457 @@
+"""Stand-ins of ArduCopter and a PX4 quad: altitude and place are ground truth, failsafes follow their own parameters.
+
+Written after their sources; no real one has been compared. ArduCopter: GCS_MAVLink_Copter.cpp (MANUAL_CONTROL),
+radio.cpp and events.cpp (failsafes), AP_Arming_Copter.cpp, mode.cpp (get_pilot_desired_climb_rate). PX4:
+mavlink_receiver.cpp, Commander.cpp, failsafe.cpp. Motion is that of a point: a velocity that follows its demand, or a
+fall.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from dialects import messages as m
+from dialects.enums import Autopilot, Command, LandedState, ModeFlag, Result
+from dialects.kinds import PREPARED
+from dialects.messages import INVALID_AXIS, boot_ms
+from link.core import Received
+from tests.fakes.params import INT32, Param
+from tests.fakes.vehicle import AnyCommand, FakeVehicle
+
+QUADROTOR = 2
+GRAVITY = 9.81
+FORCED = 21196
+HOME_ALTITUDE = 400.0
+"""m above mean sea level."""
+ACCELERATION = 2.5
+"""m/s2 with which the climb follows its demand."""
+BRAKING = 2.5
+"""m/s2 with which the speed over ground follows its demand."""
+REPORTS = 0.2
+"""s between two reports of the place."""
+LANDED_FOR = 1.0
+"""s on the ground in a landing until it disarms itself."""
+IDLE_FOR = 10.0
+"""s armed on the ground until it disarms itself (DISARM_DELAY, COM_DISARM_PRFLT)."""
+METRES = 1.113e5
+"""m of a degree of latitude."""
+
+
+class Sticks(NamedTuple):
+    """Forward, right and turn in -1..1, and z of MANUAL_CONTROL."""
+
+    forward: float = 0.0
+    right: float = 0.0
+    turn: float = 0.0
+    z: int = 500
+
+
+class FlyingVehicle(FakeVehicle):
+    """What both have in common: the motion, take-off, landing, arming, reports."""
+
+    def __init__(self, autopilot: int, mode: str, params: dict[str, float], whole: tuple[str, ...] = ()) -> None:
+        self.table = PREPARED["copter", Autopilot(autopilot)].modes
+        super().__init__(autopilot=autopilot, driver=None, mode=self._number(mode))
+        self.kind = QUADROTOR
+        for name, value in params.items():
+            self.params[name] = Param(value, INT32) if name in whole else Param(value)
+        self.answers |= dict.fromkeys(
+            (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STATE), Result.UNSUPPORTED
+        )
+        self.altitude = self.climb = self.highest = 0.0
+        self.north = self.east = self.heading = 0.0
+        self.speed_north = self.speed_east = 0.0
+        self.wind = (0.0, 0.0)
+        """m/s, of what drifts."""
+        self.hit_ground_at = 0.0
+        """m/s of its hardest landing."""
+        self.lowest_z = 1000
+        """The least z of a MANUAL_CONTROL that arrived while it flew."""
+        self.station_at = -math.inf
+        """When the station was heard last."""
+        self.sticks: Sticks | None = None
+        """What it obeys now; None: nothing."""
+        self.target = 0.0
+        """m, of a take-off."""
+        self._now = 0.0
+        self._moved_at: float | None = None
+        self._report_due = 0.0
+        self._ground_since: float | None = None
+
+    # ---- what a test asks ----
+
+    @property
+    def mode_name(self) -> str:
+        return self.table.get(self.mode, "")
+
+    @property
+    def flies(self) -> bool:
+        """It is off the ground."""
+        return self.altitude > 0.0
+
+    @property
+    def speed(self) -> float:
+        """m/s over ground."""
+        return math.hypot(self.speed_north, self.speed_east)
+
+    def set_mode(self, name: str) -> None:
+        """Change the mode, as a failsafe or the transmitter's switch does; the next heartbeat follows at once."""
+        self.change_mode(self._number(name), armed=self.armed)
+
+    def lift(self, altitude: float) -> None:
+        """Hover at this altitude."""
+        self.armed, self.altitude, self.climb = True, altitude, 0.0
+
+    # ---- core ----
+
+    def receive(self, received: Received, now: float) -> None:
+        """Take demands of its station; the rest as FakeVehicle."""
+        message = received.message
+        self._now = now
+        if not (self.deaf or self.cut) and received.system == 255:
+            if isinstance(message, m.Heartbeat):
+                self.station_at = now
+            elif isinstance(message, m.ManualControl) and message.target == self.system:
+                if self.flies:
+                    self.lowest_z = min(self.lowest_z, message.z)
+                self._demand(message, now)
+        super().receive(received, now)
+
+    def tick(self, now: float) -> None:
+        """Move, watch its failsafes, report."""
+        self._now = now
+        seconds = min(0.1, now - (now if self._moved_at is None else self._moved_at))
+        self._moved_at = now
+        self._watch(now)
+        self._move(seconds)
+        self._disarm_itself(now)
+        super().tick(now)
+        if now >= self._report_due:
+            self._report_due = now + REPORTS
+            self._report(now)
+
+    # ---- of each autopilot ----
+
+    def _demand(self, message: m.ManualControl, now: float) -> None:
+        raise NotImplementedError
+
+    def _watch(self, now: float) -> None:
+        raise NotImplementedError
+
+    def _climb_of(self, z: int) -> float:
+        """Return the climb in m/s that z asks for in a mode that holds altitude."""
+        raise NotImplementedError
+
+    @property
+    def top_speed(self) -> float:
+        """m/s at full deflection."""
+        raise NotImplementedError
+
+    # ---- motion ----
+
+    def _move(self, seconds: float) -> None:
+        sticks, mode = self.sticks or Sticks(), self.mode_name
+        if not self.armed:
+            self._fall(seconds, thrust=0.0)
+        elif mode in THRUST:
+            z = sticks.z if self.sticks is not None else 0
+            self._fall(seconds, thrust=z / 500.0)
+        else:
+            self._fly(mode, sticks, seconds)
+        self.altitude += self.climb * seconds
+        self.highest = max(self.highest, self.altitude)
+        if self.altitude <= 0.0:
+            self.hit_ground_at = max(self.hit_ground_at, -self.climb)
+            self.altitude = self.climb = self.speed_north = self.speed_east = 0.0
+        self.north += self.speed_north * seconds
+        self.east += self.speed_east * seconds
+
+    def _fall(self, seconds: float, *, thrust: float) -> None:
+        self.climb += GRAVITY * (thrust - 1.0) * seconds
+        if not self.flies and self.climb < 0.0:
+            self.climb = 0.0
+
+    def _fly(self, mode: str, sticks: Sticks, seconds: float) -> None:
+        north, east, climb = self._by_sticks(mode, sticks, seconds) if mode in FLOWN else self._by_itself(mode)
+        if not self.flies and climb <= 0.0:
+            return
+        self.climb = _follow(self.climb, climb, ACCELERATION * seconds)
+        self.speed_north = _follow(self.speed_north, north, BRAKING * seconds)
+        self.speed_east = _follow(self.speed_east, east, BRAKING * seconds)
+
+    def _by_sticks(self, mode: str, sticks: Sticks, seconds: float) -> tuple[float, float, float]:
+        """Return the velocity north, east and up that the sticks ask for."""
+        climb = self._climb_of(sticks.z)
+        forward, right = sticks.forward * self.top_speed, sticks.right * self.top_speed
+        north = forward * math.cos(self.heading) - right * math.sin(self.heading)
+        east = forward * math.sin(self.heading) + right * math.cos(self.heading)
+        self.heading = (self.heading + math.radians(90) * sticks.turn * seconds) % (2 * math.pi)
+        if mode in DRIFTS and self.flies:
+            north, east = north + self.wind[0], east + self.wind[1]
+        if self.target and climb >= 0.0:
+            climb = max(climb, min(1.0, self.target - self.altitude))
+        if self.target and (climb < 0.0 or self.altitude >= self.target - 0.05):
+            self.target = 0.0
+        return north, east, climb
+
+    def _by_itself(self, mode: str) -> tuple[float, float, float]:
+        """Return the velocity in a mode that flies itself."""
+        if mode in LANDS:
+            return 0.0, 0.0, -0.7
+        if mode in HOMEWARD:
+            away = math.hypot(self.north, self.east)
+            return (-3.0 * self.north / away, -3.0 * self.east / away, 0.0) if away > 0.5 else (0.0, 0.0, -0.7)
+        if mode != "AUTO_TAKEOFF":
+            return 0.0, 0.0, 0.0
+        if self.target - self.altitude < 0.1:
+            self.set_mode("HOLD")
+        return 0.0, 0.0, min(1.5, self.target - self.altitude)
+
+    def _disarm_itself(self, now: float) -> None:
+        idle = self.armed and not self.flies
+        if not idle:
+            self._ground_since = None
+            return
+        self._ground_since = now if self._ground_since is None else self._ground_since
+        landing = self.mode_name in LANDS | HOMEWARD
+        if now - self._ground_since > (LANDED_FOR if landing else IDLE_FOR):
+            self.armed = False
+            self.beat()
+
+    # ---- commands ----
+
+    def _number(self, name: str) -> int:
+        return next(number for number, each in self.table.items() if each == name)
+
+    def _flags(self) -> int:
+        return ModeFlag.CUSTOM | (ModeFlag.ARMED if self.armed else 0)
+
+    def _command(self, message: AnyCommand, received: Received) -> None:
+        if message.command == Command.COMPONENT_ARM_DISARM:
+            self.answers[message.command] = self._arm_answer(arms=message.param1 == 1, forced=message.param2 == FORCED)
+        elif message.command == Command.NAV_TAKEOFF:
+            self.answers[message.command] = Result.ACCEPTED if self._may_take_off() else Result.FAILED
+        super()._command(message, received)
+
+    def _arm_answer(self, *, arms: bool, forced: bool) -> int | tuple[int, str]:
+        if not arms:
+            return Result.FAILED if self.flies and not forced else Result.ACCEPTED
+        return self._arming_check()
+
+    def _arming_check(self) -> int | tuple[int, str]:
+        raise NotImplementedError
+
+    def _may_take_off(self) -> bool:
+        raise NotImplementedError
+
+    def _begin_take_off(self, height: float) -> None:
+        raise NotImplementedError
+
+    def _obey(self, message: AnyCommand, source: int) -> bool:
+        if message.command == Command.NAV_TAKEOFF:
+            self._begin_take_off(message.param7 if isinstance(message, m.CommandLong) else message.z)
+            return True
+        if message.command == Command.DO_SET_MODE:
+            self.target = 0.0
+        return super()._obey(message, source)
+
+    # ---- reports ----
+
+    def _report(self, now: float) -> None:
+        landed = LandedState.IN_AIR if self.flies else LandedState.ON_GROUND
+        self.send(m.ExtendedSysState(0, landed))
+        place = (round((47.0 + self.north / METRES) * 1e7), round((8.0 + self.east / METRES / 0.682) * 1e7))
+        height = round(1000 * self.altitude)
+        speeds = (round(100 * self.speed_north), round(100 * self.speed_east), round(-100 * self.climb))
+        heading = math.degrees(self.heading)
+        self.send(
+            m.GlobalPositionInt(
+                boot_ms(now), *place, round(1000 * HOME_ALTITUDE) + height, height, *speeds, round(100 * heading)
+            )
+        )
+        self.send(m.Attitude(boot_ms(now), 0.0, 0.0, self.heading, 0.0, 0.0, 0.0))
+        self.send(m.VfrHud(0.0, self.speed, round(heading), 50, HOME_ALTITUDE + self.altitude, self.climb))
+
+
+THRUST = frozenset({"STABILIZE", "ACRO", "MANUAL", "STABILIZED", "DRIFT"})
+FLOWN = frozenset({"LOITER", "POSHOLD", "ALT_HOLD", "POSCTL", "ALTCTL"})
+DRIFTS = frozenset({"ALT_HOLD", "ALTCTL"})
+LANDS = frozenset({"LAND", "AUTO_LAND"})
+HOMEWARD = frozenset({"RTL", "AUTO_RTL"})
+
+
+def _follow(value: float, wanted: float, most: float) -> float:
+    return value + max(-most, min(most, wanted - value))
+
+
+SAFE_COPTER: dict[str, float] = {
+    "RC_OVERRIDE_TIME": 3.0, "FS_THR_ENABLE": 1, "FS_GCS_ENABLE": 5, "FS_GCS_TIMEOUT": 5.0, "FS_OPTIONS": 0,
+    "MAV_GCS_SYSID": 255, "LOIT_SPEED": 1250.0, "PILOT_SPEED_UP": 250.0, "PILOT_Y_RATE": 202.5, "THR_DZ": 100,
+}  # fmt: skip
+"""Defaults of ArduCopter, but for FS_GCS_ENABLE (0) and FS_OPTIONS (16: pilot control goes on without a station)."""
+
+CONTINUES = 16
+"""FS_OPTIONS: pilot-controlled modes go on when the station is lost."""
+ACTIONS = {1: "RTL", 3: "RTL", 4: "RTL", 5: "LAND", 7: "BRAKE"}
+"""FS_GCS_ENABLE -> mode; FS_THR_ENABLE has LAND for 3."""
+
+
+class ArduCopter(FlyingVehicle):
+    """ArduCopter 4.x: z as the throttle channel, overrides that last RC_OVERRIDE_TIME, two failsafes."""
+
+    def __init__(self, mode: str = "LOITER", **params: float) -> None:
+        super().__init__(Autopilot.ARDUPILOT, mode, SAFE_COPTER | params)
+        self.receiver: Sticks | None = None
+        """What its transmitter asks for; None: it has no RC receiver."""
+        self._override = Sticks()
+        self._override_at = -math.inf
+        self._radio_failed = self._station_failed = False
+
+    @property
+    def top_speed(self) -> float:
+        return self.params["LOIT_SPEED"].value / 100
+
+    def _demand(self, message: m.ManualControl, now: float) -> None:
+        self.station_at = now
+        if self.params["RC_OVERRIDE_TIME"].value == 0 or message.z < 0:
+            return
+        axes = (0 if axis == INVALID_AXIS else axis for axis in (message.x, message.y, message.r))
+        forward, right, turn = (axis / 1000 for axis in axes)
+        self._override, self._override_at = Sticks(forward, right, turn, message.z), now
+        self._radio_failed = False
+
+    def _watch(self, now: float) -> None:
+        kept = self.params["RC_OVERRIDE_TIME"].value
+        silent = now - self._override_at
+        if self._override_at > -math.inf and (kept < 0 or silent <= kept):
+            self.sticks = self._override
+        elif self.receiver is not None:
+            self.sticks = self.receiver
+        elif self._override_at > -math.inf and silent > kept + 0.5 and self.params["FS_THR_ENABLE"].value:
+            self.sticks = None
+            self._fail("_radio_failed", {3: "LAND"}.get(int(self.params["FS_THR_ENABLE"].value), "RTL"))
+        # else the channels keep their last values
+        enabled = int(self.params["FS_GCS_ENABLE"].value)
+        lost = now - self.station_at > self.params["FS_GCS_TIMEOUT"].value and self.station_at > -math.inf
+        if not lost:
+            self._station_failed = False
+        elif enabled:
+            self._override_at = -math.inf
+            pilot = int(self.params["FS_OPTIONS"].value) & CONTINUES and self.mode_name in FLOWN | THRUST
+            self._fail("_station_failed", "" if pilot else ACTIONS.get(enabled, "RTL"))
+
+    def _fail(self, which: str, mode: str) -> None:
+        if getattr(self, which) or not self.armed:
+            return
+        setattr(self, which, True)
+        if not self.flies:
+            self.armed = False
+            self.beat()
+        elif mode and self.mode_name != "LAND":
+            self.set_mode(mode)
+
+    def _climb_of(self, z: int) -> float:
+        dead, fastest = int(self.params["THR_DZ"].value), self.params["PILOT_SPEED_UP"].value / 100
+        away = abs(z - 500) - dead
+        return 0.0 if away <= 0 else math.copysign(fastest * away / (500 - dead), z - 500)
+
+    def _arming_check(self) -> int | tuple[int, str]:
+        sticks = self.sticks or Sticks(z=0)
+        high = sticks.z > 0 if self.mode_name in THRUST else self._climb_of(sticks.z) > 0.0
+        return (Result.FAILED, "Arm: Throttle too high") if high else Result.ACCEPTED
+
+    def _may_take_off(self) -> bool:
+        return self.armed and not self.flies and self.mode_name in FLOWN | {"GUIDED"}
+
+    def _begin_take_off(self, height: float) -> None:
+        self.target = height
+
+
+SAFE_QUAD: dict[str, float] = {
+    "COM_RC_IN_MODE": 1, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 2, "COM_FAIL_ACT_T": 5.0, "COM_DL_LOSS_T": 10,
+    "NAV_DLL_ACT": 2, "MIS_TAKEOFF_ALT": 2.5, "MPC_VEL_MANUAL": 10.0, "MPC_Z_VEL_MAX_UP": 3.0,
+    "MPC_Z_VEL_MAX_DN": 1.5, "MPC_MAN_Y_MAX": 150.0,
+}  # fmt: skip
+"""Defaults of PX4, but for NAV_DLL_ACT (0)."""
+WHOLE = ("COM_RC_IN_MODE", "NAV_RCL_ACT", "COM_DL_LOSS_T", "NAV_DLL_ACT")
+FALLS = (5, 6)
+"""Terminate, disarm."""
+
+
+class Px4Quad(FlyingVehicle):
+    """PX4 1.16: z over 500 as the throttle stick, manual control that is lost after COM_RC_LOSS_T."""
+
+    def __init__(self, mode: str = "POSCTL", **params: float) -> None:
+        super().__init__(Autopilot.PX4, mode, SAFE_QUAD | params, WHOLE)
+        self._manual = Sticks()
+        self._manual_at = -math.inf
+        self._lost_at: float | None = None
+        self._acted = False
+
+    @property
+    def top_speed(self) -> float:
+        return self.params["MPC_VEL_MANUAL"].value
+
+    def _demand(self, message: m.ManualControl, now: float) -> None:
+        if self.params["COM_RC_IN_MODE"].value in (0, 4):
+            return
+        axes = (axis / 1000 if abs(axis) <= 1000 else 0.0 for axis in (message.x, message.y, message.r))
+        forward, right, turn = axes
+        self._manual = Sticks(forward, right, turn, message.z if 0 <= message.z <= 1000 else 500)
+        self._manual_at = now
+
+    @property
+    def _has_manual(self) -> bool:
+        return self._now - self._manual_at <= self.params["COM_RC_LOSS_T"].value
+
+    def _watch(self, now: float) -> None:
+        if self._manual_at > -math.inf:
+            self.sticks = self._manual
+        self._watch_station(now)
+        action = int(self.params["NAV_RCL_ACT"].value)
+        if self._has_manual:
+            self._lost_at, self._acted = None, False
+        elif self.armed and self._manual_at > -math.inf and self.mode_name in FLOWN | THRUST and action:
+            self._lost_at = now
+            self._act(action)
+        elif self._lost_at is not None and not self._acted and self.mode_name == "HOLD" and action in (2, 3):
+            if now - self._lost_at <= self.params["COM_FAIL_ACT_T"].value:
+                return
+            self._acted = True
+            self.set_mode("AUTO_RTL" if action == 2 else "AUTO_LAND")
+
+    def _watch_station(self, now: float) -> None:
+        action = int(self.params["NAV_DLL_ACT"].value)
+        lost = now - self.station_at > self.params["COM_DL_LOSS_T"].value and self.station_at > -math.inf
+        if lost and action and self.armed and self.mode_name not in LANDS | HOMEWARD:
+            self._act(action, at_once=True)
+
+    def _act(self, action: int, *, at_once: bool = False) -> None:
+        if not self.flies or action in FALLS:
+            self.armed = False
+            self.beat()
+        elif at_once and action in (2, 3):
+            self.set_mode("AUTO_RTL" if action == 2 else "AUTO_LAND")
+        else:
+            self.set_mode("HOLD")
+
+    def _climb_of(self, z: int) -> float:
+        stick = (z - 500) / 500
+        away = max(0.0, abs(stick) - 0.1) / 0.9
+        name = "MPC_Z_VEL_MAX_UP" if stick > 0 else "MPC_Z_VEL_MAX_DN"
+        return math.copysign(away * self.params[name].value, stick)
+
+    def _arming_check(self) -> int | tuple[int, str]:
+        if self.mode_name in FLOWN | THRUST and not self._has_manual:
+            return Result.TEMPORARILY_REJECTED, "Arming denied: manual control lost"
+        high = self._manual.z > 50 if self.mode_name in THRUST else self._manual.z > 600
+        return (Result.DENIED, "Arming denied: throttle above center") if high else Result.ACCEPTED
+
+    def _may_take_off(self) -> bool:
+        return not self.flies
+
+    def _begin_take_off(self, height: float) -> None:
+        default = self.params["MIS_TAKEOFF_ALT"].value
+        self.target = default if math.isnan(height) else max(default, height - HOME_ALTITUDE)
+        self.set_mode("AUTO_TAKEOFF")
