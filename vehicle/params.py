@@ -78,6 +78,10 @@ TABLE: tuple[Parameter, ...] = (
                 "1 arm, 2 disarm, 3 emergency stop, 4 HOLD, 5 MANUAL, 6 AUTO, 7 RTL", safety=True, whole=True)
       for bit in range(BUTTONS)),
     # Failsafes
+    Parameter("FRESH_DIST", 2, 0, 1000, "m", "Slow down so that the rover drives at most this far after the newest "
+              "command was sent; 0: off", safety=True),
+    Parameter("STOP_LAG", 0.2, 0, 2, "s", "For this long the wheels follow their motors: m driven after the motors are "
+              "at zero, divided by the speed before", safety=True),
     Parameter("FS_TIMEOUT", 1.5, 0.5, 10, "s", "From loss of manual control to HOLD", safety=True),
     Parameter("FS_DISARM_T", 30, 5, 300, "s", "From loss of manual control to disarming", safety=True),
     Parameter("FS_GCS_ENABLE", 1, 0, 2, "", "Ground station lost: 0 no action, 1 HOLD, 2 HOLD except in AUTO",

@@ -22,6 +22,7 @@ from vehicle.commands.signing import Pairing
 from vehicle.drive.control import Control
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
+from vehicle.drive.freshness import FreshnessLimit
 from vehicle.drive.gate import DRIVE, Outputs
 from vehicle.modes import MODES
 from vehicle.outbox import Outbox
@@ -88,6 +89,7 @@ class Rover:
         self._health_notices = HealthNotices(texts)
         self._control = Control(params, texts, system=int(params["MAV_SYSID"]), boot=now)
         self._drive = Drive(params, now)
+        self._freshness = FreshnessLimit(params)
         self._navigator = Navigator(params, self._drive.kind)
         self._safety = Safety(params, self._control, texts, now, self._navigator)
         self._monitor = SafetyMonitor(params, self._safety, self._control, self._texts, now)
@@ -310,11 +312,23 @@ class Rover:
         test = self._actuator_test.current_test(now, late=late)
         clearance = self._monitor.build_clearance(now, self._navigator.demand, late=late, trial=test)
         limited = self._safety.failsafes.lasting_action(now) >= _LIMIT
-        self._drive.update(self._demand_in_use(now), clearance, limited=limited, now=now)
         driven = clearance.permit is DRIVE
+        fresh_speed = self._limit_by_freshness(now, driven=driven)
+        self._drive.update(self._demand_in_use(now), clearance, limited=limited, now=now, fresh_speed=fresh_speed)
         self._steady.note_outputs(self._drive.wheels, driven=driven, now=now)
         if not driven:
             self._navigator.reset_controller()
+
+    def _limit_by_freshness(self, now: float, *, driven: bool) -> float:
+        """Return the m/s that the age of the commands allows; infinite where no command is needed."""
+        params, mode = self._params, self._safety.mode
+        sent_at, timeout = self._control.sent_at, self._control.longest_age
+        if MODES[mode].autonomous:
+            expires = self._navigator.guided.expires_at() if mode is Mode.GUIDED else None
+            timeout = params["GUIDED_TIMEOUT"]
+            sent_at = None if expires is None else expires - timeout
+        speed = max(self._drive.travel * params["SPEED_MAX"], self._navigator.estimate.ground_speed)
+        return self._freshness.update(sent_at if driven else None, timeout, speed, now)
 
     def _demand_in_use(self, now: float) -> Demand | None:
         """Return the demand that the mode obeys; the clearance decides whether it may move anything."""
@@ -351,6 +365,7 @@ class Rover:
             safety=self._safety,
             control=self._control,
             drive=self._drive,
+            fresh_speed=self._freshness.speed,
             navigator=self._navigator,
             logs=self._dispatcher.logbook.is_healthy,
             host=self._host,

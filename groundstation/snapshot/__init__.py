@@ -99,6 +99,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Motor outputs that are known."""
     limits: tuple[str, ...] = ()
     """Why outputs differ from the demand: "slew", "neutral first" ..."""
+    slowed: tuple[float, str] | None = None
+    """m/s that the vehicle allows itself now, and why, in two words; None while its demand is within that."""
     command_age: float | None = None
     """Age of the newest demand that the vehicle has taken, s; from some age on it is not obeyed any more."""
     command_age_estimated: bool = False

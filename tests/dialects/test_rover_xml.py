@@ -33,7 +33,7 @@ EXTENDED = {
 
 PRIVATE = {
     "ROVER_OPERATOR_PRESENCE": (46000, 244, 29),  # 21 without its extensions x, y, z, r
-    "ROVER_DRIVE_STATUS": (46001, 22, 22),
+    "ROVER_DRIVE_STATUS": (46001, 22, 24),  # 22 without its extension speed_limit
     "ROVER_FAILSAFE_STATUS": (46002, 108, 16),
     "ROVER_LINK_STATUS": (46003, 245, 38),
     "ROVER_DRIVE_INFO": (46004, 33, 24),

@@ -11,7 +11,7 @@ from dialects.modes import Mode
 from tests.vehicle.bench import CYCLE, DRIVER, NEUTRAL, Bench
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Origin, Point
-from vehicle.sim.body import SimulatedBody, SimulatedHome
+from vehicle.sim.body import SimulatedBody, SimulatedHome, Slope
 from vehicle.sim.chassis import CHASSIS, ChassisDimensions
 from vehicle.sim.noise import SensorNoise
 
@@ -25,14 +25,18 @@ ONLY_PLACE = 0xDF8
 class Field(Bench):
     """`truth` is where the plant is; the rover knows only what its sensors say."""
 
-    def __init__(self, seed: int | None = 1, noise: SensorNoise | None = None, **params: float) -> None:
-        chassis = CHASSIS[DriveType(int(params.get("DRIVE_TYPE", 1)))](ChassisDimensions())
+    def __init__(self, seed: int | None = 1, noise: SensorNoise | None = None, slope: Slope | None = None,
+                 **params: float) -> None:  # fmt: skip
+        chassis = CHASSIS[DriveType(int(params.get("DRIVE_TYPE", 1)))](
+            ChassisDimensions(top_speed=params.get("SPEED_MAX", 1.5))
+        )
         self.body: SimulatedBody | None = None
         self.track: list[Point] = []
         self.blind: dict[str, object] = {}
         """Readings of sensors that are broken, or not there."""
         super().__init__(**params)
-        self.body = SimulatedBody(lambda: self.throttles, chassis=chassis, home=HOME, seed=seed, noise=noise)
+        self.body = SimulatedBody(lambda: self.throttles, chassis=chassis, home=HOME, seed=seed, noise=noise,
+                                  slope=slope)  # fmt: skip
         self.wait(2.0)
 
     @property

@@ -170,6 +170,19 @@ class Control:
         timeout: float = self._params["MAN_TIMEOUT"]
         return timeout if self.demand is None or self.demand.lifetime >= timeout else self.demand.lifetime
 
+    @property
+    def sent_at(self) -> float | None:
+        """The earliest time at which the demand can have been sent; None without one.
+
+        Of a driver without proofs only its arrival is known.
+        """
+        return None if self.demand is None else self.demand.time - self.demand.age
+
+    @property
+    def longest_age(self) -> float:
+        """S from sending a demand, at the earliest, until it is stale at the latest."""
+        return max(self._params["MAN_TIMEOUT"], self._params["OPR_ECHO_MAX"])
+
     def requests_motion(self) -> bool:
         """Return True if the demand, of any age, requests motion."""
         return self.demand is not None and self.demand.requests_motion(self.deadband)
@@ -203,8 +216,9 @@ class Control:
     ) -> Demand | None:
         """Return the demand of a message; one that is too old on arrival has no lifetime of its own (`_use_old`)."""
         lasting = math.inf if lifetime < 0.0 else lifetime
+        age = max(0.0, self._params["OPR_ECHO_MAX"] - lifetime) if math.isfinite(lifetime) else 0.0
         return from_manual_control(
-            message, received.system, received.sequence, now, sideways=self._sideways, lifetime=lasting
+            message, received.system, received.sequence, now, sideways=self._sideways, lifetime=lasting, age=age
         )
 
     def _use(self, demand: Demand, now: float, *, proof: bool = True) -> bool:

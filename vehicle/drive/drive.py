@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from dialects.enums import DriveLimit, DriveType
 from vehicle.drive.demand import Demand
 from vehicle.drive.gate import DRIVE, NONE, TEST, Clearance, Gate, MotorTest, Outputs
-from vehicle.drive.mixer import MIXERS, MixerLimits, clamp, deadband, expo, pivot_scale
+from vehicle.drive.mixer import FOUR_WHEELS, MIXERS, MixerLimits, clamp, deadband, expo, pivot_scale
 from vehicle.drive.output_scaling import build_output_scaling, is_unscaled, scale_outputs
 from vehicle.drive.slew import Slew, SlewLimits
 from vehicle.params import Params
 
-SATURATED, SPEED, SLEW, REVERSE_DELAY = (
-    each.value for each in (DriveLimit.SATURATED, DriveLimit.SPEED, DriveLimit.SLEW, DriveLimit.REVERSE_DELAY)
-)
+SATURATED, SPEED, SLEW, REVERSE_DELAY, FRESHNESS = (
+    each.value
+    for each in (
+        DriveLimit.SATURATED, DriveLimit.SPEED, DriveLimit.SLEW, DriveLimit.REVERSE_DELAY, DriveLimit.FRESHNESS
+    )
+)  # fmt: skip
 """Flags as plain numbers: adding IntFlags costs a microsecond each, and a demand shall reach the motors within 30."""
 LIMITED_THROTTLE_MAX = 0.5
 """Largest throttle while a failsafe limits the speed (docs/safety.md, battery low)."""
@@ -67,8 +71,22 @@ class Drive:
         """Cycles in a row in which the gate rejected the values."""
         return self._gate.refused
 
-    def update(self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float) -> Outputs:
-        """Return the outputs of this moment. `limited`: a failsafe limits the throttle to one half."""
+    @property
+    def travel(self) -> float:
+        """Share of the top speed at which the wheels shall move the rover now, whatever the direction."""
+        wheels = self._gate.wheels
+        if self._driven < len(wheels):
+            return abs(wheels[0])
+        ahead = sum(wheels) / len(wheels)
+        return math.hypot(ahead, sum(self._aside(wheels))) if self.mixer.sideways else abs(ahead)
+
+    def update(
+        self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float, fresh_speed: float = math.inf
+    ) -> Outputs:
+        """Return the outputs of this moment.
+
+        `limited`: a failsafe limits the throttle to one half. `fresh_speed`: m/s that the age of the commands allows.
+        """
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
         self._limits = 0
@@ -81,7 +99,9 @@ class Drive:
                 slew.reset()
         self._tested = motor
         wanted = demand if permit is DRIVE else None
-        wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._tested_motor(trial), dt)
+        wheels = self._ramped(
+            self._targets(wanted, limited, fresh_speed) if trial is None else self._tested_motor(trial), dt
+        )
         motors = wheels if self._unscaled else scale_outputs(wheels, self._driven, self._scalings)
         self.outputs = self._gate.filter(wheels, motors, permit, self._fall_time, now, trial)
         if self.wheels != wheels:  # rejected: no ramp continues from there
@@ -89,19 +109,24 @@ class Drive:
                 slew.reset()
         return self.outputs
 
-    def _targets(self, demand: Demand | None, limited: bool) -> tuple[float, ...]:
+    def _targets(self, demand: Demand | None, limited: bool, fresh_speed: float) -> tuple[float, ...]:
         if demand is None:
             return (0.0,) * len(self._slews)
-        asked = demand.axes, demand.direct, limited
+        fresh = fresh_speed / self._top
+        asked = demand.axes, demand.direct, limited, fresh
         if asked != self._wanted:  # a demand is repeated 20 times a second, and used in each cycle
-            self._wheels_wanted = self._mixed(demand, limited), self._limits
+            self._wheels_wanted = self._mixed(demand, limited, fresh), self._limits
             self._wanted = asked
         wheels, self._limits = self._wheels_wanted
         return wheels
 
-    def _mixed(self, demand: Demand, limited: bool) -> tuple[float, ...]:
+    def _mixed(self, demand: Demand, limited: bool, fresh: float) -> tuple[float, ...]:
         throttle, steering, sideways = shape_demand(demand, self._params)
         largest = min(self._largest, LIMITED_THROTTLE_MAX) if limited else self._largest
+        if math.hypot(throttle, sideways) > fresh:
+            self._limits |= FRESHNESS
+            share = fresh / math.hypot(throttle, sideways)
+            throttle, sideways = throttle * share, sideways * share
         if abs(throttle) > largest or abs(sideways) > largest:
             self._limits |= SPEED
             throttle, sideways = clamp(throttle, largest), clamp(sideways, largest)
@@ -114,6 +139,11 @@ class Drive:
             return mixed.throttles
         share = pivot_scale(throttle, steering, sideways, self._pivot)
         return tuple([share * value for value in mixed.throttles])
+
+    @staticmethod
+    def _aside(wheels: Sequence[float]) -> list[float]:
+        """Return the share of each wheel in the motion to the right."""
+        return [wheel * side / len(wheels) for wheel, (_, _, side) in zip(wheels, FOUR_WHEELS, strict=True)]
 
     def _tested_motor(self, trial: MotorTest) -> tuple[float, ...]:
         """Return the throttle of the tested motor and zero for the others."""
@@ -133,6 +163,7 @@ class Drive:
         """Cache what depends on parameters, until one of them changes."""
         params, self._params_generation = self._params, self._params.generation
         self._wanted = ()
+        self._top = params["SPEED_MAX"]
         self._scalings = build_output_scaling(params)
         self._unscaled = self._driven == len(self._slews) and is_unscaled(self._driven, self._scalings)
         self._largest, self._pivot = params["MOT_THR_MAX"] / 100, params["MOT_PIVOT_MAX"] / 100

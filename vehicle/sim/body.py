@@ -57,6 +57,15 @@ class SimulatedHome(NamedTuple):
     """m above mean sea level."""
 
 
+class Slope(NamedTuple):
+    """A plane that is not level."""
+
+    push: float
+    """m/s that it adds to wheels that turn straight downhill, and takes from them uphill."""
+    downhill: float = 0.0
+    """rad clockwise from north: the way down."""
+
+
 class SimulatedBody:
     """Fits `vehicle.sensors.Sensors`. `outputs` returns the present motor outputs (SimulatedMotors.outputs)."""
 
@@ -69,8 +78,10 @@ class SimulatedBody:
         home: SimulatedHome | None = None,
         seed: int | None = None,
         noise: SensorNoise | None = None,
+        slope: Slope | None = None,
     ) -> None:
         """Without a `seed` the sensors are perfect; with one they have `noise`."""
+        self._slope = slope
         self._outputs = outputs
         self._chassis = chassis or SkidChassis()
         self._battery = battery or Battery()
@@ -103,6 +114,8 @@ class SimulatedBody:
     def _step(self, throttles: Sequence[float], dt: float) -> None:
         battery, motion = self._battery, self._chassis.motion
         strength = battery.voltage / NOMINAL_VOLTAGE if battery.remaining > 0.0 else 0.0
+        if self._slope is not None:
+            motion.push = self._slope.push * math.cos(motion.yaw - self._slope.downhill)
         self._chassis.step(throttles, strength, dt)
         battery.step(ELECTRONICS + self._motor_current(throttles, strength), dt)
         keep = math.exp(-dt / LEAN_LAG)

@@ -50,6 +50,8 @@ class ChassisMotion(msgspec.Struct):
     """Forward acceleration."""
     sway: float = 0.0
     """Acceleration to the right, including that of a turn."""
+    push: float = 0.0
+    """m/s that a slope adds to the speed of wheels that turn, forward; standing ones are held by their gears."""
     wheel_speeds: tuple[float, ...] = (0.0, 0.0)
     """m/s of left and right side, of the driven axle, or of each of four wheels."""
 
@@ -58,6 +60,10 @@ class ChassisMotion(msgspec.Struct):
         """Velocity north and east, m/s."""
         ahead, across = math.cos(self.yaw), math.sin(self.yaw)
         return self.speed * ahead - self.sideways * across, self.speed * across + self.sideways * ahead
+
+    def on_slope(self, wanted: float) -> float:
+        """Return the speed that a wheel reaches here where it would reach `wanted` on level ground."""
+        return wanted + self.push if wanted else 0.0
 
     def advance(self, speed: float, yaw_rate: float, dt: float, sideways: float = 0.0) -> None:
         """Move for `dt` with the mean of old and new speed and turn rate."""
@@ -95,8 +101,8 @@ class SkidChassis:
         """Move: each side follows its throttle, and the difference turns the rover."""
         frame, motion = self._frame, self.motion
         top = frame.top_speed * strength
-        left = _follow(motion.wheel_speeds[0], throttles[0] * top, frame.motor_lag, dt)
-        right = _follow(motion.wheel_speeds[1], throttles[1] * top, frame.motor_lag, dt)
+        left = _follow(motion.wheel_speeds[0], motion.on_slope(throttles[0] * top), frame.motor_lag, dt)
+        right = _follow(motion.wheel_speeds[1], motion.on_slope(throttles[1] * top), frame.motor_lag, dt)
         motion.wheel_speeds = (left, right)
         motion.advance((left + right) / 2, (left - right) / (frame.track_width * frame.scrub), dt)
 
@@ -113,7 +119,8 @@ class AckermannChassis:
     def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
         """Move: the axle follows the throttle, the steering servo its target at its own rate (bicycle model)."""
         frame, motion = self._frame, self.motion
-        speed = _follow(motion.speed, throttles[0] * frame.top_speed * strength, frame.motor_lag, dt)
+        wanted = motion.on_slope(throttles[0] * frame.top_speed * strength)
+        speed = _follow(motion.speed, wanted, frame.motor_lag, dt)
         reach = frame.steering_rate * dt
         self._angle += max(-reach, min(reach, throttles[1] * frame.steering_max - self._angle))
         motion.wheel_speeds = (speed,)
@@ -142,7 +149,7 @@ class FourWheelChassis:
         frame, motion = self._frame, self.motion
         top = frame.top_speed * strength
         pairs = zip(motion.wheel_speeds, throttles, strict=True)
-        wheels = tuple(_follow(old, throttle * top, frame.motor_lag, dt) for old, throttle in pairs)
+        wheels = tuple(_follow(old, motion.on_slope(throttle * top), frame.motor_lag, dt) for old, throttle in pairs)
         corners = list(zip(wheels, CORNERS, strict=True))
         speed = sum(wheels) / len(wheels)
         sideways = sum(wheel * push for wheel, (_, _, push) in corners) / len(wheels)

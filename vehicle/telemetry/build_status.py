@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from dialects import messages as m
 from dialects.enums import Autopilot, Capability, DriveLimit, Failsafe, Sensor, SystemState, VehicleType
 from dialects.modes import Mode, base_mode
@@ -157,6 +159,7 @@ def drive_status(view: TelemetryView) -> m.Message:
         demand_steering=scale_to_int(demand.steering, INT16, 10000) if demand else 0,
         output=(output + [0] * 4)[:4],
         limits=limits(view),
+        speed_limit=scale_to_int(view.fresh_speed if math.isfinite(view.fresh_speed) else 0.0, UINT16, 100),
         source_system=control.demand.system if control.demand else 0,
         source_seq=control.demand.sequence if control.demand else 0,
     )

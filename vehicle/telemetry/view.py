@@ -31,6 +31,8 @@ class TelemetryView(NamedTuple):
     safety: Safety
     control: Control
     drive: Drive
+    fresh_speed: float
+    """m/s that the age of the commands allows; infinite while nothing is limited."""
     navigator: Navigator
     host: HostInfo
     rack: AccessorySet

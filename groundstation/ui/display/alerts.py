@@ -185,6 +185,7 @@ LIMITS = {
     "stale": "stale: the vehicle has no recent command and has stopped",
     "fence": "the fence stops the vehicle here",
     "battery": "speed reduced: battery low",
+    "freshness": "speed reduced: commands arrive late or get lost (FRESH_DIST)",
 }
 """Limits of the vehicle that a driver must know -> their text. The others (slew, saturated) are normal driving."""
 

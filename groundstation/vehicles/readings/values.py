@@ -38,6 +38,16 @@ def drive_demand(drive: m.RoverDriveStatus | None) -> tuple[float, float] | None
     return (within(drive.demand_throttle / 10_000), within(drive.demand_steering / 10_000)) if drive else None
 
 
+SLOWED = {DriveLimit.FRESHNESS: "late commands"}
+"""Limit of which ROVER_DRIVE_STATUS has the speed -> its reason, the most important first."""
+
+
+def slowed_speed(drive: m.RoverDriveStatus | None) -> tuple[float, str] | None:
+    """Return m/s that the vehicle allows itself and the reason; None where no limit holds it back."""
+    reason = next((text for limit, text in SLOWED.items() if drive is not None and drive.limits & limit), None)
+    return None if drive is None or reason is None else (drive.speed_limit / 100, reason)
+
+
 def within(value: float) -> float:
     """Return a value limited to -1..1."""
     return max(-1.0, min(1.0, value))

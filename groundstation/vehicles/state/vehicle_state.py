@@ -26,6 +26,7 @@ from groundstation.vehicles.readings.values import (
     battery_values,
     drive_demand,
     flag_words,
+    slowed_speed,
     vehicle_name,
     within,
 )
@@ -217,6 +218,7 @@ class VehicleState:
             demand=self.demand(now),
             outputs=self.foreign.outputs(now) if drive is None else self._outputs(drive),
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
+            slowed=slowed_speed(drive),
             latency=self.latency.latest,
             key_to_motor=self.key_timings.build_view(),
             failsafes=self.failsafes,

@@ -62,7 +62,7 @@ def test_all_streams_together_stay_below_their_share(capacity: float) -> None:
     bench = greedy()
     streamed(bench, 2.0, report(capacity))
     share = streamed(bench, 20.0, report(capacity)) / capacity
-    assert 0.4 < share <= 0.6
+    assert 0.35 < share <= 0.6
 
 
 def test_nothing_starves() -> None:
@@ -91,7 +91,7 @@ def test_radio_that_asks_for_less_gets_less_and_later_all_again() -> None:
     streamed(bench, 2.0, report(SIK, headroom=0.25))
     assert 0.08 < streamed(bench, 10.0, report(SIK, headroom=0.25)) / SIK <= 0.6 * 0.25 + 0.01
     streamed(bench, 2.0, report(SIK))
-    assert streamed(bench, 10.0, report(SIK)) / SIK > 0.4
+    assert streamed(bench, 10.0, report(SIK)) / SIK > 0.35
 
 
 def test_a_headroom_that_changes_each_second_is_no_way_around() -> None:

@@ -49,13 +49,15 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     """The key that is held does not count."""
     gamepad: bool = False
     """The gamepad drives."""
+    slowed: tuple[float, str] | None = None
+    """m/s that the vehicle allows itself, and why."""
     recorded: tuple[str, ...] | None = None
     """In a replay the keys that were held; None: no replay."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> KeycapsValue:
         """Return the caps of a display state."""
-        operator = now.snapshot.operator
+        operator, vehicle = now.snapshot.operator, now.snapshot.vehicle
         return cls(
             keymap=now.keymap,
             lit=lit_actions(frozenset(operator.held) | now.pressed, now.keymap),
@@ -68,6 +70,7 @@ class KeycapsValue(msgspec.Struct, frozen=True):
             open=operator.gate_open,
             ignored=bool(operator.ignored),
             gamepad=PAD in operator.held,
+            slowed=vehicle.slowed if vehicle is not None and vehicle.armed else None,
             recorded=None if now.snapshot.replay is None else operator.held,
         )
 
@@ -110,11 +113,19 @@ class Keycaps(Instrument[KeycapsValue]):
         return (
             style_parts(value),
             bound_parts(value),
-            [
-                ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
-                (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
-            ],
-        )  # fmt: skip
+            limit_parts(value),
+        )
+
+
+def limit_parts(value: KeycapsValue) -> list[Part]:
+    """Return the limits of the keys; while the vehicle limits itself further, its limit and the reason."""
+    if value.slowed is not None:
+        speed, reason = value.slowed
+        return [("at most ", style(DIM)), (f"{speed:.1f} m/s", style(AMBER, bold=True)), (f": {reason}", style(AMBER))]
+    return [
+        ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
+        (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
+    ]  # fmt: skip
 
 
 def style_parts(value: KeycapsValue) -> list[Part]:

@@ -29,3 +29,10 @@ def test_promised_releases_have_a_timer_until_one_came() -> None:
     proved = msgspec.structs.replace(promised, reports_releases=True, stop_bound=0.0)
     assert "stops when you let go" in Keycaps(proved).draw(40, 3)[1].text
     assert "timer: stops within 0.75 s" in Keycaps(KeycapsValue(STANDARD, stop_bound=0.75)).draw(40, 3)[1].text
+
+
+def test_the_vehicles_own_limit_stands_beside_the_keys() -> None:
+    own = KeycapsValue(STANDARD, throttle_limit=60)
+    assert "limits: speed 60% turn 100%" in Keycaps(own).draw(60, 3)[2].text
+    slowed = msgspec.structs.replace(own, slowed=(2.34, "late commands"))
+    assert "at most 2.3 m/s: late commands" in Keycaps(slowed).draw(50, 3)[2].text
