@@ -71,6 +71,8 @@ class LandedState(IntEnum):
     UNDEFINED = rover.MAV_LANDED_STATE_UNDEFINED
     ON_GROUND = rover.MAV_LANDED_STATE_ON_GROUND
     IN_AIR = rover.MAV_LANDED_STATE_IN_AIR
+    TAKEOFF = rover.MAV_LANDED_STATE_TAKEOFF
+    LANDING = rover.MAV_LANDED_STATE_LANDING
 
 
 class ModeFlag(IntFlag):

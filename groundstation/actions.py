@@ -12,6 +12,7 @@ from groundstation.intents.session import StartSimulator
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import (
     Arm,
+    CutMotors,
     Disarm,
     GiveControl,
     KeepControl,
@@ -19,7 +20,9 @@ from groundstation.intents.vehicle import (
     RequestControl,
     SelectNextVehicle,
     SetMode,
+    TakeOff,
 )
+from groundstation.intents.vehicle_intent import HOLD_TIME, VehicleIntent
 from groundstation.screens import SCREENS
 
 FASTER, SLOWER = 0.1, -0.1
@@ -40,16 +43,26 @@ class OperatorAction(msgspec.Struct, frozen=True):
     keys: tuple[str, ...] = ()
     """Keys in every key map, by Textual's names ("i", "comma", "up", "ctrl+q"). KEYMAPS (input/keymap.py) adds more."""
     confirm: bool = False
-    """The key must be held for HOLD_TIME; then `intent` is sent, with that time in its field `held` if it has one."""
+    """The key must be held for `hold_time`; then `intent` is sent, with that time in its field `held` if it has one."""
     when_armed: AnyIntent | None = None
     """Sent in place of `intent`, without confirmation, while the vehicle is armed."""
     steady: bool = False
     """Its keys do not stop a vehicle that is driven. All others that are not drive keys do."""
 
+    @property
+    def hold_time(self) -> float:
+        """S for which its key must be held, with `confirm`."""
+        return self.intent.hold_time if isinstance(self.intent, VehicleIntent) else HOLD_TIME
+
 
 def _drive(name: str, label: str, text: str, throttle: int, steering: int, *keys: str) -> OperatorAction:
     intent = DriveKeyDown(key="", throttle=throttle, steering=steering)
     return OperatorAction(f"drive.{name}", label, text, "drive", intent, keys)
+
+
+def _fly(name: str, label: str, text: str, side: int, climb: int) -> OperatorAction:
+    intent = DriveKeyDown(key="", throttle=0, steering=0, side=side, climb=climb)
+    return OperatorAction(f"drive.{name}", label, text, "drive", intent)
 
 
 def _speed(name: str, label: str, text: str, throttle: float, steering: float) -> OperatorAction:
@@ -68,6 +81,10 @@ _ROWS = (
     # driven forward, as a car does with its wheels held. A chord of two keys does not: left always turns the nose left.
     _drive("backward_left", "Back left", "Back up to the left, as a car does", -1, 1, "m"),
     _drive("backward_right", "Back right", "Back up to the right, as a car does", -1, -1, "full_stop"),
+    _fly("side_left", "Side left", "Copter: fly to the left, without a turn", -1, 0),
+    _fly("side_right", "Side right", "Copter: fly to the right, without a turn", 1, 0),
+    _fly("climb", "Climb", "Copter: climb while held", 0, 1),
+    _fly("descend", "Descend", "Copter: descend while held", 0, -1),
     OperatorAction("drive.stop", "Stop", "Neutral at once; ends latched driving", "stop", Stop(),
                    ("k", "space", "ctrl+k")),
     OperatorAction("stop.emergency", "EMERGENCY STOP", "Motors off and locked, from every screen", "stop",
@@ -93,6 +110,12 @@ _ROWS = (
                    ("1",)),
     OperatorAction("vehicle.hold", "HOLD", "Mode HOLD: the vehicle stays stopped", "vehicle", SetMode(mode="HOLD"),
                    ("2",)),
+    OperatorAction("vehicle.take_off", "Take off", "Copter: take off and hover", "vehicle", TakeOff(), confirm=True),
+    OperatorAction("vehicle.land", "Land", "Copter: land here", "vehicle", SetMode(mode="LAND")),
+    OperatorAction("vehicle.home", "Fly home", "Mode RTL: return and, of a copter, land", "vehicle",
+                   SetMode(mode="RTL")),
+    OperatorAction("stop.cut", "CUT MOTORS", "Copter: motors off in the air, hold for 2 s: IT FALLS", "stop",
+                   CutMotors(), confirm=True),
     OperatorAction("vehicle.control", "Take control", "Request control of the vehicle", "vehicle", RequestControl(),
                    ("g",)),
     OperatorAction("vehicle.release", "Release control", "Stop, and release control of the vehicle", "vehicle",

@@ -82,7 +82,7 @@ DAY = 86_400 * 100_000
         ("groundstation.input.key_repeat.GAPS_TO_LEARN", 20),
         ("groundstation.intents.session.LEASE_TIMEOUT", 0.3),
         ("groundstation.intents.session.REST_LEASE_TIMEOUT", 1.0),
-        ("groundstation.intents.driving.HOLD_TIME", 1.0),
+        ("groundstation.intents.vehicle_intent.HOLD_TIME", 1.0),
         ("groundstation.station.driving.motor_test.LONGEST", 2.0),
         ("groundstation.station_socket.verb_run.ALIVE_WITHIN", 0.3),
         ("groundstation.station.driving.handover.ANSWER_WITHIN", 10.0),

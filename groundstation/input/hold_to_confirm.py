@@ -1,7 +1,7 @@
 """Confirmation by a held key: which reads of keys are one key held long enough. Time is an argument.
 
 A held key sends its press, a pause (the repeat delay), then repeats. Only those repeats, in separate reads and spread
-over HOLD_TIME, confirm an action. Typed or pasted text cannot: it is faster, slower, or contains other keys. A key
+over its hold time, confirm an action. Typed or pasted text cannot: it is faster, slower, or contains other keys. A key
 that has acted (armed, or disarmed) does nothing more until it was released. Terminals that report releases must send
 repeats, too: on a bad line the release may be late or lost, and such a key must not arm.
 """
@@ -15,7 +15,6 @@ import msgspec
 from groundstation.actions import OperatorAction
 from groundstation.input.key_repeat import LONGEST_DELAY, REPEAT_GAP, REPEAT_WINDOW_MAX, REPEAT_WINDOW_MIN
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents.driving import HOLD_TIME
 from groundstation.intents.union import AnyIntent
 
 MIN_REPEATS = 5
@@ -31,7 +30,7 @@ class HoldProgress(msgspec.Struct, frozen=True):
     action: OperatorAction
     key: str
     held: float
-    """s since the press, at most HOLD_TIME."""
+    """s since the press, at most the `hold_time` of the action."""
 
 
 class HoldResult(msgspec.Struct, frozen=True):
@@ -84,7 +83,7 @@ class HoldToConfirm:
     """Follows the key of an action that needs confirmation. Times are of one monotonic clock, s."""
 
     def __init__(self, keymap: Keymap) -> None:
-        self._keymap = keymap
+        self.keymap = keymap
         self._hold: _Hold | None = None
 
     def handle_read(self, batch: Sequence[KeyEvent], *, armed: bool, allowed: bool, now: float) -> HoldResult:
@@ -105,7 +104,7 @@ class HoldToConfirm:
         hold = self._hold
         if hold is None or hold.spent or now - hold.seen > hold.window:
             return None
-        return HoldProgress(hold.action, hold.key, min(now - hold.pressed, HOLD_TIME))
+        return HoldProgress(hold.action, hold.key, min(now - hold.pressed, hold.action.hold_time))
 
     def _swallow(self, press: KeyEvent, armed: bool, allowed: bool, now: float) -> bool:
         """Follow an event. Return whether it is a repeat of a key that has acted: it must not act again."""
@@ -118,7 +117,7 @@ class HoldToConfirm:
         return hold.spent and hold.repeats > 0
 
     def _begin(self, press: KeyEvent, armed: bool, allowed: bool, now: float) -> _Hold | None:
-        action = self._keymap.get_action(press.key)
+        action = self.keymap.get_action(press.key)
         if action is None or not action.confirm or press.release or press.repeat:
             return None
         acts = armed and action.when_armed is not None
@@ -126,7 +125,7 @@ class HoldToConfirm:
 
     def _confirm(self, now: float) -> AnyIntent | None:
         hold = self._hold
-        if hold is None or hold.spent or now - hold.pressed < HOLD_TIME or hold.repeats < MIN_REPEATS:
+        if hold is None or hold.spent or now - hold.pressed < hold.action.hold_time or hold.repeats < MIN_REPEATS:
             return None
         hold.spent = True
         return None if hold.action.intent is None else _with_time(hold.action.intent, now - hold.pressed)

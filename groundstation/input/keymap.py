@@ -49,11 +49,28 @@ KEYMAPS: dict[str, dict[str, str]] = {
 which use W, so it has no WASD."""
 
 
+FLIGHT_ACTIONS = {
+    "drive.forward_left": "drive.side_left", "drive.forward_right": "drive.side_right", "view.closer": "drive.climb",
+    "view.wider": "drive.descend", "drive.backward_left": "", "drive.backward_right": "",
+}  # fmt: skip
+"""Action of a rover's key -> that of a copter's; "": the key has none and so is a stop key."""
+CLIMB_KEYS = {"w": "drive.climb", "s": "drive.descend"}
+FLIGHT_KEYS = {"T": "vehicle.take_off", "L": "vehicle.land", "H": "vehicle.home", "X": "stop.cut"}
+
+
 class Keymap(msgspec.Struct, frozen=True):
     """The key map in use."""
 
     name: str
     bindings: Mapping[str, str] = msgspec.field(default_factory=dict)
+
+    def in_flight(self) -> Keymap:
+        """Return the map with which keys fly: what curves or zooms a rover moves sideways or climbs."""
+        keys = {key: FLIGHT_ACTIONS.get(action, action) for key, action in self.bindings.items()}
+        keys |= {key: action for key, action in FLIGHT_KEYS.items() if key not in keys}
+        if self.name == "standard":
+            keys |= CLIMB_KEYS
+        return Keymap(self.name, {key: action for key, action in keys.items() if action})
 
     def get_action(self, key: str) -> OperatorAction | None:
         """Return the action bound to a key, or None."""

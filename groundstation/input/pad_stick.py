@@ -22,7 +22,7 @@ class PadStick:
         if (push.repeat and not self.held(now)) or not now < until or not _is_finite(push):
             self.release()
             return False
-        self._until, self._axes = until, Axes(_unit(push.throttle), _unit(push.steering))
+        self._until, self._axes = until, Axes(*map(_unit, (push.throttle, push.steering, push.side, push.climb)))
         return True
 
     def release(self) -> None:
@@ -45,7 +45,7 @@ class PadStick:
 
 
 def _is_finite(push: DrivePad) -> bool:
-    return math.isfinite(push.throttle) and math.isfinite(push.steering)
+    return all(map(math.isfinite, (push.throttle, push.steering, push.side, push.climb)))
 
 
 def _unit(value: float) -> float:

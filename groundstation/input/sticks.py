@@ -31,8 +31,8 @@ STEP = 0.1
 class _Held(msgspec.Struct):
     """A key that counts as held."""
 
-    throttle: int
-    steering: int
+    directions: tuple[int, int, int, int]
+    """Throttle, steering, side and climb."""
     until: float
     """inf where the terminal reports the release."""
     trace: KeyTrace
@@ -64,7 +64,7 @@ class Sticks:
         """Handle a drive key that went down or repeats. Returns False if it must be released first."""
         if push.repeat:
             self.reports_releases = True
-        if not push.throttle and not push.steering:
+        if not any(push.directions):
             return True
         if self._is_held_over(now) or self._is_blocked(push, now):
             return False
@@ -74,7 +74,7 @@ class Sticks:
         elif self.style is Style.STEP:
             self._step(push, now)
         elif not push.repeat:
-            self._latched = Axes(float(push.throttle), float(push.steering))
+            self._latched = Axes(*map(float, push.directions))
         return True
 
     def prolong(self, push: DriveKeyDown, now: float) -> bool:
@@ -83,7 +83,7 @@ class Sticks:
         held = self._held.get(push.key)
         proves = push.repeat and not self.reports_releases
         ignored = self._waits_for_quiet or push.key in self._blocked_until
-        if held is None or proves or ignored or (push.throttle, push.steering) != (held.throttle, held.steering):
+        if held is None or proves or ignored or push.directions != held.directions:
             return False
         self._seen_at = self._last_event = now
         self._extend_hold(held, now)
@@ -171,17 +171,20 @@ class Sticks:
         """Return the demand now, within the limits."""
         if self.pad.held(now):
             pad = self.pad.axes
-            return Axes(pad.throttle * self.throttle_limit, pad.steering * self.steering_limit)
+            return self._limited(pad.throttle, pad.steering, pad.side, pad.climb)
         if self.style is Style.HOLD:
-            throttle, steering = self._directions(now)
-        elif self.style is Style.LATCH:
-            throttle, steering = self._latched.throttle, self._latched.steering
-        else:
+            return self._limited(*self._directions(now))
+        if self.style is not Style.LATCH:
             return Axes(
                 _within(self._latched.throttle, self.throttle_limit),
                 _within(self._latched.steering, self.steering_limit),
             )
-        return Axes(throttle * self.throttle_limit, steering * self.steering_limit)
+        latched = self._latched
+        return self._limited(latched.throttle, latched.steering, latched.side, latched.climb)
+
+    def _limited(self, throttle: float, steering: float, side: float, climb: float) -> Axes:
+        speed = self.throttle_limit
+        return Axes(throttle * speed, steering * self.steering_limit, side * speed, climb * speed)
 
     def changes_at(self, now: float) -> float | None:
         """Return when a timer changes `axes` if nothing happens before; None: none does."""
@@ -220,7 +223,7 @@ class Sticks:
         trace = self._windows.start_press(self._traces.get(push.key), now)
         self._traces[push.key] = trace
         until = math.inf if self.reports_releases else now + self._windows.press_window
-        self._held[push.key] = _Held(push.throttle, push.steering, until, trace)
+        self._held[push.key] = _Held(push.directions, until, trace)
         self._refresh_others(until)
 
     def _extend_hold(self, held: _Held, now: float) -> None:
@@ -231,7 +234,7 @@ class Sticks:
     def _release_same_stick(self, push: DriveKeyDown) -> None:
         """Release the keys of the same stick: without reported releases a new key replaces them."""
         for key, held in list(self._held.items()):
-            if (held.throttle and push.throttle) or (held.steering and push.steering):
+            if any(one and other for one, other in zip(held.directions, push.directions, strict=True)):
                 del self._held[key]
 
     def _refresh_others(self, until: float) -> None:
@@ -245,14 +248,14 @@ class Sticks:
         for key in [key for key, held in self._held.items() if everything or now >= held.until]:
             del self._held[key]
 
-    def _directions(self, now: float) -> tuple[float, float]:
+    def _directions(self, now: float) -> tuple[int, int, int, int]:
         """Return the directions of the held keys; of keys that disagree the newest wins."""
         self._expire(now)
-        throttle = steering = 0
+        throttle = steering = side = climb = 0
         for held in self._held.values():
-            throttle = held.throttle or throttle
-            steering = held.steering or steering
-        return throttle, steering
+            ahead, turn, right, up = held.directions
+            throttle, steering, side, climb = ahead or throttle, turn or steering, right or side, up or climb
+        return throttle, steering, side, climb
 
     def _step(self, push: DriveKeyDown, now: float) -> None:
         earlier = self._traces.get(push.key)

@@ -8,9 +8,6 @@ from groundstation.intents.vehicle_intent import Commands, Vehicle, VehicleInten
 PAD = "gamepad"
 """What the held keys name while the gamepad drives."""
 
-HOLD_TIME = 1.0
-"""s for which the key of an action with `confirm` must be held (input/hold_to_confirm.py); the station checks it."""
-
 STOP_KEY = "stop key"
 """The reason of a Stop that the operator requested with a key; other reasons mean that the screen cannot drive now."""
 
@@ -27,6 +24,14 @@ class DriveKeyDown(Intent, frozen=True):
     steering: int
     repeat: bool = False
     """The terminal reports an auto-repeat (only terminals that report key releases do)."""
+    side: int = 0
+    """To the right; of what flies, as climb."""
+    climb: int = 0
+
+    @property
+    def directions(self) -> tuple[int, int, int, int]:
+        """Throttle, steering, side and climb."""
+        return self.throttle, self.steering, self.side, self.climb
 
 
 class DriveKeyUp(Intent, frozen=True):
@@ -46,6 +51,8 @@ class DrivePad(Intent, frozen=True):
     """When the gamepad was read, CLOCK_MONOTONIC, s: what is older than PAD_WINDOW is neutral."""
     repeat: bool = False
     """The button was held in the reading before, too."""
+    side: float = 0.0
+    climb: float = 0.0
 
 
 class ReleasePad(Intent, frozen=True):

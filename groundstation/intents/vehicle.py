@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from groundstation.intents.base import Intent
 from groundstation.intents.vehicle_intent import Commands, Vehicle, VehicleIntent
 
@@ -26,6 +28,37 @@ class Disarm(VehicleIntent, frozen=True):
     def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
         """Begin to disarm."""
         commands.disarm(vehicle, now)
+
+
+class TakeOff(VehicleIntent, frozen=True):
+    """Take off to an altitude above the ground, and hover there."""
+
+    confirmed = "take-off"
+    altitude: float = 3.0
+    """m"""
+    held: float = 0.0
+    """s for which the key was held; refused below HOLD_TIME."""
+
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Begin to take off."""
+        commands.take_off(vehicle, self.altitude, now)
+
+
+CUT_TIME = 2.0
+"""s for which the key is held that cuts the motors of what flies."""
+
+
+class CutMotors(VehicleIntent, frozen=True):
+    """Cut the motors in the air: it falls."""
+
+    confirmed = "cutting the motors"
+    hold_time: ClassVar[float] = CUT_TIME
+    held: float = 0.0
+    """s for which the key was held; refused below CUT_TIME."""
+
+    def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
+        """Cut them."""
+        commands.cut_motors(vehicle, now)
 
 
 class SetMode(VehicleIntent, frozen=True):

@@ -10,6 +10,9 @@ from typing import ClassVar, Protocol, TypeVar
 
 from groundstation.intents.base import Intent
 
+HOLD_TIME = 1.0
+"""s for which the key of an action with `confirm` must be held (input/hold_to_confirm.py); the station checks it."""
+
 Vehicle = TypeVar("Vehicle")
 VehicleOf = TypeVar("VehicleOf", contravariant=True)
 
@@ -29,6 +32,12 @@ class Commands(Protocol[VehicleOf]):
     def disarm(self, vehicle: VehicleOf, now: float) -> None:
         """Disarm, and repeat until the heartbeat agrees."""
 
+    def take_off(self, vehicle: VehicleOf, altitude: float, now: float) -> None:
+        """Take off to an altitude above the ground, m."""
+
+    def cut_motors(self, vehicle: VehicleOf, now: float) -> None:
+        """Cut the motors of what flies."""
+
     def set_mode(self, vehicle: VehicleOf, name: str, now: float) -> None:
         """Change the mode to the one with this name."""
 
@@ -43,6 +52,9 @@ class VehicleIntent(Intent, frozen=True):
     """Go neutral first: held keys must be pressed again. It is so for what stops the vehicle, and before arming."""
     confirmed: ClassVar[str] = ""
     """Name of what needs a held key: `held` must be at least HOLD_TIME, and the screen must allow keys."""
+
+    hold_time: ClassVar[float] = HOLD_TIME
+    """s for which its key must be held, if it needs that."""
 
     def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
         """Send the command."""

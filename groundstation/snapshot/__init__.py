@@ -53,6 +53,14 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Why this kind of vehicle is only shown and never driven, in one line; "" if it is driven."""
     may_fall: bool = False
     """Armed and, as far as is known, in the air: the emergency stop asks first."""
+    flies: bool = False
+    """Keys fly it: four axes, and its neutral hovers."""
+    keys_mode: str = "MANUAL"
+    """The mode to which the key of MANUAL changes."""
+    altitude: float | None = None
+    """Above home, m."""
+    climb: float | None = None
+    """m/s."""
     stop_question: float | None = None
     """s left to press the emergency stop once more, which cuts the motors of a vehicle in the air; None: not asked."""
     status: int
@@ -164,6 +172,9 @@ class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     throttle: float = 0.0
     """Demand that is being sent, -1..1."""
     steering: float = 0.0
+    side: float = 0.0
+    """To the right; of what flies, as climb."""
+    climb: float = 0.0
     throttle_limit: float = 1.0
     steering_limit: float = 1.0
     gate_open: bool = False
@@ -175,6 +186,11 @@ class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     """MANUAL_CONTROL is being sent."""
     rate: float = 0.0
     """MANUAL_CONTROL frames per second over the last second."""
+
+    @property
+    def moves(self) -> bool:
+        """The demand is not neutral."""
+        return bool(self.throttle or self.steering or self.side or self.climb)
 
 
 class LinkView(msgspec.Struct, frozen=True, kw_only=True):

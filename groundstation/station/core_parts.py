@@ -50,6 +50,7 @@ class CoreParts:
         self.links = LinkMonitor(endpoints, log, system, now)
         stats = self.links.stats
         commander = self.commander = Commander(log, *ids)
+        commander.take_off_refusal = fleet.take_off_refusal
         hold = TransferPause(fleet, operator, stats)
         self.services = ServiceRequests(fleet, commander, log, *ids, texts=docs_cache, is_held=hold.is_held)
         self.driving = DrivingController(operator, fleet, commander, ids)

@@ -15,7 +15,6 @@ from dialects.enums import Severity
 from dialects.mode_tables import HOLD
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import (
-    HOLD_TIME,
     STOP_KEY,
     DriveKeyDown,
     DriveKeyUp,
@@ -126,8 +125,8 @@ class IntentHandler:
 
     def _unconfirmed_reason(self, intent: Any) -> str | None:
         """Return why an intent that needs a held key is refused: a screen that is frozen or hidden confirms nothing."""
-        if not intent.held >= HOLD_TIME:
-            return f"the key was not held for {HOLD_TIME:.0f} s"
+        if not intent.held >= intent.hold_time:
+            return f"the key was not held for {intent.hold_time:.0f} s"
         return self._permission.screen
 
     def _press(self, intent: DriveKeyDown, now: float) -> None:

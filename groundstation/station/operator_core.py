@@ -14,6 +14,7 @@ from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.readings import READINGS
 from groundstation.vehicles.demand.drive_gate import drive_refusal
+from groundstation.vehicles.demand.flight_gate import flight_refusal, is_checked
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.readings.motor_outputs import is_turn
@@ -269,12 +270,21 @@ class OperatorCore:
 
     def may_send(self, message: m.Message, now: float) -> bool:
         """Return False for what would move a vehicle: its kind is not driven, or our process stood still."""
-        why = drive_refusal(message, (contact.state for contact in self.fleet))
+        why = drive_refusal(message, (contact.state for contact in self.fleet)) or self._flight_refusal(message)
         if why is not None:
             self._refusals.handle(message, why, now)
             return False
         moves = isinstance(message, DEMANDS) or is_turn(message)
         return not moves or not self.operator.stall.is_stalled(now)
+
+    def _flight_refusal(self, message: m.Message) -> str | None:
+        """Return why a message may not be sent to what flies."""
+        if not is_checked(message):
+            return None
+        system = m.target_system(message)
+        meant = (contact for contact in self.fleet if system in (0, contact.state.system))
+        refusals = (flight_refusal(message, contact.state, contact.take_off_refusal) for contact in meant)
+        return next(filter(None, refusals), None)
 
     def report_to_watchdog(self, now: float) -> tuple[WatchdogTarget, ...]:
         """Return the vehicles that the watchdog stops if no further call follows in time (stall.py)."""

@@ -25,7 +25,7 @@ from groundstation.vehicles.state.vehicle_details import VehicleDetails
 from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
 from groundstation.vehicles.state.vehicle_params import VehicleParams
 from groundstation.vehicles.state.vehicle_state import LOST_AFTER, VehicleState
-from groundstation.vehicles.stops.settings_check import SETTINGS, SettingsCheck
+from groundstation.vehicles.stops.settings_check import SettingsCheck, find_settings
 from link.core import LinkReport, Received
 
 
@@ -71,6 +71,14 @@ class Contact(msgspec.Struct):
         """Texts for the driver: why the vehicle may ignore us, and settings that would let it drive on."""
         settings = self.settings_check.warnings if self.settings_check else ()
         return (SIGNING, *settings) if self.signs else settings
+
+    @property
+    def take_off_refusal(self) -> str:
+        """Why keys may not take it off: what it would do without a link; "" if they may, and for what does not fly."""
+        if not self.state.model.flies:
+            return ""
+        check = self.settings_check
+        return "what it does without a link is not known" if check is None else check.take_off_refusal
 
     def choose_axes(self, demand: Axes) -> AxisMap:
         """Return the axes of MANUAL_CONTROL that this vehicle uses.
@@ -170,6 +178,11 @@ class Fleet:
         contact = self._contacts.get(system)
         return contact.state.name if contact else ""
 
+    def take_off_refusal(self, system: int) -> str:
+        """Return why keys may not take off this vehicle, see Contact; "" if they may."""
+        contact = self._contacts.get(system)
+        return contact.take_off_refusal if contact else ""
+
     def select(self, system: int, now: float) -> None:
         """Select the vehicle with this system id, if there is one."""
         contact = self._contacts.get(system)
@@ -235,8 +248,8 @@ class Fleet:
     def _check_settings(self, contact: Contact) -> None:
         """Read the settings that matter for a stop, of an autopilot for which they are known."""
         state = contact.state
-        if state.autopilot in SETTINGS and state.model.is_driven:
-            rules, target = SETTINGS[state.autopilot], (state.system, state.component)
+        rules, target = find_settings(state.autopilot, flies=state.model.flies), (state.system, state.component)
+        if rules is not None and state.model.is_driven:
             contact.settings_check = SettingsCheck(rules, *self._own_id, target=target)
 
     def _change_component(self, contact: Contact, received: Received, now: float) -> None:

@@ -62,6 +62,8 @@ class FlyingVehicle(FakeVehicle):
         self.altitude = self.climb = self.highest = 0.0
         self.north = self.east = self.heading = 0.0
         self.speed_north = self.speed_east = 0.0
+        self.asked_for: set[int] = set()
+        """Messages that were requested; it sends EXTENDED_SYS_STATE only so."""
         self.wind = (0.0, 0.0)
         """m/s, of what drifts."""
         self.hit_ground_at = 0.0
@@ -252,6 +254,9 @@ class FlyingVehicle(FakeVehicle):
         if message.command == Command.NAV_TAKEOFF:
             self._begin_take_off(message.param7 if isinstance(message, m.CommandLong) else message.z)
             return True
+        if message.command == Command.SET_MESSAGE_INTERVAL:
+            self.asked_for.add(int(message.param1))
+            return False
         if message.command == Command.DO_SET_MODE:
             self.target = 0.0
         return super()._obey(message, source)
@@ -260,7 +265,8 @@ class FlyingVehicle(FakeVehicle):
 
     def _report(self, now: float) -> None:
         landed = LandedState.IN_AIR if self.flies else LandedState.ON_GROUND
-        self.send(m.ExtendedSysState(0, landed))
+        if m.ExtendedSysState.id in self.asked_for:
+            self.send(m.ExtendedSysState(0, landed))
         place = (round((47.0 + self.north / METRES) * 1e7), round((8.0 + self.east / METRES / 0.682) * 1e7))
         height = round(1000 * self.altitude)
         speeds = (round(100 * self.speed_north), round(100 * self.speed_east), round(-100 * self.climb))

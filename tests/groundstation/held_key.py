@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
 
-from groundstation.intents.driving import HOLD_TIME
+from groundstation.intents.vehicle_intent import HOLD_TIME
 
 DELAY = 0.4
 """s from the press to the first repeat."""

@@ -83,8 +83,9 @@ class ArmSequence(msgspec.Struct):
             self._arm(client, now)
             return
         self.step = ArmStep.MODE
-        if not send_mode(client, self.vehicle, MANUAL, now):
-            self.step, self.failure = ArmStep.DONE, f"arm: {self.vehicle.name} has no mode {MANUAL}"
+        mode = self.vehicle.model.drive_mode
+        if not send_mode(client, self.vehicle, mode, now):
+            self.step, self.failure = ArmStep.DONE, f"arm: {self.vehicle.name} has no mode {mode}"
 
     def _arm(self, client: CommandClient, now: float) -> None:
         self.step = ArmStep.ARM
@@ -107,6 +108,8 @@ def find_arming_doubt(vehicle: VehicleState, now: float) -> str:
 
 def _needs_manual(vehicle: VehicleState) -> bool:
     """Return whether to change to MANUAL before arming. An autonomous mode was chosen on purpose and is kept."""
+    if vehicle.model.flies:
+        return vehicle.mode not in vehicle.model.keys
     if vehicle.model.arms_only_in_manual:
         return vehicle.mode != MANUAL
     return vehicle.mode in vehicle.model.standing

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from dialects.enums import Command, Result, Severity
-from dialects.kinds import MANUAL
 from dialects.messages import Message
 from dialects.mode_tables import HOLD
 from groundstation.snapshot import EmergencyProgress
@@ -13,8 +14,9 @@ from groundstation.station.driving.claims import Claims
 from groundstation.station.driving.command_results import CommandResults
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.station.driving.stop_questions import FALLS, StopQuestions
-from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, hold_stop
-from groundstation.vehicles.demand.stop_commands import DANGEROUS, DISARM, StopKind
+from groundstation.station.driving.take_off import find_refusal, take_off_params
+from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, mode_stop
+from groundstation.vehicles.demand.stop_commands import DANGEROUS, StopKind
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Outgoing, Received
@@ -45,6 +47,8 @@ class Commander:
         self._vehicles: dict[int, VehicleState] = {}
         """Vehicles that were sent a command, by system id."""
         self._query_outcomes: list[CommandOutcome] = []
+        self.take_off_refusal: Callable[[int], str] = lambda system: ""
+        """Takes a system id; returns why keys may not take off this vehicle, "" if they may."""
 
     # ---- commands of the operator ----
 
@@ -62,9 +66,12 @@ class Commander:
         if vehicle.system in self._locks or vehicle.emergency_stop:
             self._results.add_refusal(vehicle.system, "arm: emergency stop active, clear it first", now)
             return
+        if why := self.take_off_refusal(vehicle.system):
+            self._results.add_refusal(vehicle.system, f"arm: no take-off: {why}", now)
+            return
         self._stops.pop((vehicle.system, Command.COMPONENT_ARM_DISARM), None)
         self._stops.pop((vehicle.system, Command.DO_SET_MODE), None)
-        self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {MANUAL}")
+        self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {vehicle.model.drive_mode}")
         self._vehicles[vehicle.system] = vehicle
         self._arming = ArmSequence.start(vehicle, now)
 
@@ -81,26 +88,58 @@ class Commander:
         self._claims.remove(vehicle.system)
         self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL.name, 0, 0, 0, station, now=now)
 
+    def take_off(self, vehicle: VehicleState, altitude: float, now: float) -> None:
+        """Take off to an altitude above the ground, m; refused for what does not fly, flies already or is disarmed."""
+        why = find_refusal(vehicle, self.take_off_refusal(vehicle.system), now)
+        if why:
+            self._results.add_refusal(vehicle.system, f"take-off: {vehicle.name}: {why}", now)
+            return
+        params = take_off_params(vehicle, altitude)
+        self.send(vehicle, f"take off to {altitude:g} m", Command.NAV_TAKEOFF.name, *params, now=now)
+
+    def cut_motors(self, vehicle: VehicleState, now: float) -> None:
+        """Cut the motors of what flies, which falls: the operator has held the key for it."""
+        if not vehicle.model.flies:
+            self._results.add_refusal(vehicle.system, "cut motors: the emergency stop does that here", now)
+            return
+        self._cut(vehicle, now)
+
     def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
         """Change the mode to the one of this name (dialects/kinds.py); refused if its kind has no such mode.
 
-        HOLD is repeated until each sender of its id reports it, or another mode is chosen.
+        HOLD, and the landing of what flies, is repeated until each sender of its id reports it, or another mode is
+        chosen.
         """
-        hold = hold_stop(vehicle, StopTimes(now, now, now + STOP_TIMEOUT)) if name == HOLD else None
+        stops = name == HOLD or (vehicle.model.flies and vehicle.model.number_of(name) in _landing(vehicle))
+        stop = mode_stop(vehicle, name, StopTimes(now, now, now + STOP_TIMEOUT)) if stops else None
         self._stops.pop((vehicle.system, Command.DO_SET_MODE), None)
-        if hold is not None:
-            self._begin_stop(hold, now)
-        if hold is not None or send_mode(self._client, vehicle, name, now):
+        if stop is not None:
+            self._begin_stop(stop, now)
+        if stop is not None or send_mode(self._client, vehicle, name, now):
             self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {name}")
             return
         why = vehicle.model.refusal or f"it has no mode {name}"
         self._results.add_refusal(vehicle.system, f"mode {name}: {vehicle.name}: {why}", now)
 
     def emergency_stop(self, vehicle: VehicleState, now: float) -> None:
-        """Stop and lock the motors; repeated until the vehicle has done it. One in the air is asked about first."""
+        """Stop and lock the motors; repeated until the vehicle has done it. One in the air is asked about first.
+
+        What keys fly lands instead; on the ground it is disarmed, which it refuses itself in the air.
+        """
+        if vehicle.model.flies:
+            self._arming = None
+            if vehicle.is_landed(now) or not vehicle.armed:
+                self.disarm(vehicle, now)
+                return
+            self._log.add(now, "station", f"EMERGENCY STOP {vehicle.name}: it lands", Severity.EMERGENCY)
+            self.set_mode(vehicle, vehicle.model.land, now)
+            return
         if vehicle.may_fall and not self._stop_questions.confirms(vehicle.system, now):
             self._log.add(now, "station", f"{vehicle.name} {FALLS}", Severity.CRITICAL)
             return
+        self._cut(vehicle, now)
+
+    def _cut(self, vehicle: VehicleState, now: float) -> None:
         self._stop_questions.forget(vehicle.system)
         self._arming = None
         self._log.add(now, "station", f"EMERGENCY STOP {vehicle.name}", Severity.EMERGENCY)
@@ -249,7 +288,7 @@ class Commander:
             if stop.end is None:
                 continue
             del self._stops[system, command]
-            label = "disarm" if command == DISARM.command else f"mode {HOLD}"
+            label = stop.label
             if stop.end is StopEnd.NOT_DONE:
                 self._results.add_refusal(system, f"{label}: {stop.vehicle.name}: {stop.find_doubt(now)}", now)
             elif stop.end is StopEnd.NO_ANSWER:
@@ -297,6 +336,11 @@ def _grants_control(outcome: CommandOutcome) -> bool:
         return outcome.params[0] == 1 and outcome.result is Result.ACCEPTED
     requested = outcome.command == Command.REQUEST_OPERATOR_CONTROL and outcome.params[0] == 1
     return requested and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)
+
+
+def _landing(vehicle: VehicleState) -> tuple[int | None, ...]:
+    """Return the numbers of the modes that land what flies."""
+    return vehicle.model.number_of(vehicle.model.land), vehicle.model.number_of(vehicle.model.home)
 
 
 def _answered_lock(vehicle: VehicleState, now: float) -> EmergencyLock:

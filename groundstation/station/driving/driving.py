@@ -6,6 +6,7 @@ import math
 
 from dialects.axes import NEUTRAL, Axes, build_manual_control
 from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverOperatorPresence
+from groundstation.input.style import Style
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.driven import DEMAND_MEMORY, WatchdogTarget
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
@@ -181,7 +182,15 @@ class DrivingController:
             return f"GCS {state.driver} is in control" if state.driver else "not in control"
         if contact.releasing or contact.closing:
             return "releasing control" if contact.releasing else "its link is being closed"
-        return None if state.mode in state.model.keys else f"mode {state.mode}"
+        return f"mode {state.mode}" if state.mode not in state.model.keys else self._flight_reason(contact)
+
+    def _flight_reason(self, contact: Contact) -> str | None:
+        """Return why keys do not fly what could be flown in this mode; None for what does not fly."""
+        if not contact.state.model.flies:
+            return None
+        if self._operator.sticks.style is not Style.HOLD:
+            return f"style {self._operator.sticks.style}: it flies by held keys only"
+        return None if contact.state.in_air else (contact.take_off_refusal or None)
 
     def _may_stream(self, contact: Contact, *, controlled: bool) -> bool:
         """Return whether demands go to this vehicle: only if armed and ours, so as not to fight another driver.
@@ -191,7 +200,7 @@ class DrivingController:
         state = contact.state
         if self._ending or contact.releasing or contact.closing or not self._operator.live:
             return False
-        if not state.model.is_driven:
+        if not state.model.is_driven or (state.armed and not state.model.takes_neutral(state.mode)):
             return False
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)

@@ -316,6 +316,8 @@ class OperatorSession:
             held_over=reason is None and sticks.held_over(now),
             throttle=self._sent_demand.throttle,
             steering=self._sent_demand.steering,
+            side=self._sent_demand.side,
+            climb=self._sent_demand.climb,
             throttle_limit=sticks.throttle_limit,
             steering_limit=sticks.steering_limit,
             gate_open=reason is None,

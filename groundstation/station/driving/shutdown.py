@@ -67,7 +67,7 @@ class StationShutdown:
     def _may_disarm(self, contact: Contact) -> bool:
         state = contact.state
         no_other = state.driver == 0 or self._driving.is_in_control(contact)
-        return state.armed and no_other and not state.drives_itself
+        return state.armed and no_other and not state.drives_itself and not state.may_fall
 
 
 def _describe(contact: Contact, now: float) -> str:

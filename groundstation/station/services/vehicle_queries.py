@@ -136,6 +136,7 @@ class VehicleQueries:
         pending = self._commander.is_pending(Command.SET_MESSAGE_INTERVAL, contact.state)
         if pending or self._services.is_setting_rate(contact):
             return
-        message = contact.stream_requests.next_message(contact.state.autopilot, now)
+        state = contact.state
+        message = contact.stream_requests.next_message(state.autopilot, now, flies=state.model.flies)
         if message is not None:
-            self._commander.set_message_interval(contact.state, message, stream_rate(message, capacity), now)
+            self._commander.set_message_interval(state, message, stream_rate(message, capacity), now)

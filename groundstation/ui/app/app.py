@@ -233,9 +233,9 @@ class ConsoleApp(App[int]):
         self._snapshot = snapshot
         vehicle, operator = snapshot.vehicle, snapshot.operator
         self._tmux.handle_control(vehicle is not None and vehicle.in_control, any_vehicle=bool(snapshot.left_armed))
-        driving = bool(operator.throttle or operator.steering or operator.held)
+        driving = bool(operator.moves or operator.held)
         armed = vehicle is not None and vehicle.armed
-        self.gate.update(armed=armed, driving=driving)
+        self.gate.update(armed=armed, driving=driving, flies=vehicle is not None and vehicle.flies)
         interpreter.favour_input(driving or (armed and vehicle is not None and vehicle.in_control))
         self._adapt_ticks()
         if self._clock() - self._shown_at >= MIN_FRAME_TIME:
@@ -258,7 +258,7 @@ class ConsoleApp(App[int]):
     def _display_state(self) -> DisplayState:
         return DisplayState(
             self._snapshot,
-            self._keys,
+            self.gate.keymap,
             closure=self.gate.closure,
             hold=self.gate.hold,
             station_alive=self._client.alive,

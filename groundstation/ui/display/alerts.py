@@ -7,7 +7,6 @@ from enum import Enum, auto
 
 import msgspec
 
-from groundstation.intents.driving import HOLD_TIME
 from groundstation.snapshot import EmergencyProgress, VehicleView
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
@@ -93,7 +92,7 @@ def _reports(vehicle: VehicleView) -> str:
 
 def _hold(now: DisplayState) -> Iterator[Alert]:
     if now.hold is not None:
-        full = int(BAR * now.hold.held / HOLD_TIME)
+        full = int(BAR * now.hold.held / now.hold.action.hold_time)
         bar = "█" * full + "░" * (BAR - full)
         text = f"{now.hold.action.label}: hold {format_key(now.hold.key)} {bar} {now.hold.held:.1f} s"
         yield Alert(AlertLevel.QUESTION, text)
@@ -253,7 +252,7 @@ def _operator(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
     elif operator.ignored and operator.ignored not in _ELSEWHERE:
         yield Alert(AlertLevel.WARNING, f"key ignored ({operator.ignored}): release it, then press again")
-    elif operator.style == "latch" and (operator.throttle or operator.steering):
+    elif operator.style == "latch" and operator.moves:
         yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
 
 

@@ -127,6 +127,7 @@ class KeyGate:
     ) -> None:
         """`find_proxy` returns what hides a frozen terminal, for which no style but hold is chosen; "": each may be."""
         self._find_proxy = find_proxy
+        self._keymaps = (keymap, keymap.in_flight())
         self.keymap = keymap
         self._client = client
         self._clock = clock
@@ -152,9 +153,13 @@ class KeyGate:
         """Why the gate is not open; None when it is."""
         return self._closure
 
-    def update(self, *, armed: bool, driving: bool) -> None:
-        """Set what the newest snapshot reports; it decides what some keys mean (arm or disarm, stop or not)."""
+    def update(self, *, armed: bool, driving: bool, flies: bool = False) -> None:
+        """Set what the newest snapshot reports; it decides what some keys mean (arm or disarm, stop or not, climb)."""
         self._armed, self._driving = armed, driving
+        if self.keymap is not self._keymaps[flies]:
+            with self._lock:
+                self.keymap = self._hold.keymap = self._keymaps[flies]
+                self._hold.cancel()
 
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Handle the keys of one read, in the input thread."""

@@ -11,7 +11,8 @@ from enum import Enum, auto
 import msgspec
 
 from dialects.enums import Result
-from groundstation.vehicles.demand.stop_commands import DISARM, StopCommand, hold_command, send_stop, shows_hold
+from dialects.mode_tables import HOLD
+from groundstation.vehicles.demand.stop_commands import DISARM, StopCommand, mode_command, send_stop, shows_mode
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.services.command.client import CommandClient, CommandOutcome
 
@@ -62,9 +63,10 @@ class RepeatedStop:
     """One stop of one vehicle. `end` says how it ended; None while it is repeated."""
 
     def __init__(
-        self, vehicle: VehicleState, stop: StopCommand, find_doubt: Callable[[float], str], times: StopTimes
+        self, vehicle: VehicleState, stop: StopCommand, find_doubt: Callable[[float], str], times: StopTimes, label: str
     ) -> None:
-        self.vehicle, self.stop = vehicle, stop
+        """`label` names it in the log and in refusals."""
+        self.vehicle, self.stop, self.label = vehicle, stop, label
         self.end: StopEnd | None = None
         self._times = times
         self._evidence = StopEvidence(find_doubt, times.began)
@@ -109,15 +111,27 @@ class RepeatedStop:
 
 def disarm_stop(vehicle: VehicleState, times: StopTimes) -> RepeatedStop:
     """Return the stop that disarms."""
-    return RepeatedStop(vehicle, DISARM, vehicle.senders.find_doubt, times)
+    return RepeatedStop(vehicle, DISARM, vehicle.senders.find_doubt, times, "disarm")
 
 
 def hold_stop(vehicle: VehicleState, times: StopTimes) -> RepeatedStop | None:
-    """Return the change to HOLD; None for a kind that has none."""
-    hold = hold_command(vehicle)
-    return None if hold is None else RepeatedStop(vehicle, hold, lambda now: find_hold_doubt(vehicle, now), times)
+    """Return the change to HOLD, of PX4 to AUTO/LOITER, of ArduCopter to BRAKE; None for a kind that has none."""
+    return mode_stop(vehicle, HOLD, times)
+
+
+def mode_stop(vehicle: VehicleState, name: str, times: StopTimes) -> RepeatedStop | None:
+    """Return the change to a mode that stops or lands; None for a kind that has none of this name."""
+    command = mode_command(vehicle, name)
+    if command is None:
+        return None
+    return RepeatedStop(vehicle, command, lambda now: find_mode_doubt(vehicle, name, now), times, f"mode {name}")
+
+
+def find_mode_doubt(vehicle: VehicleState, name: str, now: float) -> str:
+    """Return which sender of its id does not report a mode; "" if each does."""
+    return vehicle.senders.find_doubt(now, lambda sender: shows_mode(vehicle, sender, name))
 
 
 def find_hold_doubt(vehicle: VehicleState, now: float) -> str:
     """Return which sender of its id does not report HOLD; "" if each does."""
-    return vehicle.senders.find_doubt(now, lambda sender: shows_hold(vehicle, sender))
+    return find_mode_doubt(vehicle, HOLD, now)

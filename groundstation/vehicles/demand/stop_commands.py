@@ -12,7 +12,6 @@ import msgspec
 
 from dialects.enums import Command, ModeFlag
 from dialects.kinds import AUTOPILOT_COMPONENT
-from dialects.mode_tables import HOLD
 from dialects.modes import set_mode_params
 from groundstation.vehicles.state.senders import ReportingSender
 from groundstation.vehicles.state.vehicle_state import VehicleState
@@ -69,20 +68,20 @@ BLIND_LATER: dict[StopKind, tuple[StopCommand, ...]] = {StopKind.HOLD: (HELD,), 
 """Further ones once a heartbeat interval has passed in which no vehicle was heard."""
 
 
-def hold_command(state: VehicleState) -> StopCommand | None:
-    """Return the change to HOLD, of PX4 to its mode that stops (AUTO/LOITER); None for a kind that has none."""
-    number = state.model.number_of(HOLD) if state.model.is_driven else None
+def mode_command(state: VehicleState, name: str) -> StopCommand | None:
+    """Return the change to a mode that stops or lands, by its name or an alias; None for a kind that has none."""
+    number = state.model.number_of(name) if state.model.is_driven else None
     return None if number is None else StopCommand(Command.DO_SET_MODE, set_mode_params(number, state.autopilot))
 
 
-def shows_hold(state: VehicleState, sender: ReportingSender) -> bool:
-    """Return whether a sender of the vehicle's id shows that it holds.
+def shows_mode(state: VehicleState, sender: ReportingSender, name: str) -> bool:
+    """Return whether a sender of the vehicle's id shows this mode.
 
     A script on board that claims to be the autopilot has modes of its own; it must be disarmed.
     """
     if sender.component != state.component and not sender.armed:
         return True
-    return sender.custom_mode == state.model.number_of(HOLD)
+    return sender.custom_mode == state.model.number_of(name)
 
 
 def send_stop(client: CommandClient, state: VehicleState, stop: StopCommand, now: float, *, attempt: int = 0) -> None:

@@ -75,8 +75,13 @@ STREAM_RATES: dict[int, StreamRate] = {
 }
 """Message id -> how to request it. Telemetry to request from a foreign vehicle is one row here."""
 
+FLIGHT_RATES: dict[int, StreamRate] = {m.ExtendedSysState.id: StreamRate(5.0, DataStream.EXTENDED_STATUS)}
+"""The same, of what flies only: whether it is on the ground."""
+
 LOAD = sum((m.MESSAGES[number].unpacker.size + FRAME) * wanted.rate for number, wanted in STREAM_RATES.items())
-"""Bytes/s of all of them together, of both autopilots: 1807."""
+"""Bytes/s of all of them together, of both autopilots: 1807. Those of what flies add 4 %."""
+
+_ALL = {**STREAM_RATES, **FLIGHT_RATES}
 
 
 class StreamRequests:
@@ -113,10 +118,10 @@ class StreamRequests:
             self.restart(now)
         return rebooted
 
-    def next_message(self, autopilot: int, now: float) -> int | None:
+    def next_message(self, autopilot: int, now: float, *, flies: bool = False) -> int | None:
         """Return the message to request next by SET_MESSAGE_INTERVAL. Call only while no request is pending."""
         if self._pending is None:
-            self._pending = self._missing(autopilot, now)
+            self._pending = self._missing(autopilot, flies, now)
         return self._pending.pop(0) if self._pending else None
 
     def handle_outcome(self, outcome: CommandOutcome) -> None:
@@ -137,23 +142,24 @@ class StreamRequests:
         due, self._groups = self._groups, {group: left - 1 for group, left in self._groups.items() if left > 1}
         return [m.RequestDataStream(*self._target, group, _group_rate(group, capacity), 1) for group in due]
 
-    def _missing(self, autopilot: int, now: float) -> list[int] | None:
+    def _missing(self, autopilot: int, flies: bool, now: float) -> list[int] | None:
+        rows = (_ALL if flies else STREAM_RATES).items()
         if autopilot in FOREIGN_AUTOPILOTS:  # they send little without a request: 1 Hz, or nothing
-            return [number for number, wanted in STREAM_RATES.items() if wanted.only in (None, autopilot)]
+            return [number for number, wanted in rows if wanted.only in (None, autopilot)]
         if now - self._since < IDENTIFY_TIMEOUT:
             return None
-        common = [number for number, wanted in STREAM_RATES.items() if wanted.only is None]
+        common = [number for number, wanted in rows if wanted.only is None]
         return [number for number in common if number not in self._received]
 
     def _fall_back(self, messages: Collection[int]) -> None:
         for number in messages:
-            if number in STREAM_RATES:
-                self._groups[STREAM_RATES[number].group] = GROUP_TRIES
+            if number in _ALL:
+                self._groups[_ALL[number].group] = GROUP_TRIES
 
 
 def stream_rate(message: int, capacity: float | None) -> float:
     """Return the rate to request for a message, Hz, so that all of them together fit the link."""
-    wanted = STREAM_RATES[message].rate
+    wanted = _ALL[message].rate
     return wanted if capacity is None else max(MIN_RATE, wanted * min(1.0, CAPACITY_SHARE * capacity / LOAD))
 
 

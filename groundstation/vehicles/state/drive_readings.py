@@ -70,7 +70,8 @@ class DriveReadings:
     @property
     def rules(self) -> StopRules | None:
         """What stops this vehicle."""
-        return find_rules(self._state.autopilot, own_dialect=self._state.has_rover_dialect)
+        state = self._state
+        return find_rules(state.autopilot, own_dialect=state.has_rover_dialect, flies=state.model.flies)
 
     @property
     def plan_speed(self) -> float | None:

@@ -42,6 +42,9 @@ LOST_AFTER = 2.5
 FRESH_TIMEOUT = 1.5
 """s for which a reading is preferred to that of a coarser message, and for which a ROVER_DRIVE_STATUS is shown."""
 
+LANDED_FRESH = 1.5
+"""s for which a report counts that a vehicle is on the ground; EXTENDED_SYS_STATE comes at 1 Hz or more."""
+
 REPORT_PERIOD = 0.5
 """s up to which a ROVER_DRIVE_STATUS tells the present: it comes at 5 Hz, over a slow radio at 2.5 Hz."""
 
@@ -103,6 +106,8 @@ class VehicleState:
         self._frame: LocalFrame | None = None
         """Metres around the first place, for a vehicle without LOCAL_POSITION_NED."""
         self.trail = Track()
+        self.sea_level: float | None = None
+        """Altitude above mean sea level, m."""
         self._velocity: tuple[float, float] | None = None
         self._ground_speed: float | None = None
         self._values: dict[str, Any] = {}
@@ -158,6 +163,16 @@ class VehicleState:
         """Armed and, as far as is known, in the air: without power it falls."""
         return self.armed and self.model.falls and self._landed != LandedState.ON_GROUND
 
+    def is_landed(self, now: float) -> bool:
+        """Return whether it has just reported that it is on the ground: an older report may be of before a take-off."""
+        at = self._times.get(m.ExtendedSysState, -math.inf)
+        return self._landed == LandedState.ON_GROUND and now - at <= LANDED_FRESH
+
+    @property
+    def in_air(self) -> bool:
+        """Its newest report says that it is in the air."""
+        return self.armed and self._landed in (LandedState.IN_AIR, LandedState.TAKEOFF, LandedState.LANDING)
+
     @property
     def failsafes(self) -> tuple[str, ...]:
         """Names of the failsafes that are active."""
@@ -210,6 +225,8 @@ class VehicleState:
             drives_itself=self.drives_itself,
             undriven=self.model.refusal,
             may_fall=self.may_fall,
+            flies=self.model.flies,
+            keys_mode=self.model.drive_mode,
             status=self.status,
             alive=self.monitor.is_alive(now),
             silence=self.monitor.silence(now),
@@ -268,6 +285,8 @@ class VehicleState:
         if self._fresh(m.LocalPositionNed, now) or (message.lat == 0 and message.lon == 0):  # 0, 0: no fix yet
             return
         self._velocity = (message.vx / 100, message.vy / 100)
+        self._values["altitude"], self._values["climb"] = message.relative_alt / 1000, -message.vz / 100
+        self.sea_level = message.alt / 1000
         self._move(*self._to_local(Place(message.lat / 1e7, message.lon / 1e7)))
 
     def _home(self, message: m.HomePosition, now: float) -> None:

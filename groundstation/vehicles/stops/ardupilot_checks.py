@@ -32,7 +32,8 @@ def _throttle_failsafe(value: float, system: int) -> str | None:
     return "FS_THR_ENABLE 0: without RC, never stops when the link is lost; set it to 1"
 
 
-def _station_system(value: float, system: int) -> str | None:
+def station_system(value: float, system: int) -> str | None:
+    """Return the warning that it obeys another ground station, or None."""
     wanted = int(value) & 0xFF  # ArduPilot accepts 300 and uses the low byte
     if wanted == system:
         return None
@@ -58,8 +59,8 @@ ARDUPILOT = AutopilotSettings(
         "RC_OVERRIDE_TIME": _override_time,
         "FS_GCS_ENABLE": _gcs_failsafe,
         "FS_THR_ENABLE": _throttle_failsafe,
-        "MAV_GCS_SYSID": _station_system,
-        "SYSID_MYGCS": _station_system,
+        "MAV_GCS_SYSID": station_system,
+        "SYSID_MYGCS": station_system,
     },
     former_names=FORMER_NAMES,
     link_loss_action=_link_loss_action,

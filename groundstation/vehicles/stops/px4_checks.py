@@ -62,7 +62,9 @@ def _hold_time(value: float, system: int) -> str | None:
     return f"COM_FAIL_ACT_T {value:g}: holds a place for {value:g} s before it acts; set it to 5"
 
 
-def _described(name: str, meanings: Mapping[int, str], remedy: str) -> ParamCheck:
+def described(name: str, meanings: Mapping[int, str], remedy: str) -> ParamCheck:
+    """Return the check of a parameter whose values mean something; those that are not in `meanings` are good."""
+
     def check(value: float, system: int) -> str | None:
         meaning = meanings.get(int(value))
         return None if meaning is None else f"{name} {value:g}: {meaning}; {remedy}"
@@ -96,7 +98,7 @@ def _link_loss_action(values: Mapping[str, float]) -> str | None:
     return f"by its settings {text.format(after=after, hold=hold)}"
 
 
-_SOURCES: dict[int, str] = {
+SOURCES: dict[int, str] = {
     0: "obeys RC only, keys do not drive",
     4: "ignores manual control, keys do not drive",
 }
@@ -104,12 +106,12 @@ _SOURCES: dict[int, str] = {
 
 PX4 = AutopilotSettings(
     checks={
-        "COM_RC_IN_MODE": _described("COM_RC_IN_MODE", _SOURCES, "set it to 1"),
+        "COM_RC_IN_MODE": described("COM_RC_IN_MODE", SOURCES, "set it to 1"),
         "COM_RC_LOSS_T": _manual_loss_time,
-        "NAV_RCL_ACT": _described("NAV_RCL_ACT", _LINK_LOST, _DISARM),
+        "NAV_RCL_ACT": described("NAV_RCL_ACT", _LINK_LOST, _DISARM),
         "COM_FAIL_ACT_T": _hold_time,
         "COM_DL_LOSS_T": _station_loss_time,
-        "NAV_DLL_ACT": _described("NAV_DLL_ACT", _STATION_LOST, _DISARM),
+        "NAV_DLL_ACT": described("NAV_DLL_ACT", _STATION_LOST, _DISARM),
         "CA_AIRFRAME": _frame,
     },
     link_loss_action=_link_loss_action,

@@ -13,6 +13,7 @@ from dialects.enums import Autopilot
 from dialects.messages import ParamValue
 from groundstation.vehicles.stops.ardupilot_checks import ARDUPILOT
 from groundstation.vehicles.stops.autopilot_settings import AutopilotSettings
+from groundstation.vehicles.stops.copter_checks import ARDUPILOT_COPTER, PX4_COPTER
 from groundstation.vehicles.stops.px4_checks import PX4
 from link.core import Outgoing, Received
 from link.services.param.client import ParamClient
@@ -27,6 +28,14 @@ RETRY_PERIOD = 10.0
 
 SETTINGS: dict[int, AutopilotSettings] = {Autopilot.ARDUPILOT: ARDUPILOT, Autopilot.PX4: PX4}
 """MAV_AUTOPILOT -> the parameters to read. Others, our own rover among them, are not asked."""
+
+FLIGHT_SETTINGS: dict[int, AutopilotSettings] = {Autopilot.ARDUPILOT: ARDUPILOT_COPTER, Autopilot.PX4: PX4_COPTER}
+"""The same of what flies."""
+
+
+def find_settings(autopilot: int, *, flies: bool) -> AutopilotSettings | None:
+    """Return the parameters to read of a vehicle; None: none are known."""
+    return (FLIGHT_SETTINGS if flies else SETTINGS).get(autopilot)
 
 
 class SettingsCheck:
@@ -91,6 +100,13 @@ class SettingsCheck:
             return []
         self._unreported = False
         return warning
+
+    @property
+    def take_off_refusal(self) -> str:
+        """Why what flies may not take off: a lost link would let it fall or fly on, or it is not known; "" if not."""
+        if warning := next(iter(self.warnings), ""):
+            return warning
+        return "what it does without a link is being read" if self._unread() else ""
 
     @property
     def values(self) -> Mapping[str, float]:

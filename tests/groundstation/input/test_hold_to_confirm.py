@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import MAX_EVENTS, MIN_REPEATS, HoldToConfirm
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
-from groundstation.intents.driving import HOLD_TIME, ClearEmergencyStop
+from groundstation.intents.driving import ClearEmergencyStop
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, Disarm
+from groundstation.intents.vehicle_intent import HOLD_TIME
 from tests.groundstation.held_key import event_times
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])

@@ -6,9 +6,9 @@ import pytest
 
 from dialects import messages as m
 from dialects.codec import encode_payload
-from groundstation.intents.driving import HOLD_TIME
 from groundstation.intents.session import LEASE_TIMEOUT, REST_PERIOD, RenewLease
 from groundstation.intents.vehicle import Arm, Disarm
+from groundstation.intents.vehicle_intent import HOLD_TIME
 from groundstation.snapshot import Snapshot
 from groundstation.station.driving.driven import DEMAND_MEMORY
 from groundstation.station.operator_core import REST_AFTER, TICK_PERIOD

@@ -5,9 +5,10 @@ from __future__ import annotations
 from array import array
 
 from dialects import messages as m
-from groundstation.intents.driving import HOLD_TIME, DriveKeyDown
+from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.vehicle import Arm, SetMode
+from groundstation.intents.vehicle_intent import HOLD_TIME
 from groundstation.intents.watch import Watch
 from groundstation.views.base import View
 from groundstation.views.charts import STATION, FieldId, FieldsPage, FieldsRequest, SeriesPage, SeriesRequest

@@ -6,9 +6,10 @@ import math
 
 import pytest
 
-from groundstation.intents.driving import HOLD_TIME, ClearEmergencyStop, DriveKeyDown, EmergencyStop
+from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop
 from groundstation.intents.session import SetKeyGate, StartSimulator
 from groundstation.intents.vehicle import Arm, Disarm
+from groundstation.intents.vehicle_intent import HOLD_TIME
 from groundstation.snapshot import EmergencyProgress, LinkView
 from groundstation.ui.display.alerts import LIMITS
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting, wheels

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import pytest
 
 from groundstation.input.keymap import KeyEvent
-from groundstation.intents.driving import HOLD_TIME, DriveKeyDown, DriveKeyUp, EmergencyStop, StepLimits, Stop
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, StepLimits, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm, SetMode
+from groundstation.intents.vehicle_intent import HOLD_TIME
 from groundstation.ui.keys.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, SHOW_PERIOD, TEXT_FIELD, GateClosure, KeyGate
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import event_times

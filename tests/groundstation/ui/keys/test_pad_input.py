@@ -11,8 +11,9 @@ from textual.message import Message
 from groundstation.gamepad.child import GamepadChild
 from groundstation.input.pad import PadFrame
 from groundstation.input.pad_mapping import ANY, PadMapping, add_buttons
-from groundstation.intents.driving import HOLD_TIME, DrivePad, EmergencyStop, ReleasePad, StepLimits, Stop
+from groundstation.intents.driving import DrivePad, EmergencyStop, ReleasePad, StepLimits, Stop
 from groundstation.intents.vehicle import Arm, SetMode
+from groundstation.intents.vehicle_intent import HOLD_TIME
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD, KeyGate
 from groundstation.ui.keys.keynames import format_key
 from groundstation.ui.keys.pad_input import PadInput

@@ -1,0 +1,55 @@
+"""Copters that keys fly: the rows of PREPARED beside those of DRIVEN, for the tests of one module.
+
+pytestmark = pytest.mark.usefixtures("copters_fly")     # with `from tests.flight import copters_fly`
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from dialects import kinds
+from dialects.enums import Command
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Arm, SetMode, TakeOff
+from tests.fakes.flying import ArduCopter, FlyingVehicle
+from tests.groundstation.cockpits import Cockpit
+
+HEIGHT = 5.0
+"""m, of the take-off."""
+
+
+@pytest.fixture
+def copters_fly(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Drive what is prepared, in this process."""
+    monkeypatch.setattr(kinds, "DRIVEN", {**kinds.DRIVEN, **kinds.PREPARED})
+    kinds.find_kind.cache_clear()
+    yield
+    kinds.find_kind.cache_clear()
+
+
+class FlightCockpit(Cockpit):
+    """A station and a copter in virtual time."""
+
+    def __init__(self, copter: FlyingVehicle) -> None:
+        super().__init__(copter)
+        self.copter = copter
+
+
+def hovering_cockpit(copter: FlyingVehicle, height: float = HEIGHT) -> FlightCockpit:
+    """Return a station whose copter has been armed and taken off by its operator, and hovers in a mode for keys."""
+    cockpit = FlightCockpit(copter)
+    cockpit.run(8.0)  # its settings are read
+    cockpit.do(ReportKeyReleases(), Arm(held=1.0))
+    cockpit.run(2.0)
+    assert copter.armed, cockpit.texts
+    cockpit.do(TakeOff(altitude=height, held=1.0))
+    cockpit.run(5.0 + height)
+    assert copter.commands(Command.NAV_TAKEOFF)
+    if not isinstance(copter, ArduCopter):
+        cockpit.do(SetMode(mode="MANUAL"))
+        cockpit.run(2.0)
+    assert copter.altitude == pytest.approx(height, abs=0.3), cockpit.texts
+    assert cockpit.operator.gate_reason == ""
+    return cockpit
