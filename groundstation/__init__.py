@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from groundstation.rover import AsyncRover as AsyncRover
+    from groundstation.rover import Fence as Fence
+    from groundstation.rover import Mission as Mission
+    from groundstation.rover import Rally as Rally
     from groundstation.rover import Rover as Rover
 
-_OF_PROGRAMS = ("AsyncRover", "Rover")
+_OF_PROGRAMS = ("AsyncRover", "Fence", "Mission", "Rally", "Rover")
 
 
 def __getattr__(name: str) -> Any:

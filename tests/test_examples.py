@@ -77,6 +77,25 @@ def test_drive_square_reaches_each_corner_and_logs_it(
 
 
 @pytest.mark.e2e
+@pytest.mark.slow
+def test_the_notebook_runs_and_the_rover_gets_there() -> None:
+    nbclient = pytest.importorskip("nbclient", reason="the extra `notebook` is not installed")
+    nbformat = pytest.importorskip("nbformat", reason="the extra `notebook` is not installed")
+    pytest.importorskip("ipykernel", reason="the extra `notebook` is not installed")
+    notebook = nbformat.read(EXAMPLES / "drive.ipynb", as_version=4)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "outputs belong to who has run it"
+    nbclient.NotebookClient(notebook, timeout=4 * PATIENCE, kernel_name="python3").execute()
+    outputs = {
+        cell.id: "".join(each.get("text") or each.data["text/plain"] for each in cell.outputs)
+        for cell in notebook.cells
+        if cell.cell_type == "code"
+    }
+    assert "Position(latitude=" in outputs["open"]
+    assert outputs["drive"].startswith("turned by")
+    assert outputs["auto"] == "'HOLD'"
+
+
+@pytest.mark.e2e
 def test_bridge_two_links_forwards_what_the_vehicle_sends(start: Start, vehicle: Callable[..., Vehicle]) -> None:
     near, far = free_port(), free_port()
     bridge = start("bridge_two_links.py", f"udpin:127.0.0.1:{near}", f"udpout:127.0.0.1:{far}")

@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 CI = ROOT / ".ci"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-OF_DEVELOPERS = {"test", "interop", "mutation", "fuzz", "pictures", "docs", "dev"}
+OF_DEVELOPERS = {"test", "interop", "mutation", "fuzz", "pictures", "notebook", "docs", "dev"}
 """Extras that only a checkout has a use for."""
 SUMS, SIGNATURE = "SHA256SUMS", "SHA256SUMS.sig"
 

@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import AsyncGenerator, Callable, Sequence
+import tempfile
+from collections.abc import AsyncGenerator, Callable
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
+from groundstation.rover.api_process import ApiProcess
 from groundstation.rover.connection import ApiConnection, Outcome
-from groundstation.rover.errors import Disconnected, InvalidCall, NoAnswer, RoverError
-from groundstation.rover.telemetry import State, StateValues
-from groundstation.sitl.sitl import SimulatorControl, free_port
-from link.endpoint import parse_endpoint
+from groundstation.rover.errors import Disconnected, InvalidCall, NoAnswer
+from groundstation.rover.state_values import StateValues
+from groundstation.rover.telemetry import State
+
+if TYPE_CHECKING:
+    from groundstation.rover.mission import Fence, Mission, PlanItems, Rally
+
+    Plan = TypeVar("Plan", bound=PlanItems)
 
 LONGEST = 9.0
 """s that one call may drive: as `mavhelm drive`."""
-SITL_WAIT = 10.0
-"""s for a simulator to start."""
+PLANS = "mavhelm-plan-"
+"""What the folders begin with in which plans pass between this program and its verbs."""
 
 
 class AsyncRover(StateValues):
@@ -32,9 +38,7 @@ class AsyncRover(StateValues):
     def __init__(
         self, *endpoints: str, vehicle: int | str | None = None, wait: float = 10.0, stay_armed: bool = False
     ) -> None:
-        self._endpoints, self._vehicle = list(endpoints), vehicle
-        self._wait, self._stay_armed = wait, stay_armed
-        self._simulator: SimulatorControl | None = None
+        self._process = ApiProcess(endpoints, vehicle, wait, stay_armed=stay_armed)
         self._connection: ApiConnection | None = None
         self.waits: Callable[[], bool] = lambda: True
         """Whether the program waits for the call that drives; Rover sets it."""
@@ -42,8 +46,13 @@ class AsyncRover(StateValues):
     @classmethod
     def simulated(cls, *, stay_armed: bool = False) -> Self:
         """Return a simulated rover, which ends with the program."""
-        rover = cls(vehicle=1, wait=SITL_WAIT, stay_armed=stay_armed)
-        rover._simulator = SimulatorControl()
+        return cls.of(ApiProcess(vehicle=1, stay_armed=stay_armed, simulated=True))
+
+    @classmethod
+    def of(cls, process: ApiProcess) -> Self:
+        """Return one for a process that may run already."""
+        rover = cls()
+        rover._process = process
         return rover
 
     async def __aenter__(self) -> Self:
@@ -59,15 +68,7 @@ class AsyncRover(StateValues):
 
     async def open(self) -> None:
         """Connect, and wait for the vehicle. Raises NoVehicle, RoverError."""
-        if self._simulator is not None:
-            self._endpoints = [f"udpin:127.0.0.1:{free_port()}"]
-            if problem := self._simulator.start([parse_endpoint(self._endpoints[0])]):
-                raise RoverError(problem)
-        arguments = [word for each in self._endpoints for word in ("-e", each)]
-        arguments += ["--station", "never"] if self._simulator is not None else []
-        arguments += [] if self._vehicle is None else ["-v", str(self._vehicle)]
-        arguments += ["--stay-armed"] if self._stay_armed else []
-        self._connection = connection = ApiConnection(("--wait", f"{self._wait:g}", *arguments))
+        self._connection = connection = ApiConnection(self._process)
         connection.waits = self.waits
         try:
             await connection.open()
@@ -80,8 +81,7 @@ class AsyncRover(StateValues):
         connection, self._connection = self._connection, None
         if connection is not None:
             await connection.close()
-        if self._simulator is not None:
-            await asyncio.to_thread(self._simulator.close)
+        await asyncio.to_thread(self._process.close_simulator)
 
     async def settle(self) -> None:
         """Wait until calls that were cancelled have ended with neutral."""
@@ -176,13 +176,22 @@ class AsyncRover(StateValues):
         """Have the vehicle drive home by itself; done when it begins. It goes on when the program ends."""
         await self.run("home")
 
-    async def upload_plan(self, path: str | os.PathLike[str], kind: str = "mission") -> None:
-        """Upload a .plan or .waypoints file. `kind`: mission, fence or rally."""
-        await self.run(_need_kind(kind), "put", _absolute(path))
+    async def upload(self, plan: Mission | Fence | Rally) -> None:
+        """Upload a plan; done when the vehicle has taken all of it. One without items clears the vehicle's."""
+        if not plan.items:
+            await self.run(plan.verb, "clear")
+            return
+        with tempfile.TemporaryDirectory(prefix=PLANS) as folder:
+            path = os.path.join(folder, "upload.plan")
+            plan.save(path)
+            await self.run(plan.verb, "put", path)
 
-    async def download_plan(self, path: str | os.PathLike[str], kind: str = "mission") -> None:
-        """Download a plan into a file, which is replaced. `kind`: mission, fence or rally."""
-        await self.run(_need_kind(kind), "get", "--yes", _absolute(path))
+    async def download(self, kind: type[Plan]) -> Plan:
+        """Return the plan of the vehicle. `kind`: Mission, Fence or Rally."""
+        with tempfile.TemporaryDirectory(prefix=PLANS) as folder:
+            path = os.path.join(folder, "download.plan")
+            outcome = await self.run(kind.verb, "get", path)
+            return kind.load(path) if outcome.fields["items"] else kind()
 
     async def start_mission(self) -> None:
         """Start the mission, or go on with it. It goes on when the program ends."""
@@ -222,15 +231,3 @@ def _need_demand(*values: float) -> None:
     for each in values:
         if not -1 <= each <= 1:
             raise InvalidCall(f"{each!r} is not a demand from -1 to 1")
-
-
-def _need_kind(kind: str) -> str:
-    kinds: Sequence[str] = ("mission", "fence", "rally")
-    if kind not in kinds:
-        raise InvalidCall(f"{kind!r} is not a plan: {', '.join(kinds)}")
-    return kind
-
-
-def _absolute(path: str | os.PathLike[str]) -> str:
-    """Return a path that means the same to `mavhelm api` when this program has changed its folder."""
-    return os.path.abspath(path)

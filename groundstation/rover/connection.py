@@ -6,8 +6,7 @@ import asyncio
 import contextlib
 import os
 import signal
-import sys
-import tempfile
+import subprocess
 from collections import deque
 from collections.abc import AsyncGenerator, Callable, Sequence
 from itertools import count
@@ -16,6 +15,7 @@ from weakref import WeakSet
 
 import msgspec
 
+from groundstation.rover.api_process import ApiProcess
 from groundstation.rover.errors import BY_CODE, Disconnected, LinkLost, NoAnswer, RoverError
 from groundstation.rover.protocol import (
     WAITING_PERIOD,
@@ -32,6 +32,7 @@ from groundstation.rover.protocol import (
     encode,
 )
 from groundstation.rover.telemetry import State
+from link.runtime.child_process import end_process
 
 MAX_ANSWER = 16 << 20
 """Bytes of one line of `mavhelm api`."""
@@ -40,8 +41,6 @@ HANGS_AFTER = 5.0
 END_WITHIN = 3.0
 """s for it to send neutral, to disarm and to end, before it is killed."""
 TEXTS_KEPT = 100
-TAIL_SIZE = 4000
-"""Bytes of what it has printed to stderr that are read."""
 
 
 _OPEN: WeakSet[ApiConnection] = WeakSet()
@@ -78,15 +77,15 @@ class _Running:
 class ApiConnection:
     """One process. All methods are called in the event loop that has opened it."""
 
-    def __init__(self, arguments: Sequence[str]) -> None:
-        self._arguments = arguments
-        self._process: asyncio.subprocess.Process | None = None
+    def __init__(self, process: ApiProcess) -> None:
+        self._api = process
+        self._process: subprocess.Popen[bytes] | None = None
+        self._input: asyncio.WriteTransport | None = None
         self._reading: asyncio.Task[None] | None = None
         self._numbers = count(1)
         self._running: dict[int, _Running] = {}
         self._cancelled: set[asyncio.Future[Ended]] = set()
         self._changed: asyncio.Future[None] | None = None
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # not a pipe, which the watchdog of a killed one keeps open
         self._pid = os.getpid()
         self._lines = 0
         """How many have arrived; a state comes ten times a second."""
@@ -98,13 +97,12 @@ class ApiConnection:
         """Whether the program waits for the call that drives."""
 
     async def open(self) -> None:
-        """Start the process, and wait until it has found the vehicle. Raises RoverError."""
-        self._process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "groundstation", "api", *self._arguments,
-            stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=self._errors,
-            limit=MAX_ANSWER, process_group=0,  # a Ctrl-C is for the program, which ends it in order
-        )  # fmt: skip
-        self._reading = asyncio.ensure_future(self._read())
+        """Start the process, unless it runs already, and wait until it has found the vehicle. Raises RoverError."""
+        self._process = process = self._api.running or self._api.start()
+        loop, reader = asyncio.get_running_loop(), asyncio.StreamReader(MAX_ANSWER)
+        await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), process.stdout)
+        self._input, _ = await loop.connect_write_pipe(asyncio.streams.FlowControlMixin, process.stdin)
+        self._reading = asyncio.ensure_future(self._read(reader, process))
         _OPEN.add(self)
         try:
             while self.state is None:
@@ -117,25 +115,18 @@ class ApiConnection:
 
     async def close(self) -> None:
         """End the process: neutral, and disarmed if the program has armed; kill it if it does not end."""
-        process, self._process = self._process, None
+        process, self._process, self._api.running = self._process, None, None
         if process is None:
             return
         _OPEN.discard(self)
-        assert process.stdin is not None
+        assert self._input is not None
         assert self._reading is not None
-        process.stdin.close()
+        self._input.close()
         try:
-            async with asyncio.timeout(END_WITHIN):
-                await process.wait()
-        except TimeoutError:
-            with contextlib.suppress(ProcessLookupError):
-                process.kill()
-            await process.wait()
+            await asyncio.to_thread(end_process, process, END_WITHIN)
         finally:
             await asyncio.wait({self._reading}, timeout=1.0)  # the pipes close with it
             self._reading.cancel()
-            with contextlib.suppress(OSError):
-                await process.stdin.wait_closed()
 
     async def call(self, *words: str, drives: bool = False) -> Outcome:
         """Run a verb to its end; a call that is cancelled ends with neutral. Raises RoverError."""
@@ -188,9 +179,8 @@ class ApiConnection:
 
     def close_in_fork(self) -> None:
         """Close the copy of a fork, so that the process sees the end of the program that has opened it."""
-        process = self._process
-        if process is not None and process.stdin is not None:
-            os.close(process.stdin.transport.get_extra_info("pipe").fileno())
+        if self._process is not None and self._process.stdin is not None:
+            os.close(self._process.stdin.fileno())
 
     # ---- calls ----
 
@@ -223,10 +213,10 @@ class ApiConnection:
         process = self._process
         if process is None:
             raise Disconnected("this Rover is not connected")
-        if process.returncode is not None:
+        if process.poll() is not None:
             raise self._end_error()
-        assert process.stdin is not None
-        process.stdin.write(encode(value) + b"\n")
+        assert self._input is not None
+        self._input.write(encode(value) + b"\n")
 
     def _explain(self, ended: Ended) -> RoverError:
         kind = BY_CODE.get(ended.code, RoverError)
@@ -236,14 +226,11 @@ class ApiConnection:
 
     # ---- what arrives ----
 
-    async def _read(self) -> None:
-        process = self._process
-        assert process is not None
-        assert process.stdout is not None
+    async def _read(self, reader: asyncio.StreamReader, process: subprocess.Popen[bytes]) -> None:
         try:
-            while line := await process.stdout.readline():
+            while line := await reader.readline():
                 self._handle(line)
-            await process.wait()
+            await asyncio.to_thread(process.wait)
         finally:
             self._tell_changed()
             for running in self._running.values():
@@ -278,24 +265,16 @@ class ApiConnection:
     async def _failure(self) -> RoverError:
         """Return why the process has ended before it has found the vehicle."""
         assert self._process is not None
-        code = await self._process.wait()
-        return BY_CODE.get(code, RoverError)(self._last_error)
+        return BY_CODE.get(self._process.wait(), RoverError)(self._api.last_error)
 
     def _end_error(self) -> RoverError:
         """Return why calls that run have failed with the process: a person at a screen drives, for example."""
         kind = None if self._process is None else BY_CODE.get(self._process.returncode or 0)
-        return Disconnected(self._how_it_ended) if kind is None else kind(self._last_error)
+        return Disconnected(self._how_it_ended) if kind is None else kind(self._api.last_error)
 
     @property
     def _how_it_ended(self) -> str:
         code = None if self._process is None else self._process.returncode
         if code is not None and code < 0:
             return f"mavhelm has ended: {signal.Signals(-code).name}"
-        return f"mavhelm has ended: {self._last_error}"
-
-    @property
-    def _last_error(self) -> str:
-        """The last line that it has printed to stderr."""
-        size = os.fstat(self._errors.fileno()).st_size
-        tail = os.pread(self._errors.fileno(), TAIL_SIZE, max(0, size - TAIL_SIZE)).decode(errors="replace")
-        return tail.strip().rpartition("\n")[2].removeprefix("mavhelm: ") or "no error was printed"
+        return f"mavhelm has ended: {self._api.last_error}"

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
-import math
 import os
 import sys
-import threading
-import time
 from collections.abc import Callable, Coroutine, Iterator
-from concurrent.futures import wait
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-from groundstation.rover.async_rover import AsyncRover
-from groundstation.rover.connection import END_WITHIN, Outcome
+from groundstation.rover.api_process import ApiProcess
 from groundstation.rover.errors import Disconnected
-from groundstation.rover.protocol import WAITING_PERIOD
-from groundstation.rover.telemetry import State, StateValues
+from groundstation.rover.state_values import StateValues
 
-CLOSES_WITHIN = 0.02
-"""s for the pipes of a process that has ended to be closed by the loop, which then closes, too."""
+if TYPE_CHECKING:
+    from groundstation.rover.async_rover import AsyncRover
+    from groundstation.rover.connection import Outcome
+    from groundstation.rover.mission import Fence, Mission, Rally
+    from groundstation.rover.rover_thread import RoverThread
+    from groundstation.rover.telemetry import State
+
 Result = TypeVar("Result")
 
 
@@ -40,21 +38,6 @@ class RoverParams:
         self._rover.call(lambda rover: rover.set_param(name, value))
 
 
-class _Waiting:
-    """When the thread that has called waited last. A Rover that is forgotten must not be held by its connection."""
-
-    def __init__(self) -> None:
-        self._at = -math.inf
-
-    def note(self) -> None:
-        """Note that it waits."""
-        self._at = time.monotonic()
-
-    def lately(self) -> bool:
-        """Return whether it waits."""
-        return time.monotonic() - self._at < 2 * WAITING_PERIOD
-
-
 class Rover(StateValues):
     """One vehicle, inside `with`: see AsyncRover for the arguments.
 
@@ -65,21 +48,18 @@ class Rover(StateValues):
     def __init__(
         self, *endpoints: str, vehicle: int | str | None = None, wait: float = 10.0, stay_armed: bool = False
     ) -> None:
-        self._use(AsyncRover(*endpoints, vehicle=vehicle, wait=wait, stay_armed=stay_armed))
+        self._use(ApiProcess(endpoints, vehicle, wait, stay_armed=stay_armed))
 
     @classmethod
     def simulated(cls, *, stay_armed: bool = False) -> Self:
         """Return a simulated rover, which ends with the program."""
         rover = cls.__new__(cls)
-        rover._use(AsyncRover.simulated(stay_armed=stay_armed))
+        rover._use(ApiProcess(vehicle=1, stay_armed=stay_armed, simulated=True))
         return rover
 
-    def _use(self, rover: AsyncRover) -> None:
-        self._rover = rover
-        self._waiting = _Waiting()
-        self._rover.waits = self._waiting.lately
-        self._loop: asyncio.AbstractEventLoop | None = None
-        self._thread: threading.Thread | None = None
+    def _use(self, process: ApiProcess) -> None:
+        self._process = process
+        self._thread: RoverThread | None = None
         self._pid = os.getpid()
 
     def __enter__(self) -> Self:
@@ -101,11 +81,12 @@ class Rover(StateValues):
 
     def open(self) -> None:
         """Connect, and wait for the vehicle. Raises NoVehicle, RoverError."""
-        if self._loop is not None:
+        if self._thread is not None:
             return
-        self._loop = loop = asyncio.new_event_loop()
-        self._thread = threading.Thread(target=_run, args=(loop,), name="mavhelm-rover", daemon=True)
-        self._thread.start()
+        self._process.start()
+        from groundstation.rover.rover_thread import RoverThread  # with asyncio, while the process starts
+
+        self._thread = RoverThread(self._process)
         try:
             self.call(lambda rover: rover.open())
         except BaseException:
@@ -114,46 +95,34 @@ class Rover(StateValues):
 
     def close(self) -> None:
         """Send neutral, disarm what this program has armed, and disconnect."""
-        loop, thread = self._loop, self._thread
-        if loop is None or thread is None or os.getpid() != self._pid:
-            return
-        try:
-            self.call(lambda rover: rover.close())
-        finally:
-            self._loop = self._thread = None
-            loop.call_soon_threadsafe(loop.stop)
-            thread.join(END_WITHIN)
+        thread = self._thread
+        if thread is not None and os.getpid() == self._pid:
+            self._thread = None
+            thread.close()
 
     def call(self, start: Callable[[AsyncRover], Coroutine[Any, Any, Result]]) -> Result:
         """Run a coroutine of AsyncRover, and wait for it here; an exception here, as of Ctrl-C, cancels it."""
-        loop = self._loop
+        return self._running.call(start)
+
+    @property
+    def _running(self) -> RoverThread:
         if os.getpid() != self._pid:
             raise Disconnected("this Rover belongs to the process that has opened it: a fork opens its own")
-        if loop is None:
+        if self._thread is None:
             raise Disconnected("this Rover is not connected: use it in `with`")
-        self._waiting.note()
-        future = asyncio.run_coroutine_threadsafe(start(self._rover), loop)
-        try:
-            while not future.done():
-                wait((future,), WAITING_PERIOD)
-                self._waiting.note()
-            return future.result()
-        except BaseException:
-            if future.cancel():  # neutral is sent before the exception goes on
-                asyncio.run_coroutine_threadsafe(self._rover.settle(), loop).result()
-            raise
+        return self._thread
 
     # ---- telemetry ----
 
     @property
     def state(self) -> State:
         """The newest state; ten come in a second. Raises Disconnected."""
-        return self._rover.state
+        return self._running.rover.state
 
     @property
     def texts(self) -> tuple[str, ...]:
         """The newest texts of the vehicle, at most 100."""
-        return self._rover.texts
+        return self._running.rover.texts
 
     def wait_for(self, condition: Callable[[State], bool], within: float) -> State:
         """Wait until a state fulfils a condition; return it. `within`: s. Raises NoAnswer."""
@@ -161,7 +130,7 @@ class Rover(StateValues):
 
     def messages(self, name: str, hz: float | None = None) -> Iterator[dict[str, Any]]:
         """Yield the fields of each message of a kind that arrives. `hz`: ask for this rate first, 0.001 to 200."""
-        source = self._rover.messages(name, hz)
+        source = self._running.rover.messages(name, hz)
         try:
             while (fields := self.call(lambda _: anext(source, None))) is not None:
                 yield fields
@@ -219,13 +188,38 @@ class Rover(StateValues):
         """Have the vehicle drive home by itself; done when it begins. It goes on when the program ends."""
         self.call(lambda rover: rover.home())
 
-    def upload_plan(self, path: str | os.PathLike[str], kind: str = "mission") -> None:
-        """Upload a .plan or .waypoints file. `kind`: mission, fence or rally."""
-        self.call(lambda rover: rover.upload_plan(path, kind))
+    @property
+    def mission(self) -> Mission:
+        """The mission, downloaded now; an assignment uploads one, or clears it if it has no items."""
+        from groundstation.rover.mission import Mission
 
-    def download_plan(self, path: str | os.PathLike[str], kind: str = "mission") -> None:
-        """Download a plan into a file, which is replaced. `kind`: mission, fence or rally."""
-        self.call(lambda rover: rover.download_plan(path, kind))
+        return self.call(lambda rover: rover.download(Mission))
+
+    @mission.setter
+    def mission(self, mission: Mission) -> None:
+        self.call(lambda rover: rover.upload(mission))
+
+    @property
+    def fence(self) -> Fence:
+        """The fence, likewise."""
+        from groundstation.rover.mission import Fence
+
+        return self.call(lambda rover: rover.download(Fence))
+
+    @fence.setter
+    def fence(self, fence: Fence) -> None:
+        self.call(lambda rover: rover.upload(fence))
+
+    @property
+    def rally(self) -> Rally:
+        """The rally points, likewise."""
+        from groundstation.rover.mission import Rally
+
+        return self.call(lambda rover: rover.download(Rally))
+
+    @rally.setter
+    def rally(self, rally: Rally) -> None:
+        self.call(lambda rover: rover.upload(rally))
 
     def start_mission(self) -> None:
         """Start the mission, or go on with it. It goes on when the program ends."""
@@ -249,13 +243,3 @@ class Rover(StateValues):
     def run(self, *words: str) -> Outcome:
         """Run any verb of `mavhelm` that works with a vehicle, such as `log list`. Raises RoverError."""
         return self.call(lambda rover: rover.run(*words))
-
-
-def _run(loop: asyncio.AbstractEventLoop) -> None:
-    """Run the loop of a Rover, as its thread."""
-    asyncio.set_event_loop(loop)
-    try:
-        loop.run_forever()
-        loop.run_until_complete(asyncio.sleep(CLOSES_WITHIN))
-    finally:
-        loop.close()

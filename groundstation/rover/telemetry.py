@@ -1,8 +1,6 @@
-"""State: what a program sees of its vehicle, and StateValues: its values as attributes. SI, angles in degrees."""
+"""State: what a program sees of its vehicle. SI, angles in degrees."""
 
 from __future__ import annotations
-
-from abc import ABC, abstractmethod
 
 import msgspec
 
@@ -57,42 +55,3 @@ class State(msgspec.Struct, frozen=True, kw_only=True):
     """Demand that the vehicle applies, -1 to 1."""
     steering: float | None = None
     """Demand that the vehicle applies, -1 to 1, positive to the right."""
-
-
-class StateValues(ABC):
-    """The values of the newest state that programs ask for most."""
-
-    @property
-    @abstractmethod
-    def state(self) -> State:
-        """The newest state; ten come in a second. Raises Disconnected."""
-
-    @property
-    def mode(self) -> str:
-        """The mode, such as MANUAL."""
-        return self.state.mode
-
-    @property
-    def armed(self) -> bool:
-        """Whether its motors are armed."""
-        return self.state.armed
-
-    @property
-    def position(self) -> Position | None:
-        """Where it is; None without a fix."""
-        return self.state.position
-
-    @property
-    def heading(self) -> float | None:
-        """Degrees clockwise from north, 0 to 360."""
-        return self.state.heading
-
-    @property
-    def speed(self) -> float | None:
-        """m/s over ground."""
-        return self.state.speed
-
-    @property
-    def battery(self) -> float | None:
-        """What is left of the battery, 0 to 1."""
-        return self.state.battery

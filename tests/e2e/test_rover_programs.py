@@ -20,6 +20,7 @@ from tests.waits import wait_until
 
 pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("verbs through a station")]
 
+PATROL = Path(__file__).parents[2] / "docs" / "examples" / "patrol.plan"
 LONG = 8.0
 """s for which a call drives that is never to reach its end."""
 HEAD = """\
@@ -30,6 +31,8 @@ from groundstation.rover import *
 def say(text):
     print(text, flush=True)
 
+sys.stdin = os.fdopen(os.pipe()[0])
+signal.signal(signal.SIGUSR1, lambda *_: breakpoint())
 rover = Rover(*{endpoints!r}, vehicle=1, wait=30)
 """
 DRIVE = f"""\
@@ -80,15 +83,15 @@ class Road:
     """A simulated rover and the programs that drive it."""
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        port = free_port()
-        self.endpoint = f"udpin:127.0.0.1:{port}"
-        self.vehicle = Vehicle(folder, port)
+        self.folder = folder
+        self.port = free_port()
+        self.endpoint = f"udpin:127.0.0.1:{self.port}"
+        self.vehicle = Vehicle(folder, self.port)
         self.programs: list[Program] = []
 
     def start(self, text: str) -> Program:
         """Start a program."""
-        folder = self._folder / str(len(self.programs))
+        folder = self.folder / str(len(self.programs))
         folder.mkdir()
         self.programs.append(Program(folder, self.endpoint, text))
         return self.programs[-1]
@@ -133,6 +136,11 @@ def freeze(program: Program) -> None:
     os.kill(program.process.pid, signal.SIGSTOP)
 
 
+def reach_a_breakpoint(program: Program) -> None:
+    os.kill(program.process.pid, signal.SIGUSR1)
+    wait_until(lambda: "(Pdb)" in program.said, lambda: program.errors)
+
+
 def kill_the_connection(program: Program) -> None:
     for pid in program.children():
         os.kill(pid, signal.SIGKILL)
@@ -145,7 +153,7 @@ def freeze_the_connection(program: Program) -> None:
 
 @pytest.mark.parametrize(
     "way",
-    [kill, interrupt, terminate, freeze, kill_the_connection],
+    [kill, interrupt, terminate, freeze, reach_a_breakpoint, kill_the_connection],
     ids=lambda way: str(way.__name__),
 )
 def test_a_call_that_drives_ends_with_its_program(road: Road, way: Callable[[Program], None]) -> None:
@@ -351,3 +359,60 @@ with rover:
     assert second.said
     assert all(value >= 0 for each in road.vehicle.outputs() for value in each.throttles)
     assert first.process.wait(30) == 0, first.errors
+
+
+def test_two_rovers_without_a_station_do_not_drive_one_vehicle(road: Road) -> None:
+    port = free_port()
+    road.vehicle.end()
+    road.vehicle = Vehicle(road.folder, road.port, f"udpin:127.0.0.1:{port}")
+    first = road.start_driving()
+    second = road.start(f"""\
+rover = Rover("udpout:127.0.0.1:{port}", vehicle=1, wait=30)
+with rover:
+    try:
+        rover.drive(-1.0, seconds=1)
+    except RoverError as error:
+        say(f"{{type(error).__name__}}: {{error}}")
+""")
+    assert second.process.wait(30) == 0, second.errors
+    assert second.said.startswith("NotInControl"), second.said
+    assert all(value >= 0 for each in road.vehicle.outputs() for value in each.throttles)
+    assert first.process.wait(30) == 0, first.errors
+
+
+def test_plans_are_values_and_files(road: Road, tmp_path: Path) -> None:
+    program = road.start(f"""\
+os.chdir({str(tmp_path)!r})
+with rover:
+    place = rover.wait_for(lambda state: state.position, 30).position
+    assert rover.mission.items == ()
+    mission = Mission.through([(place.latitude + 1e-4, place.longitude), (place.latitude, place.longitude + 1e-4)])
+    rover.mission = mission
+    assert rover.mission == mission
+    rover.mission.save("a.plan"), rover.mission.save("a.waypoints")
+    assert Mission.load("a.plan") == Mission.load("a.waypoints") == mission
+    rover.fence = Fence.load({str(PATROL)!r})
+    assert len(rover.fence.items) == 4 and rover.rally.items == ()
+    rover.mission = Mission()
+    assert rover.mission.items == ()
+    try:
+        Rally.load("a.plan")
+    except InvalidCall as error:
+        say(error)
+""")
+    assert program.process.wait(60) == 0, program.errors
+    assert program.said == "a.plan: no rally in it\n"
+
+
+def test_a_simulated_rover_is_not_remembered(road: Road, tmp_path: Path) -> None:
+    program = road.start(f"""\
+os.environ["XDG_STATE_HOME"] = {str(tmp_path / "state")!r}
+with Rover.simulated() as rover:
+    say(rover.mode)
+with Rover({road.endpoint!r}, vehicle=1) as rover:
+    say(rover.mode)
+""")
+    assert program.process.wait(60) == 0, program.errors
+    recent = (tmp_path / "state" / "mavhelm" / "recent.json").read_text()
+    assert road.endpoint in recent
+    assert recent.count("udpin") == 1

@@ -57,6 +57,7 @@ class ProgramCalls:
     async def run(self) -> None:
         """Handle calls until the program ends; then neutral, and disarm what it has armed. Raises VerbError."""
         session = self._session
+        session.goes_on = True
         session.core.taps.append(self._tap)
         self._send(Ready(session.vehicle.system, session.vehicle.name))
         beside = [asyncio.ensure_future(each) for each in (self._publish(), self._watch())]

@@ -104,7 +104,8 @@ async def arm(session: VerbSession, wait: float, output: Output) -> RequestRepor
         raise
     finally:
         contact.operator.demanding = False
-    await session.wait_for(lambda: contact.operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
+    if not session.goes_on:
+        await session.wait_for(lambda: contact.operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
     return report
 
 

@@ -14,7 +14,6 @@ import os
 import msgspec
 
 from dialects.axes import NEUTRAL, Axes
-from groundstation.config.effective import build_keymap, load_config, merge
 from groundstation.input.keymap import Keymap
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
@@ -100,6 +99,8 @@ def _read_course(options: argparse.Namespace) -> GivenCourse:
 
 
 def _read_script(options: argparse.Namespace) -> GivenCourse:
+    from groundstation.config.effective import build_keymap, load_config, merge  # a steady demand does without
+
     settings = merge(load_config(options.config, os.environ), os.environ, {}).settings
     keymap = build_keymap(settings)
     lines = parse_script(read_text(options.script), options.script, keymap)

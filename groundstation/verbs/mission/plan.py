@@ -5,13 +5,11 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Awaitable, Callable
-from pathlib import PurePath
 from typing import Any
 
 from dialects.enums import MissionType, command_name
 from groundstation.formats.plan import Plan, for_vehicle, from_vehicle
-from groundstation.formats.plan_file import format_plan, parse_plan
-from groundstation.formats.waypoint_file import format_waypoints, lost_values, parse_waypoints
+from groundstation.formats.plan_of_name import format_named, lost_in_named, parse_named
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.files import Files
@@ -22,9 +20,6 @@ from link.services.mission.items import GLOBAL_FRAMES, UNSET_COORDINATE, Items, 
 from link.services.param.float32 import shortest_float32
 
 Run = Callable[[VerbSession, argparse.Namespace, Output], Awaitable[int]]
-
-WAYPOINT_SUFFIXES = (".waypoints", ".txt", ".wpl")
-"""Of QGC WPL 110; anything else is a .plan."""
 
 
 def show(kind: MissionType) -> Run:
@@ -51,12 +46,10 @@ def get(kind: MissionType) -> Run:
         await session.files.check_new(options.file, overwrite=options.yes)
         items = await download(session, kind)
         plan = from_vehicle(items, kind, session.vehicle.autopilot)
-        write = format_waypoints if _is_waypoints(options.file) else format_plan
-        await session.files.write_text(options.file, write(plan))
+        await session.files.write_text(options.file, format_named(plan, options.file))
         count = len(plan.of(kind))
         output.note(f"{count_text(count)} of {session.vehicle.name} saved to {options.file}")
-        lost = lost_values(plan) if _is_waypoints(options.file) else ""
-        if lost:
+        if lost := lost_in_named(plan, options.file):
             output.note(f"{options.file}: {lost}")
         output.result(True, session.vehicle.system, file=options.file, items=count, lost=lost or None)
         return ExitCode.DONE
@@ -83,8 +76,7 @@ def put(kind: MissionType) -> Run:
 
 async def read_plan(files: Files, path: str, kind: MissionType) -> Plan:
     """Return the plan of a file that has one of this kind. Raises VerbError, FileFormatError."""
-    parse = parse_waypoints if _is_waypoints(path) else parse_plan
-    plan = parse(await files.read_text(path), path)
+    plan = parse_named(await files.read_text(path), path)
     if not plan.of(kind):
         others = _other_kinds(plan, kind)
         hint = f"but {others}" if others else "`clear` removes the vehicle's"
@@ -123,10 +115,6 @@ async def download(session: VerbSession, kind: MissionType) -> Items:
 
 async def _change(session: VerbSession, output: Output, start: Callable[[int, float], None], done: str) -> int:
     return finish(session, await session.request(start), output, done)
-
-
-def _is_waypoints(path: str) -> bool:
-    return PurePath(path).suffix.lower() in WAYPOINT_SUFFIXES
 
 
 def describe_item(item: MissionItem) -> str:

@@ -21,12 +21,10 @@ from groundstation.formats.geojson import format_geojson
 from groundstation.formats.geojson_layer import parse_layer, thin
 from groundstation.formats.layer import LayerDocument
 from groundstation.formats.plan import Plan, PlannedHome
-from groundstation.formats.plan_file import format_plan, parse_plan
-from groundstation.formats.waypoint_file import format_waypoints, lost_values, parse_waypoints
+from groundstation.formats.plan_of_name import WAYPOINT_SUFFIXES, format_named, lost_in_named, parse_named
 from groundstation.geo import Place
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.local_file import check_new_file, read_text, write_text
-from groundstation.verbs.mission.plan import WAYPOINT_SUFFIXES
 from groundstation.views.plan import MAX_ITEMS, PlanDocument, PlanItem
 from link.services.mission.items import Items, MissionItem
 
@@ -37,8 +35,7 @@ MAX_DRAWN = 2000
 
 def read(path: str) -> bytes:
     """Return the plans of a file, encoded. Raises VerbError and FileFormatError."""
-    text = read_text(path)
-    plan = (parse_waypoints if _suffix(path) in WAYPOINT_SUFFIXES else parse_plan)(text, path)
+    plan = parse_named(read_text(path), path)
     for name, items in (("mission", plan.mission), ("fence", plan.fence), ("rally points", plan.rally)):
         if len(items) > MAX_ITEMS:
             text = f"{path}: {name} of {len(items)} items, this screen edits {MAX_ITEMS} at most"
@@ -70,18 +67,12 @@ def write(path: str, data: bytes, *, replace: bool) -> str:
     if suffix in GEOJSON_SUFFIXES:
         write_text(path, format_geojson(plan))
         return ""
-    if suffix in WAYPOINT_SUFFIXES:
-        write_text(path, _format_waypoints(path, plan))
-        return lost_values(plan)
-    write_text(path, format_plan(plan))
-    return ""
-
-
-def _format_waypoints(path: str, plan: Plan) -> str:
     try:
-        return format_waypoints(plan)
+        text = format_named(plan, path)
     except FileFormatError as error:
         raise FileFormatError(f"{path}: {error}") from None
+    write_text(path, text)
+    return lost_in_named(plan, path)
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -69,6 +69,8 @@ class VerbSession:
         """When the verb began."""
         self.afterwards = "; this program no longer sends heartbeats"
         """What becomes of this program when the verb has ended, for a vehicle that moves by itself."""
+        self.goes_on = False
+        """It goes on behind the verb, and so do the neutrals at the end of arming: the next verb need not wait."""
         self.observe: Callable[[], None] = lambda: None
         """Gets the newest reports of links of its own; those of a station come by themselves."""
 
