@@ -80,6 +80,11 @@ class AxisLimits(msgspec.Struct, frozen=True):
     climb: tuple[SpeedParam, ...] = ()
     turn: tuple[SpeedParam, ...] = ()
 
+    @property
+    def all(self) -> tuple[SpeedParam, ...]:
+        """All of them."""
+        return (*self.speed, *self.climb, *self.turn)
+
 
 class VehicleKind(msgspec.Struct, frozen=True):
     """One kind of vehicle of one autopilot. The default is a kind that is only shown."""

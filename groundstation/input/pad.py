@@ -9,7 +9,7 @@ import math
 
 import msgspec
 
-from groundstation.input.pad_mapping import PadMapping
+from groundstation.input.pad_mapping import FLIGHT_MODES, PadMapping
 
 HELD_PERIOD, IDLE_PERIOD = 0.05, 0.5
 """s between frames while a button is held (20 a second, as the demands), and while none is."""
@@ -42,6 +42,8 @@ class PadFrame(msgspec.Struct, frozen=True):
     """The sticks were not in their centre when the dead-man button went down: they must be there before they drive."""
     throttle: float = 0.0
     steering: float = 0.0
+    flight: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    """Forward, turn, side and climb, for what flies."""
     buttons: tuple[str, ...] = ()
     """Its other buttons that are down and have an action."""
 
@@ -73,7 +75,7 @@ class PadCore:
         self._device: int | None = None
         self._spent = True
         """The dead-man button must be released first: it was down when this gamepad was chosen."""
-        self._centred = False
+        self._centred = self._flight_centred = False
 
     def update(self, names: tuple[str, ...], chosen: int, reading: PadReading | None, now: float) -> PadFrame | None:
         """Handle the readings of the gamepad that drives. Returns the frame that is due, None if none is."""
@@ -89,10 +91,13 @@ class PadCore:
 
     def _read(self, names: tuple[str, ...], chosen: int, reading: PadReading, now: float) -> PadFrame:
         throttle, steering = self._axis(reading, self._mapping.throttle), self._axis(reading, self._mapping.steering)
+        forward, turn, side, climb = (self._axis(reading, name) for name in FLIGHT_MODES[self._mapping.flight])
+        flight = forward, turn, side, climb
         down = self._mapping.deadman in reading.buttons
         self._spent = self._spent and down
         held = down and not self._spent
         self._centred = held and (self._centred or not (throttle or steering))
+        self._flight_centred = held and (self._flight_centred or not any(flight))
         return PadFrame(
             now,
             names,
@@ -101,6 +106,7 @@ class PadCore:
             uncentred=held and not self._centred,
             throttle=throttle if self._centred else 0.0,
             steering=steering if self._centred else 0.0,
+            flight=flight if self._flight_centred else (0.0, 0.0, 0.0, 0.0),
             buttons=tuple(sorted(name for name in reading.buttons if name in self._mapping.buttons)),
         )
 
@@ -115,5 +121,5 @@ class PadCore:
 
 def _essence(frame: PadFrame) -> tuple[object, ...]:
     """Return what is told at once. A stick that moves on only changes the next frame, or it would flood slow links."""
-    moves = bool(frame.throttle or frame.steering)
+    moves = bool(frame.throttle or frame.steering or any(frame.flight))
     return frame.names, frame.chosen, frame.held, frame.uncentred, frame.buttons, moves

@@ -26,6 +26,12 @@ THROTTLES = ("lefty", "righty", "triggers", "-lefty", "-righty", "-triggers")
 STEERINGS = ("leftx", "rightx", "-leftx", "-rightx")
 """Axes: up, right and the right trigger are positive; "-" reverses them. The left trigger drives backward."""
 
+FLIGHT_MODES: dict[str, tuple[str, str, str, str]] = {
+    "mode 2": ("righty", "leftx", "rightx", "lefty"),
+    "mode 1": ("lefty", "leftx", "rightx", "righty"),
+}
+"""Modes of transmitters for what flies -> the axes of forward, turn, side and climb."""
+
 ANY, OFF = "any", "off"
 """Values of the setting `gamepad` beside a name: the first one that is plugged in, and none."""
 
@@ -46,7 +52,12 @@ DEFAULT_BUTTONS = {
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=0.5)]
 Bend = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
 _RANGES: dict[str, tuple[Any, str]] = {"dead_zone": (Share, "0 to 0.5"), "expo": (Bend, "0 to 1")}
-_CHOICES: dict[str, tuple[str, ...]] = {"deadman": tuple(BUTTONS), "throttle": THROTTLES, "steering": STEERINGS}
+_CHOICES: dict[str, tuple[str, ...]] = {
+    "deadman": tuple(BUTTONS),
+    "throttle": THROTTLES,
+    "steering": STEERINGS,
+    "flight": tuple(FLIGHT_MODES),
+}
 _NAMES = (*_CHOICES, *_RANGES, *BUTTONS)
 
 
@@ -57,6 +68,8 @@ class PadMapping(msgspec.Struct, frozen=True):
     """Button that must be held to drive."""
     throttle: str = "lefty"
     steering: str = "rightx"
+    flight: str = "mode 2"
+    """Which sticks fly what flies."""
     dead_zone: float = 0.12
     """Share of the way of a stick around its centre that counts as centre."""
     expo: float = 0.3

@@ -61,6 +61,16 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Above home, m."""
     climb: float | None = None
     """m/s."""
+    speed_over_ground: float | None = None
+    """m/s, in any direction."""
+    battery_left: float | None = None
+    """s until the battery is empty, at the rate at which it was used; None: not known."""
+    full_speed: float | None = None
+    """m/s that full deflection asks for, of what flies; as the next two."""
+    full_turn: float | None = None
+    """deg/s."""
+    full_climb: float | None = None
+    """m/s."""
     stop_question: float | None = None
     """s left to press the emergency stop once more, which cuts the motors of a vehicle in the air; None: not asked."""
     status: int

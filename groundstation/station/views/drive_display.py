@@ -70,6 +70,8 @@ class DriveDisplay:
             "command_age_estimated": age[1] and age[0] is not None,
             "speed_demand": drive.speed_demand(now),
             "stops": stop_bounds(drive.rules, facts),
+            **drive.flight_limits(),
+            "battery_left": drive.battery_left,
             "health": drive.health.build_lines(now),
             "mission": drive.mission.build(
                 plan, contact.details.place, state.speed, navigates=state.drives_itself, now=now

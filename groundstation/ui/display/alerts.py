@@ -132,6 +132,27 @@ def _silence(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.DANGER, f"no heartbeat from {vehicle.name} for {silence}: {stops}")
 
 
+DRIFTING = ("ALT_HOLD", "ALTCTL")
+"""Modes that hold the altitude and not the place."""
+FIX_3D = 3
+
+
+def _flight(now: DisplayState) -> Iterator[Alert]:
+    """Yield what a pilot must know of a vehicle in the air."""
+    vehicle = now.snapshot.vehicle
+    if vehicle is None or not (vehicle.flies and vehicle.may_fall):
+        return
+    if vehicle.gps_fix is not None and vehicle.gps_fix < FIX_3D:
+        yield Alert(AlertLevel.DANGER, f"{vehicle.name} has lost its GPS fix: it may drift, land it")
+    for line in vehicle.health:
+        if line.good is False and line.name == "estimate":
+            yield Alert(AlertLevel.DANGER, f"{vehicle.name}: {line.name} {line.text}: land it")
+    if vehicle.mode in DRIFTING:
+        yield Alert(
+            AlertLevel.WARNING, f"{vehicle.mode} drifts with the wind: {now.key('vehicle.manual')} holds the place"
+        )
+
+
 def _failsafe(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.failsafes and not vehicle.emergency_stop:
@@ -292,8 +313,8 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _breach, _handover, _duplicates, _state, _key,
-    _gate, _obeys, _operator, _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording,
+    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _breach, _flight, _handover, _duplicates, _state,
+    _key, _gate, _obeys, _operator, _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording,
     _vehicles,
 )  # fmt: skip
 """Most urgent first."""

@@ -46,6 +46,8 @@ def _vehicle_hint(vehicle: VehicleView, now: DisplayState) -> str:
         return f"{vehicle.undriven} · {now.key('stop.emergency')} {asks}cuts the motors"
     if not vehicle.armed:
         return _arming_hint(vehicle, now)
+    if vehicle.flies:
+        return _flight_hint(vehicle, now)
     stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"
     if vehicle.obeys:
         return stops
@@ -55,6 +57,22 @@ def _vehicle_hint(vehicle: VehicleView, now: DisplayState) -> str:
         return f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
     verb = "hold" if now.snapshot.operator.style == "hold" else "press"
     return f"{verb} {now.key('drive.forward')} to drive · {stops}"
+
+
+def _flight_hint(vehicle: VehicleView, now: DisplayState) -> str:
+    """Return what a pilot can do next: the stops of what flies are its landing, and the key after which it falls."""
+    emergency, cut = now.key("stop.emergency"), now.key("stop.cut")
+    if not vehicle.may_fall:
+        return f"on the ground: hold {now.key('vehicle.take_off')} to take off · {emergency} disarms"
+    stops = f"SPACE hovers, {emergency} lands, {cut} held 2 s: IT FALLS"
+    if vehicle.obeys:
+        return stops
+    if not vehicle.in_control:
+        return f"{now.key('vehicle.control')} asks for control · {stops}"
+    if not vehicle.drivable:
+        return f"{vehicle.mode}: {now.key('vehicle.manual')} changes to {vehicle.keys_mode} · {stops}"
+    climbs = f"{now.key('drive.climb')} {now.key('drive.descend')} climb"
+    return f"{stops} · {now.key('drive.forward')} flies, {climbs}"
 
 
 def _arming_hint(vehicle: VehicleView, now: DisplayState) -> str:

@@ -11,7 +11,7 @@ from groundstation.ui.drive.instruments.key_to_motor import WayPanel, WayValue
 from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.drive.instruments.links import LinksPanel
 from groundstation.ui.drive.instruments.mission import MissionStrip, MissionValue
-from groundstation.ui.drive.instruments.speed import SpeedReadout, speed_text
+from groundstation.ui.drive.instruments.speed import Readout, SpeedReadout
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.stops import StopsLine, StopsPanel, StopsValue
 from groundstation.ui.drive.instruments.stops_model import is_near
@@ -29,7 +29,7 @@ INSTRUMENTS: tuple[InstrumentRow, ...] = (
     TABS,
     instrument_row("waiting", "top", WaitingPage, WaitingValue.from_state),
     instrument_row("mission-line", "left", MissionStrip, _mission, slow=True, layout="-narrow"),
-    instrument_row("speed", "motion", SpeedReadout, lambda now: speed_text(now.snapshot.vehicle)),
+    instrument_row("speed", "motion", SpeedReadout, lambda now: Readout.from_vehicle(now.snapshot.vehicle)),
     instrument_row("horizon", "motion", Horizon, lambda now: HorizonValue.from_vehicle(now.snapshot.vehicle)),
     instrument_row("tape", "heading", HeadingTape, lambda now: heading_degrees(now.snapshot.vehicle)),
     instrument_row("sticks", "drive", StickBars, lambda now: build_bars(now.snapshot)),

@@ -149,6 +149,11 @@ class KeyGate:
         """Reads of several different characters that did nothing, so far."""
 
     @property
+    def flies(self) -> bool:
+        """The keys are those of what flies."""
+        return self.keymap is self._keymaps[True]
+
+    @property
     def closure(self) -> GateClosure | None:
         """Why the gate is not open; None when it is."""
         return self._closure

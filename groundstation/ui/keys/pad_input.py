@@ -86,7 +86,7 @@ class PadInput:
     def take(self, frame: PadFrame) -> None:
         """Handle a frame: the sticks first, which may stop."""
         if frame.held:
-            self._send(DrivePad(frame.throttle, frame.steering, frame.read_at, repeat=self._held))
+            self._send(self._demand(frame))
         elif self._held:
             self._send(ReleasePad())
         self._held, self._seen = frame.held, self._seen or bool(frame.names)
@@ -101,6 +101,12 @@ class PadInput:
                 self._post(KeyUp(press.key))
             elif not press.repeat:
                 self._post(events.Key(press.key, None))
+
+    def _demand(self, frame: PadFrame) -> DrivePad:
+        if not self._gate.flies:
+            return DrivePad(frame.throttle, frame.steering, frame.read_at, repeat=self._held)
+        forward, turn, side, climb = frame.flight
+        return DrivePad(forward, turn, frame.read_at, repeat=self._held, side=side, climb=climb)
 
     def _is_step(self, button: str) -> bool:
         """Return whether a button changes the limits: once a press, because frames repeat it 20 times a second."""

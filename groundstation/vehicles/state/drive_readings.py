@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from dialects import messages as m
 from dialects.enums import Autopilot
+from dialects.kinds import SpeedParam
 from groundstation.vehicles.health.health import HealthReadings
 from groundstation.vehicles.readings.battery_use import BatteryUse
 from groundstation.vehicles.readings.foreign_drive import drive_params
@@ -62,10 +63,30 @@ class DriveReadings:
             self.params.want(drive_params(state.autopilot, values))
             rules = self.rules
             self.params.want(rules.params if rules is not None else ())
+            self.params.want(tuple(each.name for each in state.model.limits.all))
             self.params.want(SPEED_PARAMS if rules is not None and state.autopilot != Autopilot.PX4 else ())
         if self.speeds.is_due(now):
             self.battery_use.add(state.reading("battery_remaining"), now, armed=state.armed)
             self.speeds.add(state.speed if state.monitor.is_alive(now) else None, self.speed_demand(now), now)
+
+    def flight_limits(self) -> dict[str, float | None]:
+        """Return what full deflection asks for, of what flies, by the fields of VehicleView."""
+        limits = self._state.model.limits
+        return {
+            "full_speed": self._limit(limits.speed),
+            "full_turn": self._limit(limits.turn),
+            "full_climb": self._limit(limits.climb),
+        }
+
+    def _limit(self, params: tuple[SpeedParam, ...]) -> float | None:
+        values = self.params.values
+        return next((values[each.name] * each.scale for each in params if each.name in values), None)
+
+    @property
+    def battery_left(self) -> float | None:
+        """Return for how many s the battery lasts at the rate at which it was used; None while that is not known."""
+        rate, left = self.battery_use.rate, self._state.reading("battery_remaining")
+        return None if not rate or left is None else float(left) / rate
 
     @property
     def rules(self) -> StopRules | None:

@@ -226,6 +226,7 @@ class VehicleState:
             undriven=self.model.refusal,
             may_fall=self.may_fall,
             flies=self.model.flies,
+            speed_over_ground=None if self._velocity is None else math.hypot(*self._velocity),
             keys_mode=self.model.drive_mode,
             status=self.status,
             alive=self.monitor.is_alive(now),

@@ -83,6 +83,20 @@ WARNED = snapshot(
     )
 )  # fmt: skip
 
+COPTER = snapshot(
+    vehicle=vehicle(
+        name="ArduPilot copter 1", autopilot=3, mode="LOITER", flies=True, keys_mode="LOITER", may_fall=True,
+        altitude=12.3, climb=0.5, speed=3.2, speed_over_ground=3.4, battery_left=744.0, full_speed=12.5,
+        full_turn=202.5, full_climb=2.5, demand=None, outputs=(), limits=(), speed_demand=None, mission=None,
+        stops=(
+            StopBound("no command", "RC input", "RC_OVERRIDE_TIME", 3.0, 0.042),
+            StopBound("... no RC", "RTL", "FS_THR_ENABLE", 3.5, 0.042),
+            StopBound("no station", "LAND", "FS_GCS_ENABLE", 5.0, 0.2, estimated=True),
+        ),
+    ),
+    operator=helm(held=("i", "pageup"), steering=0.0, climb=0.6),
+)  # fmt: skip
+
 SETUP_FRAMES = setup_frames(STANDING, waiting())
 
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
@@ -90,6 +104,8 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_100x30": ((100, 30), snapshot(signing=SIGNED), ()),
     "drive_140x45": (WIDE, snapshot(signing=SIGNED), ()),
     "drive_200x60": (LARGE, snapshot(signing=SIGNED), ()),
+    "flight_80x24": (SMALL, COPTER, ()),
+    "flight_140x45": (WIDE, COPTER, ()),
     "pane_speed_80x24": (SMALL, snapshot(), ("v",)),
     "pane_rates_80x24": (SMALL, snapshot(), ("v", "v")),
     "warned_140x45": (WIDE, WARNED, ()),

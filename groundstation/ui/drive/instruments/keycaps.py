@@ -24,12 +24,26 @@ GRID = (
 )
 """Actions by position, as on the keyboard around `k`."""
 
+FLIGHT_GRID = (
+    ("drive.side_left", "drive.forward", "drive.side_right", "drive.climb"),
+    ("drive.left", "drive.stop", "drive.right", "drive.descend"),
+    ("vehicle.take_off", "drive.backward", "vehicle.land", "vehicle.home"),
+)
+"""The same of what flies: left and right turn the nose, the fourth column climbs, the last row begins and ends it."""
+
+CLIMB_SHARE = 0.6
+"""Of the way of the throttle stick that a key asks for at full limit (dialects/axes.py, CLIMB_SPAN)."""
+
 STYLES: dict[str, tuple[str, Callable[[], Style]]] = {
     "hold": ("HOLD to drive", partial(style, GREEN, bold=True)),
     "latch": (" LATCHED: drives on ", partial(badge, RED)),
     "step": (" STEP: keeps driving ", partial(badge, AMBER)),
 }
 """Drive style -> its label and look; the styles that keep driving without a key held are in loud colours."""
+
+
+_SIGNS = {"space": "␣", "pageup": "⇞", "pagedown": "⇟"}
+"""Key -> its one character."""
 
 
 class KeycapsValue(msgspec.Struct, frozen=True):
@@ -51,6 +65,9 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     """The gamepad drives."""
     slowed: tuple[float, str] | None = None
     """m/s that the vehicle allows itself, and why."""
+    flies: bool = False
+    full: tuple[float | None, float | None, float | None] = (None, None, None)
+    """What full deflection asks for, of what flies: m/s, deg/s, m/s up."""
     recorded: tuple[str, ...] | None = None
     """In a replay the keys that were held; None: no replay."""
 
@@ -58,7 +75,10 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     def from_state(cls, now: DisplayState) -> KeycapsValue:
         """Return the caps of a display state."""
         operator, vehicle = now.snapshot.operator, now.snapshot.vehicle
+        flies = vehicle is not None and vehicle.flies
         return cls(
+            flies=flies,
+            full=(vehicle.full_speed, vehicle.full_turn, vehicle.full_climb) if vehicle and flies else (None,) * 3,
             keymap=now.keymap,
             lit=lit_actions(frozenset(operator.held) | now.pressed, now.keymap),
             style=operator.style,
@@ -87,7 +107,7 @@ class Keycaps(Instrument[KeycapsValue]):
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw caps to the left and text to the right; what does not fit is cut, never wrapped."""
         lines = []
-        for row, text in zip(GRID, self._texts(), strict=True):
+        for row, text in zip(FLIGHT_GRID if self.value.flies else GRID, self._texts(), strict=True):
             caps = [part for action in row for part in self._cap(action)]
             gap = max(1, width - length(caps) - length(text))
             lines.append(strip(*caps, (" " * gap, style()), *text).crop(0, width))
@@ -95,7 +115,7 @@ class Keycaps(Instrument[KeycapsValue]):
 
     def _cap(self, action: str) -> list[Part]:
         key = main_key(self.value.keymap, action)
-        name = "·" if key is None else "␣" if key == "space" else format_key(key)
+        name = "·" if key is None else _SIGNS.get(key) or format_key(key)
         if action in self.value.lit:
             look = badge(DEEP_RED if action == "drive.stop" else AMBER if self.value.ignored else YELLOW)
         elif not self.value.open:
@@ -113,7 +133,7 @@ class Keycaps(Instrument[KeycapsValue]):
         return (
             style_parts(value),
             bound_parts(value),
-            limit_parts(value),
+            flight_limit_parts(value) if value.flies else limit_parts(value),
         )
 
 
@@ -126,6 +146,18 @@ def limit_parts(value: KeycapsValue) -> list[Part]:
         ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
         (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
     ]  # fmt: skip
+
+
+def flight_limit_parts(value: KeycapsValue) -> list[Part]:
+    """Return what the keys ask for at most, of what flies: in its units where they are known, else in percent."""
+    speed, turn, climb = value.full
+    share, turning = value.throttle_limit / 100, value.steering_limit / 100
+    texts = (
+        f"{value.throttle_limit}%" if speed is None else f"{speed * share:.1f} m/s",
+        f"{value.steering_limit}%" if turn is None else f"{turn * turning:.0f}°/s",
+        "" if climb is None else f" up {climb * share * CLIMB_SHARE:.1f}",
+    )
+    return [("≤", style(DIM)), (" ".join(texts[:2]) + texts[2], style(TEXT))]
 
 
 def style_parts(value: KeycapsValue) -> list[Part]:

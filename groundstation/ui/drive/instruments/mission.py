@@ -10,7 +10,7 @@ from textual.strip import Strip
 from groundstation.snapshot import VehicleView
 from groundstation.snapshot.drive import MissionProgress
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, YELLOW, style
-from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
 ROOMY = 60
 """Cells from which on the number of the last item is shown."""
@@ -19,12 +19,40 @@ FAR = 9999.5
 """m from which on distances are in km."""
 
 
+class FlightFigures(msgspec.Struct, frozen=True):
+    """What a pilot looks at beside the altitude, rounded to what is drawn."""
+
+    speed: float | None
+    climb: float | None
+    bearing: int | None
+    """Direction home, degrees."""
+    battery: float | None
+    """s left at the rate of the last minutes."""
+
+    @classmethod
+    def from_vehicle(cls, vehicle: VehicleView) -> FlightFigures:
+        """Return the figures of a vehicle that flies."""
+        bearing = None
+        if vehicle.home is not None and vehicle.position is not None:
+            north, east = (home - here for home, here in zip(vehicle.home, vehicle.position, strict=True))
+            bearing = round(math.degrees(math.atan2(east, north))) % 360
+        speed, climb = finite_or_none(vehicle.speed_over_ground), finite_or_none(vehicle.climb)
+        return cls(
+            None if speed is None else round(speed, 1),
+            None if climb is None else round(climb, 1) + 0.0,
+            bearing,
+            None if vehicle.battery_left is None else round(vehicle.battery_left / 60),
+        )
+
+
 class MissionValue(msgspec.Struct, frozen=True):
     """The mission, with figures rounded to what is drawn."""
 
     mission: MissionProgress | None = None
     home: float | None = None
     """Distance from home, m."""
+    flight: FlightFigures | None = None
+    """Of what flies."""
 
     @classmethod
     def from_vehicle(cls, vehicle: VehicleView | None) -> MissionValue:
@@ -35,7 +63,25 @@ class MissionValue(msgspec.Struct, frozen=True):
         if vehicle.home is not None and vehicle.position is not None:
             home = math.dist(vehicle.home, vehicle.position)
         rounded = None if home is None or not math.isfinite(home) else round(home, 1)
-        return cls(_rounded(vehicle.mission) if vehicle.mission else None, rounded)
+        flight = FlightFigures.from_vehicle(vehicle) if vehicle.flies else None
+        return cls(_rounded(vehicle.mission) if vehicle.mission else None, rounded, flight)
+
+
+def _flight_parts(flight: FlightFigures, home: list[list[Part]], *, whole: bool) -> list[list[Part]]:
+    """Return climb, speed, the way home and the battery, the most important first. `whole`: with their names."""
+    speed = "-.-" if flight.speed is None else f"{flight.speed:.1f}"
+    climb = "-.-" if flight.climb is None else f"{flight.climb:+.1f}"
+    names = (" climb ", " m/s", "  speed ") if whole else (" up ", "", " ")
+    parts: list[list[Part]] = [
+        [(names[0], style(DIM)), (f"{climb}{names[1]}", style(TEXT, bold=True))],
+        [(names[2], style(DIM)), (f"{speed} m/s", style(TEXT))],
+        *home,
+    ]
+    if home and flight.bearing is not None:
+        parts[-1] = [*parts[-1], (f" {flight.bearing:03d}°", style(TEXT))]
+    if flight.battery is not None:
+        parts.append([("  battery ", style(DIM)), (f"{flight.battery:.0f} min", style(TEXT))])
+    return parts
 
 
 def _rounded(mission: MissionProgress) -> MissionProgress:
@@ -64,6 +110,10 @@ class MissionStrip(Instrument[MissionValue]):
     def _figures(self, *, whole: bool) -> list[list[Part]]:
         mission, home = self.value.mission, self.value.home
         away: list[list[Part]] = [] if home is None else [[("  home ", style(DIM)), (metres(home), style(TEXT))]]
+        if self.value.flight is not None:
+            away = _flight_parts(self.value.flight, away, whole=whole)
+            if mission is None:
+                return away
         if mission is None:
             return [[(" no mission", style(DIM))], *away]
         of = "" if mission.last is None or not whole else f" of {mission.last}"

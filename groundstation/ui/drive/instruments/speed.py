@@ -1,7 +1,8 @@
-"""Speed readout, in digits three rows high."""
+"""Readout in digits three rows high: the speed, of what flies the altitude above home."""
 
 from __future__ import annotations
 
+import msgspec
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
@@ -24,12 +25,31 @@ def speed_text(vehicle: VehicleView | None) -> str:
     return f"{max(-9.99, min(99.99, speed)):5.2f}".replace("-0.00", " 0.00")
 
 
-class SpeedReadout(Instrument[str]):
-    """Speed along the nose in m/s."""
+class Readout(msgspec.Struct, frozen=True):
+    """What the digits show."""
+
+    text: str
+    unit: str = " m/s"
+    name: str = ""
+    """Above the unit."""
+
+    @classmethod
+    def from_vehicle(cls, vehicle: VehicleView | None) -> Readout:
+        """Return the speed along the nose, or the altitude of what flies."""
+        if vehicle is None or not vehicle.flies:
+            return cls(speed_text(vehicle))
+        altitude = finite_or_none(vehicle.altitude)
+        text = " ---.-" if altitude is None else f"{max(-99.9, min(999.9, altitude)):5.1f}".replace("-0.0", " 0.0")
+        return cls(text[-5:], " m", " alt")
+
+
+class SpeedReadout(Instrument[Readout]):
+    """Speed along the nose in m/s, or altitude in m."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the digits in the middle of the height, the unit beside their last row."""
-        rows = ["".join(GLYPHS[character][row] for character in self.value) for row in range(3)]
-        look = style(DIM if "--" in self.value else GREEN, bold=True)
-        lines = [strip((row, look), (" m/s" if number == 2 else "", style(DIM))) for number, row in enumerate(rows)]
+        rows = ["".join(GLYPHS[character][row] for character in self.value.text) for row in range(3)]
+        look = style(DIM if "--" in self.value.text else GREEN, bold=True)
+        beside = (self.value.name, "", self.value.unit)
+        lines = [strip((row, look), (text, style(DIM))) for row, text in zip(rows, beside, strict=True)]
         return [strip((" " * width, style()))] * ((height - 3) // 2) + lines

@@ -29,10 +29,18 @@ class Bar(msgspec.Struct, frozen=True):
 
 
 def build_bars(snapshot: Snapshot) -> tuple[Bar, ...]:
-    """Return throttle and steering as sent, then the outputs that are known."""
+    """Return the axes as sent, then the outputs that are known."""
     operator, vehicle = snapshot.operator, snapshot.vehicle
     obeyed = vehicle.demand if vehicle is not None and vehicle.demand is not None else (None, None)
     outputs = vehicle.outputs if vehicle is not None else ()
+    if vehicle is not None and vehicle.flies:
+        return (
+            Bar("forward", AMBER, _percent(operator.throttle)),
+            Bar("turn", BLUE, _percent(operator.steering)),
+            Bar("side", AMBER, _percent(operator.side)),
+            Bar("climb", AMBER, _percent(operator.climb)),
+            *(Bar(output.name, GREEN, _percent(output.value)) for output in outputs),
+        )
     return (
         Bar("throttle", AMBER, _percent(operator.throttle), _percent(obeyed[0])),
         Bar("steering", BLUE, _percent(operator.steering), _percent(obeyed[1])),
