@@ -20,6 +20,7 @@ from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NE
 from groundstation.vehicles.requests.requests import RequestBook, RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
+from groundstation.verbs.control.driving import need_safe_flight
 from groundstation.verbs.control.stop_jobs import refusal_words
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import finish, need_driven
@@ -93,6 +94,7 @@ async def arm(session: VerbSession, wait: float, output: Output) -> RequestRepor
     need_driven(session.vehicle)
     if state.emergency_stop:
         raise VerbError(ExitCode.REFUSED, f"{state.name}: emergency stop; `mavhelm estop --clear` releases it first")
+    await need_safe_flight(session)
     await _wait_until_ready(session, wait, output)
     contact.operator.demanding = contact.other_driver is None
     try:

@@ -20,7 +20,6 @@ from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.vehicle import Disarm, SetMode
-from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.arguments import LONGEST_HOLD, finite
@@ -38,7 +37,7 @@ from groundstation.verbs.control.driving import (
     need_control,
 )
 from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, parse_script
-from groundstation.verbs.control.stop_jobs import EmergencyJob
+from groundstation.verbs.control.stop_jobs import emergency_job
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import finish, need_driven
 from groundstation.verbs.session.session import VerbSession
@@ -165,8 +164,6 @@ async def _carry_out(session: VerbSession, intent: Intent) -> None:
         report = await run_job(
             session,
             "emergency stop",
-            lambda number, now: EmergencyJob(
-                number, EmergencyLock(contact.state, now), StopTimes(now, session.sure_at, until)
-            ),
+            lambda number, now: emergency_job(number, contact.state, StopTimes(now, session.sure_at, until)),
         )
     need_accepted(report, session)

@@ -21,6 +21,8 @@ from groundstation.verbs.session.session import TOLD_WITHIN, VerbSession
 
 DISARM_WITHIN = 10.0
 """s for which the disarming at the end is repeated."""
+SETTINGS_WITHIN = 6.0
+"""s in which the settings are read that say what it does without a link: two rounds of requests."""
 FRAME_PARAMETER = "CA_AIRFRAME"
 """What decides on the axes of PX4."""
 
@@ -29,6 +31,7 @@ async def begin_driving(session: VerbSession, *, leave_hold: bool = True) -> Non
     """Take control, change HOLD to MANUAL unless told not to, and show neutral. Raises VerbError."""
     contact, state = session.contact, session.vehicle
     need_driven(session.vehicle)
+    await need_safe_flight(session)
     if state.drives_itself:
         raise VerbError(ExitCode.REFUSED, f"{state.name} drives itself ({state.mode}); `mavhelm stop` stops it")
     if state.has_rover_dialect and not state.driver:
@@ -42,6 +45,16 @@ async def begin_driving(session: VerbSession, *, leave_hold: bool = True) -> Non
         await session.wait_for(lambda: contact.in_control, TOLD_WITHIN)
     await asyncio.sleep(NEUTRAL_LEAD)
     need_control(session)
+
+
+async def need_safe_flight(session: VerbSession) -> None:
+    """Raise VerbError for what flies, is not in the air, and would fall or fly on without a link."""
+    state, fleet_contact = session.vehicle, session.contact.contact
+    if not state.model.flies or state.in_air:
+        return
+    await session.wait_for(lambda: not fleet_contact.take_off_refusal, SETTINGS_WITHIN)
+    if why := fleet_contact.take_off_refusal:
+        raise VerbError(ExitCode.REFUSED, f"{state.name}: no take-off: {why}")
 
 
 async def learn_frame(session: VerbSession) -> None:

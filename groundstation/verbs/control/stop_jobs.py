@@ -8,7 +8,14 @@ from dialects.enums import result_token
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.arming import CONFIRM_WITHIN
 from groundstation.station.driving.emergency import EmergencyLock
-from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, hold_stop
+from groundstation.vehicles.demand.repeated_stop import (
+    RepeatedStop,
+    StopEnd,
+    StopTimes,
+    disarm_stop,
+    hold_stop,
+    mode_stop,
+)
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.state.vehicle_state import VehicleState
@@ -24,12 +31,14 @@ class StopJob(msgspec.Struct):
 
     number: int
     stop: RepeatedStop
+    detail: str = ""
+    """What it has done, where that is not what the verb is called."""
 
     def tick(self, client: CommandClient, book: RequestBook, now: float) -> None:
         """Repeat, until the vehicle reports the effect."""
         self.stop.tick(client, now)
         if self.stop.end is StopEnd.DONE:
-            book.accept(self.number)
+            book.accept(self.number, self.detail)
         elif self.stop.end is StopEnd.NOT_DONE:
             book.refuse(self.number, f"accepted, but {self.stop.find_doubt(now)}", now, by_vehicle=False)
         elif self.stop.end is StopEnd.NO_ANSWER:
@@ -53,6 +62,16 @@ def hold_job(number: int, state: VehicleState, times: StopTimes) -> StopJob | Re
     if state.model.refusal or hold is None:
         return RefusedJob(number, f"{state.model.refusal}; `mode` takes a mode that it lists, `disarm` ends its power")
     return StopJob(number, hold)
+
+
+def emergency_job(number: int, state: VehicleState, times: StopTimes) -> EmergencyJob | StopJob:
+    """Return the emergency stop of this vehicle: what flies lands, and is disarmed on the ground."""
+    if not state.model.flies:
+        return EmergencyJob(number, EmergencyLock(state, times.began), times)
+    landing = None if state.is_landed(times.began) else mode_stop(state, state.model.land, times)
+    if landing is None or not state.armed:
+        return disarm_job(number, state, times)
+    return StopJob(number, landing, "it lands; its motors are cut by the key for that on Drive only")
 
 
 class RefusedJob(msgspec.Struct):

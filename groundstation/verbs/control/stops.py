@@ -13,7 +13,6 @@ from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.station.driving.arming import CONFIRM_WITHIN
-from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.vehicles.demand.blind_stop import BlindStop
 from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, STOP_VERBS, StopKind
@@ -23,7 +22,7 @@ from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.control.stop_jobs import EmergencyJob, disarm_job, hold_job
+from groundstation.verbs.control.stop_jobs import disarm_job, emergency_job, hold_job
 from groundstation.verbs.session.contact import Job
 from groundstation.verbs.session.core import ALONE_AFTER
 from groundstation.verbs.session.reports import finish
@@ -152,7 +151,7 @@ stop = _stop_all(STOP_VERBS["stop"], "holds", hold_job)
 _emergency_stop = _stop_all(
     STOP_VERBS["estop"],
     "has stopped",
-    lambda number, state, times: EmergencyJob(number, EmergencyLock(state, times.began), times),
+    emergency_job,
 )
 
 
