@@ -1,8 +1,7 @@
 """KINDS and DRIVEN: the kinds of vehicles by MAV_TYPE and MAV_AUTOPILOT, and those of them that keys drive.
 
 Only what neutral demands, HOLD and disarming stop is driven. Every other kind is shown, with one line why it is not
-driven. To drive another kind, give it a row in DRIVEN, and its axes (dialects/axes.py). PREPARED has the rows of
-multicopters: whoever moves them to DRIVEN switches them on.
+driven. To drive another kind, give it a row in DRIVEN, and its axes (dialects/axes.py).
 """
 
 from __future__ import annotations
@@ -209,21 +208,19 @@ _PX4_COPTER = VehicleKind(
 )  # fmt: skip
 
 DRIVEN: Mapping[tuple[str, int], VehicleKind] = {
-    (word, autopilot): msgspec.structs.replace(kind, word=word, axes=AXIS_MAPS[autopilot])
-    for word in ("rover", "boat")
-    for autopilot, kind in (
-        (Autopilot.GENERIC, _ROVER),
-        (Autopilot.ARDUPILOT, _ROVER),
-        (Autopilot.PX4, _PX4_ROVER),
-    )
-}
-"""Word of KINDS and MAV_AUTOPILOT -> the kinds that keys drive."""
-
-PREPARED: Mapping[tuple[str, int], VehicleKind] = {
+    **{
+        (word, autopilot): msgspec.structs.replace(kind, word=word, axes=AXIS_MAPS[autopilot])
+        for word in ("rover", "boat")
+        for autopilot, kind in (
+            (Autopilot.GENERIC, _ROVER),
+            (Autopilot.ARDUPILOT, _ROVER),
+            (Autopilot.PX4, _PX4_ROVER),
+        )
+    },
     ("copter", Autopilot.ARDUPILOT): _ARDU_COPTER,
     ("copter", Autopilot.PX4): _PX4_COPTER,
 }
-"""Rows for DRIVEN that are not in it: tests fly them (tests/flight.py), the programs only show them."""
+"""Word of KINDS and MAV_AUTOPILOT -> the kinds that keys drive."""
 
 
 class TypeRow(msgspec.Struct, frozen=True):

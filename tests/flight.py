@@ -5,11 +5,8 @@ pytestmark = pytest.mark.usefixtures("copters_fly")     # with `from tests.fligh
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 
-from dialects import kinds
 from dialects.enums import Command
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, SetMode, TakeOff
@@ -18,15 +15,6 @@ from tests.groundstation.cockpits import Cockpit
 
 HEIGHT = 5.0
 """m, of the take-off."""
-
-
-@pytest.fixture
-def copters_fly(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Drive what is prepared, in this process."""
-    monkeypatch.setattr(kinds, "DRIVEN", {**kinds.DRIVEN, **kinds.PREPARED})
-    kinds.find_kind.cache_clear()
-    yield
-    kinds.find_kind.cache_clear()
 
 
 class FlightCockpit(Cockpit):

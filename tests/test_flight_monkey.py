@@ -21,11 +21,8 @@ from groundstation.intents.session import Quit, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Disarm, ReleaseControl, SetMode, TakeOff
 from tests.fakes.flying import THRUST, ArduCopter, FlyingVehicle, Px4Quad
-from tests.flight import copters_fly, hovering_cockpit
+from tests.flight import hovering_cockpit
 from tests.world import World
-
-__all__ = ["copters_fly"]
-pytestmark = pytest.mark.usefixtures("copters_fly")
 
 NO_DESCENT = 400
 LEASE = 0.3

@@ -19,11 +19,8 @@ from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, CutMotors, Disarm, ReleaseControl, SetMode, TakeOff
 from groundstation.vehicles.demand.demand_stream import FINAL_NEUTRALS
 from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad
-from tests.flight import FlightCockpit, copters_fly, hovering_cockpit
+from tests.flight import FlightCockpit, hovering_cockpit
 from tests.groundstation.cockpits import Cockpit
-
-__all__ = ["copters_fly"]
-pytestmark = pytest.mark.usefixtures("copters_fly")
 
 Build = Callable[[], FlyingVehicle]
 COPTERS = pytest.mark.parametrize("build", [ArduCopter, Px4Quad], ids=["arducopter", "px4"])
@@ -315,6 +312,11 @@ def test_the_last_look_refuses_what_takes_its_lift() -> None:
         m.ManualControl(0, 0, 0, 0, 0, 0),
         m.RcChannelsOverride(*to, 1500, 1500, 1000, 1500, 0, 0, 0, 0),
         m.SetAttitudeTarget(0, *to, 0, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0, 0.0),
+        m.SetPositionTargetLocalNed(0, *to, 1, 0x0DC7, 0.0, 0.0, 0.0, 1.0, *[0.0] * 7),
+        m.CommandInt(*to, 6, Command.DO_REPOSITION, 0, 0, -1, 1, 0, 0, 1, 1, 0),
+        m.CommandLong(*to, Command.MISSION_START, 0, 0, 0, 0, 0, 0, 0, 0),
+        m.CommandLong(*to, Command.DO_MOTOR_TEST, 0, 1, 0, 10, 1, 1, 0, 0),
+        m.MissionItemInt(*to, 0, 3, 16, 2, 1, 0, 0, 0, 0, 1, 1, 0),
         m.SetMode(1, 1, 0),
         m.CommandLong(*to, Command.DO_SET_MODE, 0, 1, 0, 0, 0, 0, 0, 0),
     ]
@@ -322,6 +324,8 @@ def test_the_last_look_refuses_what_takes_its_lift() -> None:
         m.ManualControl(1, 0, 0, 500, 0, 0),
         m.ManualControl(1, 600, 0, 320, 0, 0),
         m.RcChannelsOverride(*to, *[0] * 8),
+        m.SetPositionTargetLocalNed(0, *to, 1, 0x0DC7, *[0.0] * 11),
+        m.CommandLong(*to, Command.NAV_RETURN_TO_LAUNCH, 0, 0, 0, 0, 0, 0, 0, 0),
         m.CommandLong(*to, Command.DO_SET_MODE, 0, 1, 9, 0, 0, 0, 0, 0),
         m.CommandLong(*to, Command.COMPONENT_ARM_DISARM, 0, 0, 0, 0, 0, 0, 0, 0),
     ]

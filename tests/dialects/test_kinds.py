@@ -8,7 +8,7 @@ from pymavlink import mavutil
 from dialects import rover
 from dialects.axes import axis_map
 from dialects.enums import Autopilot, type_name
-from dialects.kinds import PREPARED, find_kind
+from dialects.kinds import find_kind
 from dialects.mode_tables import ARDUPILOT, PX4
 
 ARDU, PX, OURS = Autopilot.ARDUPILOT, Autopilot.PX4, Autopilot.GENERIC
@@ -16,10 +16,15 @@ ROVER, BOAT, COPTER = rover.MAV_TYPE_GROUND_ROVER, rover.MAV_TYPE_SURFACE_BOAT, 
 TYPES = [number for name, number in vars(rover).items() if name.startswith("MAV_TYPE_") and name != "MAV_TYPE_ENUM_END"]
 
 
-def test_only_rovers_and_boats_of_known_autopilots_are_driven() -> None:
+MULTICOPTERS = (2, 13, 14, 15, 29, 35, 43)
+
+
+def test_only_rovers_boats_and_multicopters_are_driven() -> None:
     assert len(TYPES) > 40
     driven = {(kind, autopilot) for kind in TYPES for autopilot in range(21) if find_kind(autopilot, kind).is_driven}
-    assert driven == {(kind, autopilot) for kind in (ROVER, BOAT) for autopilot in (ARDU, PX, OURS)}
+    ground = {(kind, autopilot) for kind in (ROVER, BOAT) for autopilot in (ARDU, PX, OURS)}
+    assert driven == ground | {(kind, autopilot) for kind in MULTICOPTERS for autopilot in (ARDU, PX) if kind in TYPES}
+    assert not find_kind(OURS, ROVER).flies
 
 
 @pytest.mark.parametrize("kind", TYPES, ids=type_name)
@@ -82,7 +87,8 @@ def test_numbers_of_modes() -> None:
     assert find_kind(PX, ROVER).number_of("auto_loiter") == 0x03040000
     assert find_kind(PX, ROVER).number_of("Position") == 0x00030000
     assert find_kind(PX, ROVER).number_of("CIRCLE") is None
-    assert find_kind(ARDU, COPTER).number_of("HOLD") is None
+    assert find_kind(ARDU, COPTER).number_of("HOLD") == 17
+    assert find_kind(ARDU, 4).number_of("HOLD") is None
 
 
 def test_what_may_be_selected_without_a_list() -> None:
@@ -111,7 +117,7 @@ def test_the_axes_of_a_kind_are_those_of_its_types() -> None:
 
 @pytest.mark.parametrize("autopilot", [ARDU, PX])
 def test_copters_are_flown_only_where_altitude_is_held(autopilot: int) -> None:
-    copter = PREPARED["copter", autopilot]
+    copter = find_kind(autopilot, COPTER)
     names = set(copter.modes.values())
     assert {copter.drive_mode, copter.land, copter.home, *copter.thrust, *copter.hidden} <= names
     assert copter.drive_mode in copter.keys

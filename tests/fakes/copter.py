@@ -1,4 +1,4 @@
-"""A copter as ArduCopter was measured: STABILIZE turns the throttle of MANUAL_CONTROL into thrust."""
+"""A helicopter, which no key drives, as ArduCopter was measured: STABILIZE makes thrust of the throttle."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dialects.mode_tables import COPTER
 from link.core import Received
 from tests.fakes.vehicle import AnyCommand, FakeVehicle
 
-QUADROTOR = 2
+HELICOPTER = 4
 HOVER = 500
 """z of MANUAL_CONTROL that carries it."""
 CLIMB = 5.4 / 3.0 / 100
@@ -24,7 +24,7 @@ LISTED = (0, 2, 3, 4, 5, 6, 9, 16)
 class FakeCopter(FakeVehicle):
     """Altitude is ground truth. In the air it refuses to disarm unless that is forced, and then it falls."""
 
-    def __init__(self, *, autopilot: int = Autopilot.ARDUPILOT, kind: int = QUADROTOR, lists: bool = True) -> None:
+    def __init__(self, *, autopilot: int = Autopilot.ARDUPILOT, kind: int = HELICOPTER, lists: bool = True) -> None:
         super().__init__(autopilot=autopilot, driver=None, mode=0)
         self.kind = kind
         self.lists = lists

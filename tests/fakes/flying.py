@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, LandedState, ModeFlag, Result
-from dialects.kinds import PREPARED
+from dialects.kinds import DRIVEN
 from dialects.messages import INVALID_AXIS, boot_ms
 from link.core import Received
 from tests.fakes.params import INT32, Param
@@ -51,7 +51,7 @@ class FlyingVehicle(FakeVehicle):
     """What both have in common: the motion, take-off, landing, arming, reports."""
 
     def __init__(self, autopilot: int, mode: str, params: dict[str, float], whole: tuple[str, ...] = ()) -> None:
-        self.table = PREPARED["copter", Autopilot(autopilot)].modes
+        self.table = DRIVEN["copter", Autopilot(autopilot)].modes
         super().__init__(autopilot=autopilot, driver=None, mode=self._number(mode))
         self.kind = QUADROTOR
         for name, value in params.items():

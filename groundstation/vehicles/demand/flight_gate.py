@@ -11,11 +11,21 @@ from dialects import rover
 from dialects.axes import FULL_DEFLECTION, HOVER, LOWEST_THROTTLE
 from dialects.messages import UINT16_MAX
 from dialects.modes import custom_mode_of
+from groundstation.vehicles.demand.demand_neutrals import VELOCITY_ONLY
+from groundstation.vehicles.demand.drive_gate import GUIDED_ITEMS, MOVING_COMMANDS
 from groundstation.vehicles.state.vehicle_state import VehicleState
 
 _COMMANDS = (m.CommandLong, m.CommandInt)
-_CHECKED = frozenset((*_COMMANDS, m.ManualControl, m.RcChannelsOverride, m.SetAttitudeTarget, m.SetMode))
-_TAKE_OFFS = (rover.MAV_CMD_NAV_TAKEOFF, rover.MAV_CMD_NAV_TAKEOFF_LOCAL, rover.MAV_CMD_MISSION_START)
+_ITEMS = (m.MissionItem, m.MissionItemInt)
+_POSITIONS = (m.SetPositionTargetLocalNed, m.SetPositionTargetGlobalInt)
+_CHECKED = frozenset(
+    (*_COMMANDS, *_ITEMS, *_POSITIONS, m.ManualControl, m.RcChannelsOverride, m.SetAttitudeTarget, m.SetMode)
+)
+_TAKE_OFFS = (rover.MAV_CMD_NAV_TAKEOFF, rover.MAV_CMD_NAV_TAKEOFF_LOCAL)
+_NOT_BY_US = MOVING_COMMANDS - {
+    rover.MAV_CMD_COMPONENT_ARM_DISARM, rover.MAV_CMD_DO_PAUSE_CONTINUE, rover.MAV_CMD_CONDITION_YAW, *_TAKE_OFFS,
+}  # fmt: skip
+"""Commands that move it, made for what stays on the ground: their altitude is 0, and motor tests turn propellers."""
 
 
 def is_checked(message: m.Message) -> bool:
@@ -38,10 +48,18 @@ def flight_refusal(message: m.Message, state: VehicleState, unsafe: str) -> str 
         return None if released else "RC_CHANNELS_OVERRIDE is not sent to what flies; send MANUAL_CONTROL"
     if isinstance(message, m.SetAttitudeTarget):
         return "SET_ATTITUDE_TARGET is not sent to what flies: its thrust may let it fall"
+    if isinstance(message, _POSITIONS):
+        return None if _is_hover(message) else f"{message.get_type()} is not sent to what flies: keys fly it"
+    if isinstance(message, _ITEMS):
+        return "a place to fly to is not sent: keys fly it" if message.current in GUIDED_ITEMS else None
     if isinstance(message, m.SetMode):
         return _mode_refusal(message.custom_mode, state)
-    if not isinstance(message, _COMMANDS):
-        return None
+    return _command_refusal(message, state, unsafe) if isinstance(message, _COMMANDS) else None
+
+
+def _command_refusal(message: m.CommandLong | m.CommandInt, state: VehicleState, unsafe: str) -> str | None:
+    if message.command in _NOT_BY_US:
+        return "this command is not sent to what flies: keys fly it"
     if message.command == rover.MAV_CMD_DO_SET_MODE:
         number = custom_mode_of(message.param1, message.param2, message.param3, state.autopilot)
         return _mode_refusal(number, state)
@@ -59,6 +77,11 @@ def _demand_refusal(message: m.ManualControl, state: VehicleState) -> str | None
     if not LOWEST_THROTTLE <= message.z <= FULL_DEFLECTION:
         return f"z {message.z} is not {LOWEST_THROTTLE} to {FULL_DEFLECTION}: it would sink too fast"
     return None if max(map(abs, axes)) <= FULL_DEFLECTION else "an axis is not -1000 to 1000"
+
+
+def _is_hover(message: m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt) -> bool:
+    """Return whether this is the neutral of demand_neutrals.py: velocity 0, and nothing else counts."""
+    return message.type_mask == VELOCITY_ONLY and not any((message.vx, message.vy, message.vz))
 
 
 def _mode_refusal(number: int | None, state: VehicleState) -> str | None:

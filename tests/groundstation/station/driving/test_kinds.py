@@ -1,4 +1,4 @@
-"""Nothing is driven that neutral, HOLD and disarming do not stop: a copter is shown, and nothing arms or moves it."""
+"""Nothing is driven that neutral, HOLD and disarming do not stop: a helicopter is shown, and nothing moves it."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, Disarm, RequestControl, SetMode
 from groundstation.station.driving.stop_questions import CONFIRM_AFTER, CONFIRM_WITHIN
 from link.core import Peer, Received
-from tests.fakes.copter import FORCED, QUADROTOR, FakeCopter
+from tests.fakes.copter import FORCED, HELICOPTER, FakeCopter
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, Cockpit, cockpit_with
 
-WHY = "keys do not drive a copter: a released key lets it fall"
+WHY = "keys do not drive a helicopter: a released key lets it fall"
 OTHER_KINDS = [
-    (3, QUADROTOR),
-    (12, QUADROTOR),
-    (0, QUADROTOR),
+    (3, HELICOPTER),
+    (12, HELICOPTER),
+    (0, HELICOPTER),
     (3, 1),
     (3, 12),
     (3, 0),
@@ -83,10 +83,10 @@ def test_no_key_arms_or_moves_another_kind(autopilot: int, kind: int) -> None:
 @pytest.mark.parametrize(
     ("intent", "text"),
     [
-        (Arm(held=1.0), "arm: ArduPilot copter 1: "),
-        (SetMode(mode="HOLD"), "mode HOLD: ArduPilot copter 1: "),
-        (SetMode(mode="MANUAL"), "mode MANUAL: ArduPilot copter 1: "),
-        (RequestControl(), "request control: ArduPilot copter 1: "),
+        (Arm(held=1.0), "arm: ArduPilot helicopter 1: "),
+        (SetMode(mode="HOLD"), "mode HOLD: ArduPilot helicopter 1: "),
+        (SetMode(mode="MANUAL"), "mode MANUAL: ArduPilot helicopter 1: "),
+        (RequestControl(), "request control: ArduPilot helicopter 1: "),
     ],
     ids=["arm", "hold", "manual", "control"],
 )

@@ -12,9 +12,9 @@ from tests.fakes.services import ARDUPILOT, PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 
 Capture = pytest.CaptureFixture[str]
-WHY = "keys do not drive a copter: a released key lets it fall"
+WHY = "keys do not drive a helicopter: a released key lets it fall"
 LISTED = [("STAB", 0, 0), ("ALTH", 2, 0), ("AUTO", 3, 0), ("GUID", 4, 0), ("LOIT", 5, 0), ("RTL", 6, 0), ("LAND", 9, 0)]
-QUADROTOR = 2
+HELICOPTER = 4
 MOVING = {22, 176, 178, 192, 209, 300, 310, 400}
 
 
@@ -25,7 +25,7 @@ def verb(capsys: Capture, vehicle: ForeignVehicle, *arguments: str) -> VerbRun:
 @contextmanager
 def copter(autopilot: int = ARDUPILOT, *, armed: bool = False) -> Iterator[ForeignVehicle]:
     with foreign_vehicle(autopilot) as vehicle:
-        vehicle.kind, vehicle.modes, vehicle.armed = QUADROTOR, LISTED, armed
+        vehicle.kind, vehicle.modes, vehicle.armed = HELICOPTER, LISTED, armed
         vehicle.params["SERVO1_FUNCTION"] = 33.0
         yield vehicle
 
