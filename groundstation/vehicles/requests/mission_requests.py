@@ -33,6 +33,9 @@ _AUTO: dict[int, str] = {Autopilot.ARDUPILOT: Mode.AUTO.name, Autopilot.PX4: "AU
 """MAV_AUTOPILOT -> the mode that drives the mission; HOLD pauses it."""
 
 
+FLIES = "missions of what flies are not started here: their altitudes would be those of a rover"
+
+
 class MissionRequests:
     """Requests to one vehicle; `autopilot` returns its MAV_AUTOPILOT, `model` its kind."""
 
@@ -54,7 +57,7 @@ class MissionRequests:
 
     def start(self, number: int, now: float) -> None:
         """Start the mission with the current item, or go on where it was paused."""
-        auto, refusal = _AUTO.get(self._autopilot()), self._model().refusal
+        auto, refusal = _AUTO.get(self._autopilot()), self._model().refusal or (FLIES if self._model().flies else "")
         if refusal:
             if self._book.begin(number, "start the mission"):
                 self._book.refuse(number, refusal, now, by_vehicle=False)
