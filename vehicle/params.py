@@ -111,8 +111,20 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("FENCE_ACTION", 2, 0, 2, "", "Fence breach: 0 report only, 1 RTL, 2 HOLD", safety=True, whole=True),
     Parameter("FENCE_RADIUS", 100, 1, 10000, "m", "Radius of the circle around home", safety=True),
     Parameter("FENCE_MARGIN", 1, 0, 10, "m", "Autonomous modes stop this far before the fence", safety=True),
-    Parameter("AVOID_ENABLE", 1, 0, 1, "", "1 stops autonomous modes before the fence (FENCE_MARGIN)",
-              safety=True, whole=True),
+    Parameter("AVOID_ENABLE", 3, 0, 3, "", "Bits: 1 stops autonomous modes before the fence (FENCE_MARGIN), 2 stops "
+              "all modes before obstacles (AVOID_MARGIN)", safety=True, whole=True),
+    Parameter("AVOID_MARGIN", 0.3, 0.05, 10, "m", "Distance to keep from obstacles", safety=True),
+    Parameter("AVOID_ACCEL_MAX", 3, 0, 9, "m/s/s", "Braking before obstacles, at most as MOT_DECEL; 0: as MOT_DECEL",
+              safety=True),
+    Parameter("AVOID_LOST_SPD", 0.2, 0, 1, "m/s", "Speed toward where a range sensor has failed", safety=True),
+    Parameter("PRX1_TYPE", 0, 0, 2, "", "Obstacles from companions: 0 none, 2 by DISTANCE_SENSOR and "
+              "OBSTACLE_DISTANCE, which must arrive", safety=True, whole=True),
+    Parameter("PRX1_ORIENT", 0, 0, 1, "", "OBSTACLE_DISTANCE: 0 sensor upright, 1 upside down", safety=True,
+              whole=True),
+    Parameter("PRX1_YAW_CORR", 0, -180, 180, "deg", "OBSTACLE_DISTANCE: turn its directions to the right", safety=True),
+    Parameter("PRX1_MIN", 0, 0, 10, "m", "OBSTACLE_DISTANCE: ignore what is nearer, as parts of the rover; 0: nothing",
+              safety=True),
+    Parameter("PRX1_MAX", 0, 0, 100, "m", "OBSTACLE_DISTANCE: ignore what is farther; 0: nothing", safety=True),
     # Autonomous modes
     Parameter("WP_SPEED", 0.8, 0.1, 30, "m/s", "Speed along a path; SPEED_MAX is never exceeded"),
     Parameter("WP_RADIUS", 0.5, 0.1, 20, "m", "A waypoint without a stop is reached at this distance"),
@@ -167,6 +179,8 @@ TABLE: tuple[Parameter, ...] = (
     # Shape
     Parameter("SPEED_MAX", 1.5, 0.1, 30, "m/s", "Top speed", safety=True),
     Parameter("TRACK_WIDTH", 0.35, 0.05, 5, "m", "Distance between left and right wheels"),
+    Parameter("BODY_LENGTH", 0.4, 0.05, 10, "m", "Length of the rover with all that sticks out", safety=True),
+    Parameter("BODY_WIDTH", 0.4, 0.05, 10, "m", "Width of the rover with all that sticks out", safety=True),
     Parameter("WHEELBASE", 0.3, 0.05, 5, "m", "Distance between front and rear axles"),
 )  # fmt: skip
 

@@ -5,6 +5,8 @@ The estimator (vehicle/navigation/estimator.py) decides which of them it uses.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import msgspec
 
 
@@ -33,6 +35,41 @@ class SensorFault(msgspec.Struct, frozen=True):
     """Its name: battery, gps."""
     reason: str
     """One line."""
+
+
+class Cone(NamedTuple):
+    """One direction of a range sensor. m and rad, clockwise from the nose."""
+
+    bearing: float
+    half_width: float
+    distance: float | None
+    """To the nearest obstacle; `far` if there is none in range, 0 if it is nearer than the sensor can measure.
+
+    None: not measured."""
+    far: float
+    """Largest distance that it measures."""
+    central: bool = False
+    """The distance is from the centre of the rover, else from its outline."""
+
+    @property
+    def is_clear(self) -> bool:
+        """There is nothing in range."""
+        return self.distance is not None and self.distance >= self.far
+
+
+Scan = tuple[Cone, ...]
+"""What one message reports."""
+
+
+class RangeReading(NamedTuple):
+    """The newest scan of a range sensor of this computer."""
+
+    sensor: str
+    """Its name in rover.toml."""
+    scan: Scan
+    """Where it looks; without distances until it has measured."""
+    at: float | None
+    """When it was measured; None before the first time."""
 
 
 class Readings(msgspec.Struct, frozen=True):
@@ -64,6 +101,8 @@ class Readings(msgspec.Struct, frozen=True):
     """0..1"""
     wheel_speeds: tuple[float, ...] = ()
     """m/s of each wheel, in motor order."""
+    ranges: tuple[RangeReading, ...] = ()
+    """Range sensors, all that are configured."""
     computer: ComputerReadings | None = None
     configured: tuple[str, ...] = ()
     """Names of the configured sensors, whether they respond or not, as in SensorFault."""

@@ -28,9 +28,11 @@ from vehicle.modes import MODES
 from vehicle.outbox import Outbox
 from vehicle.pace import PERIOD, REST_PERIOD, ROUTINE, Activity, Pace
 from vehicle.params import Params
+from vehicle.proximity.obstacles import Obstacles
+from vehicle.proximity.override import ObstacleOverride
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety.failsafe import FailsafeAction
-from vehicle.safety.health_notices import HealthNotices, fence_notices, sensor_notices
+from vehicle.safety.health_notices import HealthNotices, fence_notices, obstacle_notices, sensor_notices
 from vehicle.safety.monitor import SafetyMonitor
 from vehicle.safety.state_machine import Safety
 from vehicle.safety.states import SafetyState
@@ -90,6 +92,9 @@ class Rover:
         self._control = Control(params, texts, system=int(params["MAV_SYSID"]), boot=now)
         self._drive = Drive(params, now)
         self._freshness = FreshnessLimit(params)
+        self._obstacles = Obstacles(params, self._drive.kind)
+        self._override = ObstacleOverride(self._obstacles, texts)
+        self._moved_at = now
         self._navigator = Navigator(params, self._drive.kind)
         self._safety = Safety(params, self._control, texts, now, self._navigator)
         self._monitor = SafetyMonitor(params, self._safety, self._control, self._texts, now)
@@ -204,7 +209,9 @@ class Rover:
         self._navigator.sense(readings, now)
         self._safety.battery.update(readings.battery_voltage, now, expected="battery" in readings.configured)
         self._safety.computer.update(readings.computer, now)
-        self._health_notices.update(sensor_notices(readings) | fence_notices(self._navigator.fence_avoidance), now)
+        self._avoid(now)
+        notices = sensor_notices(readings) | fence_notices(self._navigator.fence_avoidance)
+        self._health_notices.update(notices | obstacle_notices(self._obstacles.faults), now)
 
     def update_estop_input(self, reason: str | None, now: float) -> None:
         """Set the state of the emergency-stop input each cycle: why it stops the rover, or None while it is closed."""
@@ -233,7 +240,7 @@ class Rover:
         if self._actuator_test.running or self._cycles.is_due(now) or self._monitor.is_late(now):
             return False
         if self._safety.armed:
-            if self._navigator.fence_avoidance.fence.enabled or not self._steady.lasts(now):
+            if self._obstacles.active or self._navigator.fence_avoidance.fence.enabled or not self._steady.lasts(now):
                 return False
             self._update_outputs(now, late=False)
             self._outbox.note_short_cycle(now)
@@ -261,6 +268,7 @@ class Rover:
             safety=self._safety,
             control=self._control,
             navigator=self._navigator,
+            obstacles=self._obstacles,
             statustext=self._texts,
             access=CommandAccess(self._control.ownership, self._texts),
             mixer=self._drive.mixer,
@@ -314,10 +322,24 @@ class Rover:
         limited = self._safety.failsafes.lasting_action(now) >= _LIMIT
         driven = clearance.permit is DRIVE
         fresh_speed = self._limit_by_freshness(now, driven=driven)
-        self._drive.update(self._demand_in_use(now), clearance, limited=limited, now=now, fresh_speed=fresh_speed)
+        self._drive.update(
+            self._demand_in_use(now), clearance, limited=limited, now=now, fresh_speed=fresh_speed,
+            avoid=self._obstacles.share if self._obstacles.active else None,
+        )  # fmt: skip
         self._steady.note_outputs(self._drive.wheels, driven=driven, now=now)
         if not driven:
             self._navigator.reset_controller()
+
+    def _avoid(self, now: float) -> None:
+        """Carry what range sensors see along with the rover, and find out which of them have failed."""
+        dt, self._moved_at = now - self._moved_at, now
+        self._obstacles.sense(self._readings.ranges)
+        if not self._obstacles.active:
+            return
+        estimate, armed = self._navigator.estimate, self._safety.armed
+        demand = self._control.demand if armed and not self._control.is_demand_stale(now) else None
+        self._override.update(demand, now)
+        self._obstacles.move(self._drive.wheels, estimate.speed, estimate.yaw_rate, now, dt, armed=armed)
 
     def _limit_by_freshness(self, now: float, *, driven: bool) -> float:
         """Return the m/s that the age of the commands allows; infinite where no command is needed."""
@@ -367,6 +389,7 @@ class Rover:
             drive=self._drive,
             fresh_speed=self._freshness.speed,
             navigator=self._navigator,
+            obstacles=self._obstacles,
             logs=self._dispatcher.logbook.is_healthy,
             host=self._host,
             rack=self._rack,

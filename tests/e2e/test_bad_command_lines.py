@@ -251,6 +251,7 @@ def test_options_of_the_ground_station(words: str, names: list[str], fork_in_ter
         ("--sim --log-file /nowhere/vehicle.log", ["/nowhere/vehicle.log", "No such file"]),
         ("--sim --motor-log /nowhere/motors.log", ["/nowhere/motors.log", "No such file"]),
         ("--sim --sim-truth /nowhere/truth.log", ["/nowhere/truth.log", "No such file"]),
+        ("--sim --walls none.geojson", ["none.geojson", "No such file"]),
         ("--motors nonsense udpout:127.0.0.1:14550", ["'nonsense'", "simulated", "module:Class"]),
         ("--motors no_such_module:Motors udpout:127.0.0.1:14550", ["no_such_module"]),
         ("--motors os:Nothing udpout:127.0.0.1:14550", ["os:Nothing"]),

@@ -112,6 +112,7 @@ def _build_settings(options: argparse.Namespace, config: Config, parser: Command
         battery=1.0 if options.sim_battery is None else options.sim_battery,
         seed=1 if options.sim_seed is None else options.sim_seed,
         truth=options.sim_truth,
+        walls=options.walls,
         faults=_build_faults(options, config, parser),
     )
     pinned = dict(config.params)

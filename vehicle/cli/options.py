@@ -196,7 +196,9 @@ SIMULATION_OPTIONS: dict[str, dict[str, Any]] = {
     "--sim-battery": {"metavar": "CHARGE", "type": _charge, "help": "charge of its battery, 0 to 1 (default 1)"},
     "--sim-seed": {"metavar": "N", "type": int, "help": "seed of noise, --loss and --jitter (default 1)"},
     "--sim-truth": {"metavar": "FILE",
-                    "help": "append its true position and speed: CLOCK_MONOTONIC ns, m, m, rad, m/s"},
+                    "help": "append its true position and speed: CLOCK_MONOTONIC ns, m, m, rad, m/s; with --walls "
+                    "also the m to the nearest one, 0 in contact"},
+    "--walls": {"metavar": "FILE", "help": "walls around it (GeoJSON), and a sensor that sees them"},
     "--loss": {"metavar": "PERCENT", "type": _between(0, 100, "a loss in percent"),
                "help": "lose so many of the frames of its links, each way"},
     "--delay": {"metavar": "MS", "type": _between(0, 60_000, "a delay in ms"), "help": "deliver frames late, each way"},

@@ -12,6 +12,7 @@ from vehicle.commands.access import CommandAccess
 from vehicle.drive.control import Control
 from vehicle.drive.mixer import Mixer
 from vehicle.params import Params
+from vehicle.proximity.obstacles import Obstacles
 from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 from vehicle.telemetry.link_status import LinkStatusReporter
@@ -31,6 +32,7 @@ class Context(msgspec.Struct, frozen=True):
     navigator: Navigator
     statustext: StatusTextQueue
     access: CommandAccess
+    obstacles: Obstacles
     mixer: Mixer
     """Motors and servo outputs of this kind of drive."""
     pacer: BulkPacer

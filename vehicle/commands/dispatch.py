@@ -27,6 +27,7 @@ from vehicle.commands.origin import OriginCommands
 from vehicle.commands.params import ParamService
 from vehicle.commands.preflight import PreflightCommands
 from vehicle.commands.preflight_storage import PreflightStorage
+from vehicle.commands.proximity import ProximityMessages
 from vehicle.commands.reboot import RebootRequest
 from vehicle.commands.requests import MessageRequestHandler
 from vehicle.commands.signing import Pairing, SigningCommands
@@ -88,6 +89,7 @@ class Dispatcher:
             *arming.messages(),
             *origin.messages(),
             *self.signing.messages(),
+            *ProximityMessages(context).messages(),
             *self._params.messages(),
             *self._mission.messages(),
             *self._files.messages(),

@@ -28,6 +28,8 @@ class Simulation(msgspec.Struct, frozen=True):
     """Seed of the sensor noise."""
     truth: str | None = None
     """File to which the true position is appended."""
+    walls: str | None = None
+    """GeoJSON file of walls; None: there are none, and no range sensor."""
     faults: FaultSettings | None = None
     """Faults of its links; None: they work."""
 

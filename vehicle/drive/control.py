@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from dialects.axes import FULL_DEFLECTION
-from dialects.enums import DriveType, Severity
+from dialects.enums import DriveType, OperatorFlag, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from link.core import Received
 from link.signing.role import SigningRole
@@ -148,6 +148,8 @@ class Control:
         if good:
             self.presence.handle(message, now - self._boot, now)
         demand = self._parse(received, message, now, self._params["OPR_ECHO_MAX"] - proof.age)
+        if demand is not None and message.flags & OperatorFlag.OVERRIDE:
+            demand = demand._replace(override=True)
         if demand is None or session.order(proof) is not DemandOrder.NEWEST:
             return False
         used = self._use(demand, now) if good else self._use_old(demand, now)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from dialects.enums import DriveLimit, DriveType
 from vehicle.drive.demand import Demand
@@ -13,6 +13,8 @@ from vehicle.drive.output_scaling import build_output_scaling, is_unscaled, scal
 from vehicle.drive.slew import Slew, SlewLimits
 from vehicle.params import Params
 
+ShareOfWheels = Callable[[Sequence[float], Sequence[float]], tuple[float, int]]
+"""Takes wanted and present values of the wheels; returns the allowed share of the wanted ones, and a DriveLimit."""
 SATURATED, SPEED, SLEW, REVERSE_DELAY, FRESHNESS = (
     each.value
     for each in (
@@ -39,6 +41,8 @@ class Drive:
         self._params = params
         self._slews = [Slew() for _ in self.mixer.motors]
         self._driven = self.mixer.driven_count
+        self.avoiding_speed = math.inf
+        """m/s that are allowed before obstacles now; infinite while nothing is limited."""
         self._gate = Gate(len(self._slews), self._driven)
         self._load_params()
         self._wanted: tuple[object, ...] = ()
@@ -74,18 +78,22 @@ class Drive:
     @property
     def travel(self) -> float:
         """Share of the top speed at which the wheels shall move the rover now, whatever the direction."""
-        wheels = self._gate.wheels
+        return self._travel_of(self._gate.wheels)
+
+    def _travel_of(self, wheels: Sequence[float]) -> float:
         if self._driven < len(wheels):
             return abs(wheels[0])
         ahead = sum(wheels) / len(wheels)
         return math.hypot(ahead, sum(self._aside(wheels))) if self.mixer.sideways else abs(ahead)
 
     def update(
-        self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float, fresh_speed: float = math.inf
-    ) -> Outputs:
+        self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float, fresh_speed: float = math.inf,
+        avoid: ShareOfWheels | None = None,
+    ) -> Outputs:  # fmt: skip
         """Return the outputs of this moment.
 
         `limited`: a failsafe limits the throttle to one half. `fresh_speed`: m/s that the age of the commands allows.
+        `avoid` limits the wheels before obstacles.
         """
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
@@ -99,9 +107,11 @@ class Drive:
                 slew.reset()
         self._tested = motor
         wanted = demand if permit is DRIVE else None
-        wheels = self._ramped(
-            self._targets(wanted, limited, fresh_speed) if trial is None else self._tested_motor(trial), dt
-        )
+        if trial is None:
+            targets = self._avoiding(self._targets(wanted, limited, fresh_speed), avoid)
+        else:
+            targets = self._tested_motor(trial)
+        wheels = self._ramped(targets, dt)
         motors = wheels if self._unscaled else scale_outputs(wheels, self._driven, self._scalings)
         self.outputs = self._gate.filter(wheels, motors, permit, self._fall_time, now, trial)
         if self.wheels != wheels:  # rejected: no ramp continues from there
@@ -139,6 +149,20 @@ class Drive:
             return mixed.throttles
         share = pivot_scale(throttle, steering, sideways, self._pivot)
         return tuple([share * value for value in mixed.throttles])
+
+    def _avoiding(self, targets: tuple[float, ...], avoid: ShareOfWheels | None) -> tuple[float, ...]:
+        """Return the wanted values, made smaller before obstacles: never larger, and never in another direction."""
+        self.avoiding_speed = math.inf
+        if avoid is None or not any(targets):
+            return targets
+        share, reason = avoid(targets, self._gate.wheels)
+        if not share < 1.0:  # also a share that is not a number: values that are not go to the gate as they are
+            return targets
+        self._limits |= reason
+        share = max(0.0, share)
+        slower = tuple(share * value if at < self._driven else value for at, value in enumerate(targets))
+        self.avoiding_speed = self._travel_of(slower) * self._top
+        return slower
 
     @staticmethod
     def _aside(wheels: Sequence[float]) -> list[float]:

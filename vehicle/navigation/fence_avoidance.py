@@ -17,6 +17,8 @@ from vehicle.params import Params
 
 PERIOD = 0.1
 """s between two checks; at 1.5 m/s a rover moves 15 cm in that time."""
+AVOID_FENCE = 1
+"""Bit of AVOID_ENABLE (ArduPilot: UseFence)."""
 STUCK_TIMEOUT = 3.0
 """s at a standstill before the fence after which the target counts as unreachable."""
 
@@ -110,9 +112,13 @@ class FenceAvoidance:
         return self._stands_since is not None and now - self._stands_since >= STUCK_TIMEOUT
 
     @property
+    def _avoids_fence(self) -> bool:
+        return bool(int(self._params["AVOID_ENABLE"]) & AVOID_FENCE)
+
+    @property
     def _margin(self) -> float:
         """Distance to keep from the fence, m."""
-        return self._params["FENCE_MARGIN"] if self._params["AVOID_ENABLE"] else 0.0
+        return self._params["FENCE_MARGIN"] if self._avoids_fence else 0.0
 
     def _distance_at(self, place: Point) -> float:
         return self.fence.distance_to_edge(place, self._estimate.origin, self._home())
@@ -120,7 +126,7 @@ class FenceAvoidance:
     def _allowed_speed(self, speed: float) -> float:
         """Return the m/s that the fence allows in the direction of `speed`."""
         params, estimate = self._params, self._estimate
-        avoids = params["AVOID_ENABLE"] and params["FENCE_ACTION"] and estimate.good and not self.breach_distance
+        avoids = self._avoids_fence and params["FENCE_ACTION"] and estimate.good and not self.breach_distance
         twice_braking = 2.0 * params["ATC_DECEL_MAX"]
         reach = self._margin + speed * speed / twice_braking + abs(speed) * PERIOD
         if not avoids or estimate.yaw is None or self._distance > reach:

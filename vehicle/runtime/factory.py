@@ -26,15 +26,18 @@ from vehicle.motors import Motors, arming_check, estop_reader
 from vehicle.motors.drivers import open_motors, profile_params
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
+from vehicle.navigation.geo import Origin
 from vehicle.params import Params
 from vehicle.rover import Rover
 from vehicle.runtime.lock import MotorLock
+from vehicle.runtime.walls_file import read_walls
 from vehicle.sensors import NoSensors, Sensors
 from vehicle.sensors.suite import open_sensors
 from vehicle.sim.battery import Battery
 from vehicle.sim.body import SimulatedBody
 from vehicle.sim.chassis import CHASSIS, ChassisDimensions
 from vehicle.sim.truth import RecordedBody
+from vehicle.sim.walls import Surroundings, Walls
 from vehicle.storage.motor_copy import settings_copy
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.recorder import VehicleRecorder
@@ -154,8 +157,16 @@ def _build_simulation(simulation: Simulation, params: Params) -> tuple[Motors, S
         battery=Battery(simulation.battery),
         home=simulation.home,
         seed=simulation.seed,
+        surroundings=_build_surroundings(simulation, params),
     )
     return motors, _with_truth_log(body, simulation.truth)
+
+
+def _build_surroundings(simulation: Simulation, params: Params) -> Surroundings | None:
+    if simulation.walls is None:
+        return None
+    walls = Walls(read_walls(simulation.walls, Origin(simulation.home.latitude, simulation.home.longitude)))
+    return Surroundings(walls, simulation.seed, length=params["BODY_LENGTH"], width=params["BODY_WIDTH"])
 
 
 def _with_truth_log(body: SimulatedBody, path: str | None) -> Sensors:

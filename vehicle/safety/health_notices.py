@@ -42,6 +42,12 @@ def sensor_notices(readings: Readings) -> dict[str, str]:
     return {f"{fault.sensor} sensor": f"{fault.sensor} sensor: {fault.reason}" for fault in readings.faults}
 
 
+def obstacle_notices(faults: Mapping[str, str]) -> dict[str, str]:
+    """Return a notice for each range sensor that has failed."""
+    texts = [f"Range sensor {name} ({fault})" for name, fault in faults.items()]
+    return {text: text for text in texts}
+
+
 def fence_notices(avoidance: FenceAvoidance) -> dict[str, str]:
     """Return a notice if the fence cannot be enforced: MANUAL needs no position and continues."""
     return {"Fence": "Fence not enforced: position is not known"} if avoidance.lacks_position else {}

@@ -15,6 +15,7 @@ from vehicle.readings import ComputerReadings, Readings
 from vehicle.sim.battery import NOMINAL_VOLTAGE, Battery
 from vehicle.sim.chassis import Chassis, ChassisMotion, SkidChassis
 from vehicle.sim.noise import NoisySensors, SensorNoise, SimulatedFix
+from vehicle.sim.walls import Surroundings
 
 LONGEST_STEP = 0.02
 """s, one control cycle. Longer gaps are split into such steps, so that the lag of motors and servo is simulated; not
@@ -79,9 +80,11 @@ class SimulatedBody:
         seed: int | None = None,
         noise: SensorNoise | None = None,
         slope: Slope | None = None,
+        surroundings: Surroundings | None = None,
     ) -> None:
         """Without a `seed` the sensors are perfect; with one they have `noise`."""
         self._slope = slope
+        self._surroundings = surroundings
         self._outputs = outputs
         self._chassis = chassis or SkidChassis()
         self._battery = battery or Battery()
@@ -109,7 +112,12 @@ class SimulatedBody:
             dt = gap if whole else LONGEST_STEP
             self._step(throttles, dt)
             gap -= dt
-        return self._measure()
+        return self._measure(now)
+
+    @property
+    def clearance(self) -> float | None:
+        """True distance to the nearest wall, m; 0 in contact, None without walls."""
+        return None if self._surroundings is None else self._surroundings.clearance(self.motion)
 
     def _step(self, throttles: Sequence[float], dt: float) -> None:
         battery, motion = self._battery, self._chassis.motion
@@ -132,7 +140,7 @@ class SimulatedBody:
         pairs = zip(throttles, self._chassis.motion.wheel_speeds, strict=False)  # a steering servo has no wheel
         return sum(abs(wanted) * (RUNNING * abs(wanted) + STALL * abs(wanted - wheel / top)) for wanted, wheel in pairs)
 
-    def _measure(self) -> Readings:
+    def _measure(self, now: float) -> Readings:
         motion, battery, instruments = self._chassis.motion, self._battery, self._instruments
         true = SimulatedFix(motion.north, motion.east, *motion.velocity)
         fix = true if instruments is None else instruments.gps(true)
@@ -158,6 +166,7 @@ class SimulatedBody:
             battery_current=battery.current,
             battery_remaining=battery.remaining,
             wheel_speeds=wheels,
+            ranges=() if self._surroundings is None else (self._surroundings.read(motion, now),),
             computer=COMPUTER,
         )
 

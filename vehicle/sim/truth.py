@@ -1,6 +1,7 @@
 """A log of the true position of the simulated rover, for tests and benchmarks that observe a vehicle from outside.
 
-Ten lines per second: `<clock ns> <m north> <m east> <rad> <m/s>`, relative to the start.
+Ten lines per second: `<clock ns> <m north> <m east> <rad> <m/s>`, relative to the start. With walls the m to the
+nearest one follow, 0 in contact.
 """
 
 from __future__ import annotations
@@ -30,5 +31,7 @@ class RecordedBody:
         if now >= self._due:
             self._due = now + PERIOD
             motion = self._body.motion
-            self._write(f"{self._clock()} {motion.north:.3f} {motion.east:.3f} {motion.yaw:.4f} {motion.speed:.3f}\n")
+            line = f"{self._clock()} {motion.north:.3f} {motion.east:.3f} {motion.yaw:.4f} {motion.speed:.3f}"
+            clearance = self._body.clearance
+            self._write(f"{line}\n" if clearance is None else f"{line} {clearance:.3f}\n")
         return readings

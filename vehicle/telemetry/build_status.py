@@ -147,6 +147,11 @@ def limits(view: TelemetryView) -> DriveLimit:
     return view.drive.limits | DriveLimit(sum(limit for limit, holds in reasons.items() if holds))
 
 
+def _speed_limit(view: TelemetryView) -> int:
+    speed = min(view.fresh_speed, view.drive.avoiding_speed)
+    return scale_to_int(speed, UINT16, 100) if math.isfinite(speed) else 0
+
+
 def drive_status(view: TelemetryView) -> m.Message:
     """Build ROVER_DRIVE_STATUS: the demand while it is fresh, the wheels, and why they differ."""
     control = view.control
@@ -159,7 +164,7 @@ def drive_status(view: TelemetryView) -> m.Message:
         demand_steering=scale_to_int(demand.steering, INT16, 10000) if demand else 0,
         output=(output + [0] * 4)[:4],
         limits=limits(view),
-        speed_limit=scale_to_int(view.fresh_speed if math.isfinite(view.fresh_speed) else 0.0, UINT16, 100),
+        speed_limit=_speed_limit(view),
         source_system=control.demand.system if control.demand else 0,
         source_seq=control.demand.sequence if control.demand else 0,
     )

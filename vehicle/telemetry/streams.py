@@ -14,7 +14,15 @@ import msgspec
 from dialects import messages as m
 from dialects.enums import Command, DataStream
 from link.services.pacing import MAVLINK2_OVERHEAD
-from vehicle.telemetry import build_computer, build_control, build_motion, build_navigation, build_pose, build_status
+from vehicle.telemetry import (
+    build_computer,
+    build_control,
+    build_motion,
+    build_navigation,
+    build_pose,
+    build_proximity,
+    build_status,
+)
 from vehicle.telemetry.scaling import parse_message_id
 from vehicle.telemetry.view import TelemetryView
 
@@ -103,6 +111,8 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.GpsGlobalOrigin, COMMON, 0, build_motion.gps_global_origin,
            change_key=lambda view: (view.navigator.estimate.origin, view.navigator.origin_altitude)),
     Stream(m.HomePosition, COMMON, 0.5, build_status.home_position, change_key=lambda view: view.home),
+    Stream(m.ObstacleDistance, COMMON, 1, build_proximity.obstacle_distance, DataStream.EXTENDED_STATUS),
+    Stream(m.DistanceSensor, COMMON, 1, build_proximity.distance_sensor, DataStream.EXTENDED_STATUS),
     Stream(m.OnboardComputerStatus, COMMON, 0.5, build_computer.onboard_computer_status, DataStream.EXTENDED_STATUS),
     Stream(m.AttitudeQuaternion, COMMON, 0, build_pose.attitude_quaternion),
     Stream(m.HighresImu, COMMON, 0, build_pose.highres_imu),

@@ -12,6 +12,7 @@ from vehicle.drive.drive import Drive
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Home
 from vehicle.params import Params
+from vehicle.proximity.obstacles import Obstacles
 from vehicle.readings import Readings
 from vehicle.safety.state_machine import Safety
 from vehicle.telemetry.host import HostInfo
@@ -34,6 +35,7 @@ class TelemetryView(NamedTuple):
     fresh_speed: float
     """m/s that the age of the commands allows; infinite while nothing is limited."""
     navigator: Navigator
+    obstacles: Obstacles
     host: HostInfo
     rack: AccessorySet
     """Relays and servos."""

@@ -205,6 +205,8 @@ LIMITS = {
     "stale": "stale: the vehicle has no recent command and has stopped",
     "fence": "the fence stops the vehicle here",
     "battery": "speed reduced: battery low",
+    "obstacle": "speed reduced: obstacle ahead of the motion; driving away from it is free",
+    "range sensor": "speed reduced: a range sensor has failed, see the log for which",
     "freshness": "speed reduced: commands arrive late or get lost (FRESH_DIST)",
 }
 """Limits of the vehicle that a driver must know -> their text. The others (slew, saturated) are normal driving."""

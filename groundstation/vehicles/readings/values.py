@@ -38,7 +38,11 @@ def drive_demand(drive: m.RoverDriveStatus | None) -> tuple[float, float] | None
     return (within(drive.demand_throttle / 10_000), within(drive.demand_steering / 10_000)) if drive else None
 
 
-SLOWED = {DriveLimit.FRESHNESS: "late commands"}
+SLOWED = {
+    DriveLimit.OBSTACLE: "obstacle",
+    DriveLimit.RANGE_SENSOR: "range sensor",
+    DriveLimit.FRESHNESS: "late commands",
+}
 """Limit of which ROVER_DRIVE_STATUS has the speed -> its reason, the most important first."""
 
 

@@ -47,11 +47,12 @@ def test_an_endpoint_may_stand_anywhere(monkeypatch: pytest.MonkeyPatch, words: 
 
 def test_everything_a_simulation_takes(monkeypatch: pytest.MonkeyPatch) -> None:
     words = "--sim --system 7 --home -33.5,151.25 --sim-battery 0.3 --sim-seed 5 --sim-truth t"
-    words += " --loss 20 --delay 200 --jitter 50 --cut 3"
+    words += " --loss 20 --delay 200 --jitter 50 --cut 3 --walls w"
     settings = settings_of(monkeypatch, *words.split(), *["--motor-log", "m", "--param", "speed_max=3"])
     assert settings.simulation is not None
     assert settings.simulation.home[:2] == (-33.5, 151.25)
     assert (settings.simulation.battery, settings.simulation.seed, settings.simulation.truth) == (0.3, 5, "t")
+    assert settings.simulation.walls == "w"
     assert settings.simulation.faults == FaultSettings(loss=0.2, delay=0.2, jitter=0.05, cut=3.0, seed=5)
     assert settings.params == {"FS_LOOP_TIMEOUT": 1.0, "SPEED_MAX": 3.0}
     assert settings.pinned == {"MAV_SYSID": 7}

@@ -159,7 +159,7 @@ class TestManualLoss:
         assert bench.throttles == (1.0, 1.0)
 
     def test_dead_man_time_is_a_parameter(self) -> None:
-        bench = Bench(MAN_TIMEOUT=1.0)
+        bench = Bench(MAN_TIMEOUT=1.0, FRESH_DIST=0)
         bench.drive()
         bench.wait(0.9)
         assert bench.throttles == (1.0, 1.0)
