@@ -110,7 +110,7 @@ def test_a_setting_that_is_0_ignores_companions() -> None:
     assert field.truth.north > WALL
 
 
-def test_only_components_of_the_vehicle_with_a_key_that_drives_count() -> None:
+def test_only_components_with_a_key_that_drives_count() -> None:
     field = Walled()
     field.measure = lambda: None
     field.wait(0.5)
