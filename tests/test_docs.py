@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli import attach_verb, completion_verb, config_verb, keys_verb, replay_verb, serve_verb
+from groundstation.cli import attach_verb, completion_verb, config_verb, keys_verb, replay_verb, serve_verb, video_verb
 from groundstation.cli import options as station_options
 from groundstation.cli.verb_help import LOCAL_VERBS
 from groundstation.verbs import main as verbs_main
@@ -111,6 +111,7 @@ LOCAL_PARSERS = {
     "serve": serve_verb.build_parser,
     "completion": completion_verb.build_parser,
     "replay": replay_verb.build_replay_parser,
+    "video": video_verb.build_parser,
 }
 
 SHOWN = [(doc.name, program, words) for doc in DOCS for program, words in commands(doc.read_text())]

@@ -93,6 +93,8 @@ def _run_local(verb: str, arguments: Sequence[str]) -> int:
         from groundstation.cli.replay_verb import run
     elif verb == "serve":
         from groundstation.cli.serve_verb import run
+    elif verb == "video":
+        from groundstation.cli.video_verb import run
     else:
         from groundstation.cli.completion_verb import run as run_completion
         from groundstation.cli.verb_help import EVERY_VERB

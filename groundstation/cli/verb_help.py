@@ -28,6 +28,10 @@ LOCAL_VERBS: dict[str, Verb] = {
     "replay": Verb(Group.DATA, (
         Example("mavhelm replay flight.tlog", "a telemetry log in the screens"),
     ), {}, "show a telemetry log in the screens, with a timeline and search"),
+    "video": Verb(Group.LINKS, (
+        Example("mavhelm video rtp:5600", "H.264 that a camera sends to port 5600; q ends it"),
+        Example("mavhelm video rtsp://192.168.1.20/live --snapshot now.png", "one picture as a file"),
+    ), {}, "show a camera in this terminal, with the age of its picture"),
     "completion": Verb(Group.SETUP, (
         Example("mavhelm completion fish | source", "until the shell ends"),
     ), {}, "print a script that completes verbs in bash, zsh or fish"),

@@ -53,6 +53,11 @@ def start_module(
     )
 
 
+def end_with_us(number: int = signal.SIGTERM) -> Callable[[], None] | None:
+    """Return the `preexec_fn` of a program of others, to which Linux sends a signal when this thread ends; else None."""
+    return _end_with_parent(number) if KERNEL_TELLS_OF_DEATH else None
+
+
 @cache
 def _life_line() -> int:
     """Return the end of a pipe that ends with this process; its other end stays open here, and in no fork."""
@@ -62,14 +67,14 @@ def _life_line() -> int:
     return theirs
 
 
-def _end_with_parent() -> Callable[[], None]:
-    """Return what a child runs before its program, so that the kernel terminates it when we die."""
+def _end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
+    """Return what a child runs before its program, so that the kernel sends it a signal when we die."""
     import ctypes  # by those that need it: it takes 5 ms
 
     prctl = ctypes.CDLL(None).prctl  # looked up before the fork: as little as possible may run after it
 
     def prepare() -> None:
-        prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+        prctl(PR_SET_PDEATHSIG, number)
 
     return prepare
 

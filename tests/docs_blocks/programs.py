@@ -28,6 +28,7 @@ class Stays(NamedTuple):
 STAYS = (
     Stays(r"mavhelm (?:attach|replay)\b", "F1.*F10|Drive", CTRL_Q),
     Stays(r"mavhelm keys\b", "q", "q"),
+    Stays(r"mavhelm video (?!.*--snapshot)", "age|NO PICTURE", "q"),
     Stays(r"mavhelm serve --web\b", r"http://127\.0\.0\.1:\d+/\?token=\w+"),
     Stays(r"mavhelm serve --headless\b", r"station \d+ on "),
     Stays(r"mavhelm ros1\b", "publish to command or cmd_vel", codes=(130,)),
@@ -49,6 +50,7 @@ STAYS = (
 NEEDS = (
     (r"roscore\b|mavhelm ros1\b|/usr/bin/python3 docs/examples/command_node", "roscore"),
     (r"rostopic\b", "rostopic"),
+    (r"ffmpeg\b|mavhelm video\b", "ffmpeg"),
 )
 """Begin of a command -> a program that a laptop may lack: there it is left out."""
 

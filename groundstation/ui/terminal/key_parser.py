@@ -111,8 +111,16 @@ class KeySink(Protocol):
 class KeyEventParser(XTermParser):
     """Textual's parser, which also understands repeats, releases and non-Latin layouts of the kitty protocol."""
 
-    def __init__(self, sink: KeySink, debug: bool = False, *, clock: Callable[[], float] = time.monotonic) -> None:
-        self._sink = sink
+    def __init__(
+        self,
+        sink: KeySink,
+        debug: bool = False,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        on_answer: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        """`on_answer` gets each whole sequence that is an answer of the terminal and no key."""
+        self._sink, self._on_answer = sink, on_answer
         self._clock = clock
         self._sequences = SequenceAssembler()
         self._mouse_reports = 0
@@ -199,6 +207,10 @@ class KeyEventParser(XTermParser):
     def _parse_at_once(self, sequence: str) -> list[Message] | None:
         """Return the events of a sequence for whose end the stock parser would wait; None for all others."""
         if is_string(sequence):
+            self._on_answer(sequence)
+            return []
+        if len(sequence) > LONGEST and _REPORT.fullmatch(sequence):  # the attributes of xterm and VTE
+            self._handle_report(sequence)
             return []
         if len(sequence) > LONGEST:
             return list(self._unknown(sequence))
@@ -258,7 +270,8 @@ class KeyEventParser(XTermParser):
         """
         if report == PONG:
             self._sink.handle_pong()
-        elif (flags := _FLAGS.fullmatch(report)) and int(flags[1]) & _EVENT_TYPES:
+        self._on_answer(report)
+        if (flags := _FLAGS.fullmatch(report)) and int(flags[1]) & _EVENT_TYPES:
             self._sink.handle_release_claim()
 
     def _unknown(self, sequence: str) -> list[events.Key]:
