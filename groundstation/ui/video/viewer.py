@@ -78,7 +78,9 @@ class Viewer:
         self._protocol = options.protocol or choose_protocol(answers, os.environ, ascii_only=options.ascii_only)
         self._painter = PAINTERS[self._protocol]()
         remote = bool(os.environ.get("SSH_CONNECTION"))
-        self._budget = ByteBudget(options.limit or (REMOTE_BYTES if remote else LOCAL_BYTES), round_trip=self._terminal.round_trip)
+        self._budget = ByteBudget(
+            options.limit or (REMOTE_BYTES if remote else LOCAL_BYTES), round_trip=self._terminal.round_trip
+        )
         self._area = self._terminal.area()
 
     async def _show(self) -> None:

@@ -76,7 +76,7 @@ def colour_of_256(number: int) -> Pixel:
 def colour_of_16(number: int) -> Pixel:
     """A usual colour: which parts it has."""
     if number in (7, 8):
-        return ((170,) if number == 7 else (85,)) * 3  # type: ignore[return-value]
+        return ((170,) if number == 7 else (85,)) * 3
     high = 255 if number > 7 else 170
     return tuple(high * (number >> bit & 1) for bit in range(3))  # type: ignore[return-value]
 

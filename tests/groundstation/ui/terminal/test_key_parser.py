@@ -202,3 +202,15 @@ def test_an_emergency_stop_behind_escape_counts_in_a_text() -> None:
     sink.text = True
     list(KeyEventParser(sink).feed("\x1b!"))
     assert [press.key for press in sink.batches[-1]] == ["escape", "exclamation_mark"]
+
+
+def test_answers_are_handed_on_whole_and_are_no_keys() -> None:
+    answers, sink = list[str](), Sink()
+    parser = KeyEventParser(sink, on_answer=answers.append)
+    sent = ["\x1b_Gi=31;OK\x1b\\", "\x1b[6;16;8t", "\x1b[?64;1;2;4;6;9;15;16;17;18;21;22;28;29c"]
+    data = "".join(sent)
+    for at in range(0, len(data), 7):  # in pieces, as over a line
+        list(parser.feed(data[at : at + 7]))
+    assert answers == sent
+    list(parser.feed("i"))
+    assert [event for batch in sink.batches for event in batch] == [KeyEvent("i")]
