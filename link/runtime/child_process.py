@@ -54,7 +54,7 @@ def start_module(
 
 
 def end_with_us(number: int = signal.SIGTERM) -> Callable[[], None] | None:
-    """Return the `preexec_fn` of a program of others, to which Linux sends a signal when this thread ends; else None."""
+    """Return the `preexec_fn` of a foreign program, to which Linux sends a signal when this thread ends; else None."""
     return _end_with_parent(number) if KERNEL_TELLS_OF_DEATH else None
 
 
