@@ -8,6 +8,7 @@ import signal
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,9 @@ class Watcher:
     def __init__(self, text: str, folder: Path, still_after: float = 60.0) -> None:
         self.pictures: list[Picture] = []
         self.feed = Feed(parse_source(text, folder), find_program(), self.pictures.append, still_after=still_after)
+
+    def has_started(self, times: int) -> bool:
+        return self.feed.starts == times
 
     async def more(self, count: int = 3) -> None:
         seen = len(self.pictures)
@@ -101,7 +105,7 @@ async def test_a_decoder_that_is_stopped_or_killed_is_started_again() -> None:
                 stopped = watcher.feed.decoder.pid
                 os.kill(stopped, sent)
                 await until(lambda: not watcher.feed.state().fresh)
-                await until(lambda number=number: watcher.feed.starts == number)
+                await until(partial(watcher.has_started, number))
                 assert not exists(stopped)
             await watcher.more()
             assert watcher.feed.problem == ""

@@ -48,10 +48,13 @@ class Person:
                 self.drawn += data
                 self.type(self._attributes * data.count(DA1) + b"\x1b[0n" * data.count(PING))
 
-    def wait(self, pattern: str) -> str:
+    def wait(self, pattern: str) -> None:
         """Wait for a text of the newest line below the picture."""
-        return wait_until(lambda: re.search(pattern, self.status), lambda: self.drawn[-300:].decode(errors="replace"),
-                          each=self.read)[0]  # fmt: skip
+        wait_until(
+            lambda: re.search(pattern, self.status),
+            lambda: self.drawn[-300:].decode(errors="replace"),
+            each=self.read,
+        )
 
     @property
     def status(self) -> str:
