@@ -55,7 +55,7 @@ assert Command.DO_SET_RELAY in sent, sent
 def test_an_action_of_the_operator(tree: Tree) -> None:
     tree.insert_before("groundstation/intents/vehicle.py", "class SelectVehicle(Intent", INTENT)
     tree.insert_before("groundstation/actions.py", 'OperatorAction("app.simulator"', ROW)
-    tree.replace("groundstation/actions.py", "    SetMode,\n)", "    SetMode,\n    SoundHorn,\n)")
+    tree.replace("groundstation/actions.py", "    TakeOff,\n)", "    SoundHorn,\n    TakeOff,\n)")
     tree.check_recipe("an action of the operator")
     tree.run_script(PRESS_IT)
     tree.run_script(SEND_IT)
