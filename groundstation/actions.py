@@ -100,6 +100,8 @@ _ROWS = (
     OperatorAction("view.pane", "View", "Next pane of the Drive screen", "view", keys=("v",), steady=True),
     OperatorAction("view.closer", "Closer", "Zoom in on the pane", "view", keys=("pageup",), steady=True),
     OperatorAction("view.wider", "Wider", "Zoom out of the pane", "view", keys=("pagedown",), steady=True),
+    OperatorAction("view.lesson", "Lesson", "Next page of the lesson, then hide it, then show it (mavhelm learn)",
+                   "view", keys=("ctrl+l",)),
     OperatorAction("drive.gamepad", "Next gamepad", "Choose the next gamepad, of several", "drive"),
     OperatorAction("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next"),
                    ("ctrl+y",)),  # not TAB, which chooses panels on the other screens: a latched key goes on by itself

@@ -89,6 +89,7 @@ class StationClient:
         style: str = "hold",
         speed: float = 0.6,
         sitl: bool = False,
+        simulators: Sequence[Sequence[str]] = (),
         log_file: Path | None = None,
         dialect: str | None = None,
         sign_key: str | None = None,
@@ -102,11 +103,13 @@ class StationClient:
     ) -> StationClient:
         """Start the station process and wait until its links are open. Raises StationError.
 
-        `dialect` is an XML file that the station reads. `terminal` is the path of the terminal that is reset if this
+        `simulators`: with `sitl`, options of each rover, in place of the usual one. `dialect` is an XML file that the
+        station reads. `terminal` is the path of the terminal that is reset if this
         process is killed. `keep`: the station goes on then. `process` runs already and waits for its arguments.
         `meanwhile` is called first: the process takes 0.1 s to import its modules.
         """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
+        options += [f"--simulator={' '.join(each)}" for each in simulators]
         options += ["--keep"] if keep else []
         if log_file is not None:
             options.append(f"--log-file={log_file}")

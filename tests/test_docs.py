@@ -10,7 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli import attach_verb, completion_verb, config_verb, keys_verb, replay_verb, serve_verb, video_verb
+from groundstation.cli import (
+    attach_verb,
+    completion_verb,
+    config_verb,
+    keys_verb,
+    learn_verb,
+    replay_verb,
+    serve_verb,
+    video_verb,
+)
 from groundstation.cli import options as station_options
 from groundstation.cli.verb_help import LOCAL_VERBS
 from groundstation.verbs import main as verbs_main
@@ -110,6 +119,7 @@ LOCAL_PARSERS = {
     "attach": attach_verb.build_parser,
     "serve": serve_verb.build_parser,
     "completion": completion_verb.build_parser,
+    "learn": learn_verb.build_parser,
     "replay": replay_verb.build_replay_parser,
     "video": video_verb.build_parser,
 }

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from groundstation.cli.console import open_screen, terminal_path
+from groundstation.cli.lesson_options import add_lesson, continue_lesson
 from groundstation.cli.local_verb import UsageError, load_settings, run_local
 from groundstation.cli.options import add_config, add_settings
 from groundstation.cli.verb_help import local_examples
@@ -38,6 +39,7 @@ def build_parser() -> CommandLineParser:
     )
     parser.add_argument("pid", nargs="?", type=int, metavar="PID", help="its process id, where several run")
     parser.add_argument("--watch", action="store_true", help="begin without the keys, also if no other screen drives")
+    add_lesson(parser)
     add_settings(parser)
     add_config(parser)
     return parser
@@ -57,7 +59,9 @@ def _attach(options: argparse.Namespace) -> int:
         return StationClient.attach(pid, f"screen on {_terminal_name()}", watches=options.watch)
 
     with guard_terminal(terminal_path()):  # the watchdog of the station knows the terminal of its first screen only
-        return open_screen(settings, connect, "drive", stick=stick)
+        lesson = continue_lesson(options)
+        first = lesson.attempt.lesson.screen if lesson is not None else "drive"
+        return open_screen(settings, connect, first, stick=stick, lesson=lesson)
 
 
 def choose_station(wanted: int | None) -> int:

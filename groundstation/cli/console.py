@@ -33,7 +33,8 @@ from groundstation.ui.terminal.tmux import TmuxSession
 from link.runtime.whole_file import PRIVATE
 
 if TYPE_CHECKING:
-    from groundstation.ui.look.appearance import Look  # the UI is imported while the station starts
+    from groundstation.ui.learn.lesson_dock import LessonDock  # the UI is imported while the station starts
+    from groundstation.ui.look.appearance import Look
 import contextlib
 
 from link.runtime import stdio
@@ -94,11 +95,12 @@ def open_screen(
     opened: Sequence[str] = (),
     *,
     stick: TabStick | None = None,
+    lesson: LessonDock | None = None,
 ) -> int:
     """Run the UI to its end with a station; return the exit code. `connect` gets the log file.
 
     `first` is the screen that is shown at first; `opened` are the endpoints to remember. `stick` takes the place of a
-    gamepad.
+    gamepad. `lesson` is shown beside the screens.
 
     Raises UsageError, KeymapError, StationError.
     """
@@ -126,6 +128,7 @@ def open_screen(
             dialect=settings.dialect_path,
             replay_options=option_words(settings, REPLAY_SETTINGS),
             gamepad=gamepad,
+            lesson=lesson,
         )
         quits = code == 0
         return code

@@ -91,6 +91,8 @@ def _run_local(verb: str, arguments: Sequence[str]) -> int:
         from groundstation.cli.attach_verb import run
     elif verb == "replay":
         from groundstation.cli.replay_verb import run
+    elif verb == "learn":
+        from groundstation.cli.learn_verb import run
     elif verb == "serve":
         from groundstation.cli.serve_verb import run
     elif verb == "video":

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from groundstation.cli.console import docs_file, import_screen, open_screen, terminal_path
+from groundstation.cli.lesson_options import add_lesson, continue_lesson
 from groundstation.cli.local_verb import load_settings, run_local
 from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_settings
 from groundstation.cli.verb_help import local_examples
@@ -48,6 +49,7 @@ def build_replay_parser() -> CommandLineParser:
         metavar="X",
         help="speed of playing, 0.25 to 32 (default: 1)",
     )
+    add_lesson(parser)
     add_settings(parser, REPLAY_SETTINGS)
     add_config(parser)
     return parser
@@ -83,4 +85,4 @@ def _replay(options: argparse.Namespace) -> int:
         )
 
     with guard_terminal(terminal_path()):  # the process that reads the log has no watchdog
-        return open_screen(settings, start, "replay")
+        return open_screen(settings, start, "replay", lesson=continue_lesson(options))

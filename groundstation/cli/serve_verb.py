@@ -61,19 +61,37 @@ def _serve(options: argparse.Namespace) -> int:
     if not options.headless and not options.web:
         raise UsageError("give --headless or --web; `mavhelm --keep` opens a screen whose station survives it")
     settings = load_settings(options).settings
+    endpoints = [] if options.sitl and not options.endpoints else resolve_endpoints(settings.open, settings)
+    return serve(settings, endpoints, sitl=options.sitl, port=options.port if options.web else None)
+
+
+def serve(
+    settings: Settings,
+    endpoints: Sequence[str],
+    *,
+    sitl: bool,
+    simulators: Sequence[Sequence[str]] = (),
+    port: int | None = None,
+    tab_options: Sequence[str] = (),
+) -> int:
+    """Run a station to its end; return the exit code. `port`: for browsers, None for none. Raises StationError.
+
+    `simulators`: see StationClient.start(). `tab_options` are of `mavhelm attach` in each tab.
+    """
     try:
         make_folder()
     except FolderError as error:  # nothing could use this station
         raise StationError(str(error)) from error
-    endpoints = [] if options.sitl and not options.endpoints else resolve_endpoints(settings.open, settings)
     from groundstation.host.station_process import run_station
     from groundstation.host.station_start import StartError  # loads the dialect, which the screen does without
 
-    launch = _listen(options.port) if options.web else None
+    launch = None if port is None else _listen(port)
     try:
         if launch is not None:
-            launch.start(["attach", str(os.getpid()), *TAB_OPTIONS, *option_words(settings, TAB_SETTINGS)])
-        given = _station_options(settings, endpoints, sitl=options.sitl)
+            words = [*TAB_OPTIONS, *tab_options, *option_words(settings, TAB_SETTINGS)]
+            launch.start(["attach", str(os.getpid()), *words])
+        given = _station_options(settings, endpoints, sitl=sitl)
+        given.simulator = [" ".join(each) for each in simulators]
         return run_station(given, lambda opened: _announce(opened, launch))
     except StartError as error:
         raise StationError(str(error)) from error
@@ -106,6 +124,7 @@ def _station_options(settings: Settings, endpoints: Sequence[str], *, sitl: bool
         terminal=None,
         endpoints=endpoints,
         sitl=sitl,
+        simulator=[],
         system=settings.system,
         style=settings.style,
         speed=settings.speed,

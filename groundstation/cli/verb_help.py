@@ -32,6 +32,11 @@ LOCAL_VERBS: dict[str, Verb] = {
         Example("mavhelm video rtp:5600", "H.264 that a camera sends to port 5600; q ends it"),
         Example("mavhelm video rtsp://192.168.1.20/live --snapshot now.png", "one picture as a file"),
     ), {}, "show a camera in this terminal, with the age of its picture"),
+    "learn": Verb(Group.DATA, (
+        Example("mavhelm learn", "the first lesson that is not done"),
+        Example("mavhelm learn list", "all lessons, and which are done"),
+        Example("mavhelm learn 4", "lesson 4"),
+    ), {}, "learn to drive, and what MAVLink is, in lessons with simulated rovers"),
     "completion": Verb(Group.SETUP, (
         Example("mavhelm completion fish | source", "until the shell ends"),
     ), {}, "print a script that completes verbs in bash, zsh or fish"),

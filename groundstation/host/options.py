@@ -57,6 +57,13 @@ def station_parser() -> argparse.ArgumentParser:
     parser.add_argument("--style", choices=list(Style), default=Style.HOLD)
     parser.add_argument("--speed", type=float, default=0.6)
     parser.add_argument("--sitl", action="store_true")
+    parser.add_argument(
+        "--simulator",
+        action="append",
+        default=[],
+        metavar="OPTIONS",
+        help="with --sitl: one rover with these options, in place of the usual one",
+    )
     parser.add_argument("--log-file", type=Path)
     parser.add_argument("--sign-key", metavar="NAME", help="key that signs")
     parser.add_argument("--require-signing", action="store_true", help="ignore everything that is not signed")

@@ -67,7 +67,8 @@ def start(options: argparse.Namespace, pipe: socket.socket | None, watchdog: soc
 
         raise StartError(explain_taken(_one_line(error), ATTACH)) from error
     simulators = SimulatorControl()
-    problem = simulators.start([link.endpoint for link in links]) if options.sitl else None
+    rovers = [words.split() for words in options.simulator]
+    problem = simulators.start([link.endpoint for link in links], options=rovers) if options.sitl else None
     if problem is not None:
         notes = (*notes, Note(problem, Severity.WARNING))
     return StartedStation(known, links, feed, sent, signing, simulators, notes)

@@ -86,10 +86,12 @@ class SimulatorControl:
         self._simulators: list[Simulator] = []
         self._reported: list[Simulator] = []
 
-    def start(self, endpoints: Sequence[Endpoint], kind: str = "rover") -> str | None:
+    def start(
+        self, endpoints: Sequence[Endpoint], kind: str = "rover", options: Sequence[Sequence[str]] = ()
+    ) -> str | None:
         """Start simulators that send to the first endpoint that listens. Returns an error text, or None.
 
-        While one of ours runs, nothing is started.
+        While one of ours runs, nothing is started. `options`: one rover with each of them, in place of those of `kind`.
         """
         if self.running:
             return None
@@ -99,8 +101,8 @@ class SimulatorControl:
         host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
         self.close()
         try:
-            for options in find_simulator(kind).options:
-                self._simulators.append(Simulator(host, endpoint.port, options))
+            for each in options or find_simulator(kind).options:
+                self._simulators.append(Simulator(host, endpoint.port, each))
         except OSError as error:
             return f"simulator did not start: {error.strerror}"
         return None

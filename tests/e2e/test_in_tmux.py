@@ -80,6 +80,10 @@ class Tmux:
             select.select([], [], [], PAUSE)
         return screen
 
+    def pause(self, seconds: float) -> None:
+        """Keep the hands off the keys for so long."""
+        select.select([], [], [], seconds)
+
     def hold_until(self, key: str, condition: Callable[[str], bool], within: float) -> None:
         """Hold a key for 2 s at a time until the condition holds for the screen."""
         patience = Patience(within)

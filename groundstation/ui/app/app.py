@@ -38,6 +38,7 @@ from groundstation.ui.keys.key_gate import LENT, OTHER_SCREEN, GateClosure, KeyG
 from groundstation.ui.keys.key_hint import KeyHint
 from groundstation.ui.keys.pad_input import PadInput, PadSource
 from groundstation.ui.keys.pressed_keys import PressedKeys
+from groundstation.ui.learn.lesson_dock import ARMED_STILL, LessonDock
 from groundstation.ui.look.appearance import PLAIN, Appearance, Look
 from groundstation.ui.replay.follower import ReplayFollower
 from groundstation.ui.replay.log_child import LogChild
@@ -48,6 +49,7 @@ from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.terminal.mouse import MouseReport
 from groundstation.ui.terminal.tmux import TmuxSession
 from groundstation.ui.terminal.tty_output import TerminalFile
+from groundstation.views.base import View
 from groundstation.views.line import LineView
 
 TICK = 0.1
@@ -81,12 +83,16 @@ class ConsoleApp(App[int]):
         dialect: str | None = None,
         replay_options: Sequence[str] = (),
         gamepad: PadSource | None = None,
+        lesson: LessonDock | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`first` is the id of the screen that is shown at first, `first_request` the number of its first request.
 
-        `replay_options` are for `mavhelm replay`, which shows logs that are opened here.
+        `replay_options` are for `mavhelm replay`, which shows logs that are opened here. `lesson` is shown beside all
+        screens.
         """
+        self._lesson = lesson
+        self._replay_options = lambda: [*replay_options, *(lesson.replay_options if lesson is not None else ())]
         drawn_lines.free_with_widget()
         self._proxy = find_proxy()
         self.gate = KeyGate(client, keymap, clock, find_proxy=self._find_proxy)
@@ -116,12 +122,15 @@ class ConsoleApp(App[int]):
             lambda file, at: self._log_child.open(self._snapshot, file, at),
             dialect,
             numbers=RequestNumbers(first_request),
+            lesson=lesson,
             came_from=lambda: self._navigator.before,
         )
         self._kept = context.kept
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context, self._appearance.choose_theme)
-        self._log_child = LogChild(self, replay_options, self._say, lambda: self.gate.set_closure(LENT))
+        self._log_child = LogChild(
+            self, self._replay_options, self._say, lambda: self.gate.set_closure(LENT), self._come_back
+        )
         self._subscription = ViewSubscription(self._navigator, self._send)
         self._quitting = Quitting(self, client, self.gate, self._log_child, lambda: self._snapshot.left_armed)
         self._replay = ReplayFollower(self._kept, lambda: self._navigator.shown)
@@ -130,6 +139,7 @@ class ConsoleApp(App[int]):
         self._actions = {
             "app.quit": self._quitting.request,
             "drive.gamepad": self._choose_gamepad,
+            "view.lesson": self._turn_page,
             **self._navigator.actions,
             **self.drive.actions,
         }
@@ -175,6 +185,24 @@ class ConsoleApp(App[int]):
         else:
             self._gamepad.child.choose_next()
 
+    def _come_back(self) -> None:
+        if self._lesson is not None:
+            self._lesson.come_back()
+
+    def _turn_page(self) -> None:
+        """Turn the page of the lesson; after the last one of a lesson that is done, end this session for the next."""
+        if self._lesson is None:
+            self._say("no lesson is under way: `mavhelm learn` begins one")
+            return
+        self._lesson.turn_page(self.size, self._keys)
+        if not self._lesson.goes_on:
+            self._show()
+        elif self._snapshot.left_armed:
+            self._lesson.goes_on = False
+            self._say(ARMED_STILL)
+        else:
+            self.end()
+
     def end_threadsafe(self, code: int) -> None:
         """Leave from a signal handler: takes no lock."""
         if self._own_loop is None:
@@ -212,8 +240,8 @@ class ConsoleApp(App[int]):
         for view in self._client.pop_views():
             if isinstance(view, LineView):
                 self._navigator.show_line(view)
-            elif (shown := self._navigator.shown) is not None:
-                shown.show_view(view)
+            else:
+                self._show_view(view)
         self._subscription.update()
         if snapshot is not None:
             self._handle_snapshot(snapshot)
@@ -226,11 +254,19 @@ class ConsoleApp(App[int]):
         if not self._client.alive:
             self._quitting.handle_station_ended()
 
+    def _show_view(self, view: View) -> None:
+        if (shown := self._navigator.shown) is not None:
+            shown.show_view(view)
+        if self._lesson is not None:
+            self._lesson.see_view(view)
+
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         if self._terminal is not None and not self._snapshot.number:
             self.call_after_refresh(interpreter.freeze)  # not before something is shown: it takes 30 ms
         self._replay.follow(snapshot.replay)
         self._snapshot = snapshot
+        if self._lesson is not None:
+            self._lesson.see(snapshot, self._navigator.current)
         vehicle, operator = snapshot.vehicle, snapshot.operator
         self._tmux.handle_control(vehicle is not None and vehicle.in_control, any_vehicle=bool(snapshot.left_armed))
         driving = bool(operator.moves or operator.held)

@@ -40,6 +40,7 @@ class HelpScreen(OwnDismissal[None], ConsoleScreen):
         self._page.border_title = plain(f"keys · {self._own.title} first · map “{self.context.keymap.name}”")
         yield self._page
         yield self.field
+        yield from self.build_pane()
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out the columns for the new size."""
@@ -90,7 +91,7 @@ class HelpScreen(OwnDismissal[None], ConsoleScreen):
 
     def _show(self) -> None:
         found = self._found()
-        width = self.size.width - _FRAME
+        width = self.room[0] - _FRAME
         lines = lay_out(found, max(1, width))
         self._text.update(Content("\n").join(Content.assemble(*line) for line in lines))
         kept = f"with “{self._filter}” · " if self._filter else ""

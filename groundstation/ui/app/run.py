@@ -11,6 +11,7 @@ from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.app.exit import exit_on_signals
 from groundstation.ui.keys.key_gate import StationConnection
 from groundstation.ui.keys.pad_input import PadSource
+from groundstation.ui.learn.lesson_dock import LessonDock
 from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.terminal.tty_output import redirect_output
 
@@ -27,11 +28,12 @@ def run(
     dialect: str | None = None,
     replay_options: Sequence[str] = (),
     gamepad: PadSource | None = None,
+    lesson: LessonDock | None = None,
 ) -> int:
     """Run the UI to its end. Return 0 after a quit, 128 + n after signal n, 1 after an internal error.
 
     `first` is the id of the screen that is shown at first, `first_request` the number of its first request;
-    `replay_options` are for logs that are opened here.
+    `replay_options` are for logs that are opened here; `lesson` is shown beside the screens.
     """
     with redirect_output(log_file) as terminal:
         app = ConsoleApp(
@@ -45,6 +47,7 @@ def run(
             dialect=dialect,
             replay_options=replay_options,
             gamepad=gamepad,
+            lesson=lesson,
         )
         with exit_on_signals(app.end_threadsafe, terminal):
             # No mouse events for widgets: mouse.py captures the mouse and discards its reports.

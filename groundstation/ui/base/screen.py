@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from textual import events
 from textual.app import ComposeResult
 from textual.errors import NoWidget
+from textual.geometry import Size
 from textual.screen import Screen
 from textual.widget import Widget
 
@@ -24,6 +25,8 @@ from groundstation.ui.base.question import ANSWER_WITHIN, Question
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.request_numbers import RequestNumbers
 from groundstation.ui.display.wrap import plain
+from groundstation.ui.learn.lesson_dock import LessonDock
+from groundstation.ui.learn.pane import LessonPane
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.terminal.mouse import MouseReport
 from groundstation.ui.terminal.painting import LineCompositor, painted_at_once
@@ -65,6 +68,8 @@ class ScreenContext(msgspec.Struct, frozen=True):
     """Numbers for requests to the station."""
     kept: dict[type, Any] = msgspec.field(default_factory=dict)
     """What screens keep while they are closed, by its class."""
+    lesson: LessonDock | None = None
+    """The lesson whose pane is docked beside every screen; None without one."""
     came_from: Callable[[], ScreenRow] = lambda: SCREENS[0]
     """Returns the screen that was shown before this one."""
 
@@ -112,6 +117,7 @@ class ConsoleScreen(Screen[None]):
         self.field = LineField()
         self._question: Question | None = None
         self._note, self._note_until = "", 0.0
+        self._pane: LessonPane | None = None
 
     # ---- what a screen defines ----
 
@@ -295,6 +301,7 @@ class ConsoleScreen(Screen[None]):
         yield from self.compose_body()
         yield self.field
         yield from self.build_place("bottom")
+        yield from self.build_pane()
 
     def build_place(self, place: str) -> Iterator[Instrument[Any]]:
         """Build the instruments of one place."""
@@ -302,6 +309,31 @@ class ConsoleScreen(Screen[None]):
             if row.place == place:
                 self._built[row.id] = row.build(row.value(self._state), id=row.id)
                 yield self._built[row.id]
+
+    def build_pane(self) -> Iterator[LessonPane]:
+        """Build the pane of the lesson, if there is one."""
+        if self.context.lesson is not None:
+            self._pane = self.context.lesson.build(self.app.size, self.context.keymap)
+            yield self._pane
+
+    @property
+    def room(self) -> Size:
+        """Columns and rows that the pane of a lesson leaves to the screen; without one those of the terminal."""
+        size = self.app.size
+        return size if self.context.lesson is None else Size(*self.context.lesson.room(size))
+
+    def _get_breakpoint_classes(self, dimension: int, breakpoints: list[tuple[int, str]]) -> set[str]:
+        """Choose the classes of HORIZONTAL_BREAKPOINTS by the room. Overrides Textual 8.2.8; no screen has others."""
+        return super()._get_breakpoint_classes(self.room.width, breakpoints)
+
+    def _show_pane(self) -> None:
+        """Show the lesson; when its pane was hidden or shown, lay out the screen anew."""
+        if self._pane is None or self.context.lesson is None:
+            return
+        before = self._pane.value.place
+        self._pane.show(self.context.lesson.value(self.app.size, self.context.keymap))
+        if self._pane.value.place is not before:
+            self.post_message(events.Resize(self.size, self.size))
 
     def describe(self) -> ScreenInfo:
         """Return what the common parts must know of this screen."""
@@ -318,6 +350,7 @@ class ConsoleScreen(Screen[None]):
         with painted_at_once(self):
             self.show_rows()
             self.show_body(self._state)
+            self._show_pane()
 
     def show_rows(self) -> None:
         """Show the state in the instruments of ROWS."""

@@ -100,7 +100,7 @@ class ChartsScreen(ConsoleScreen):
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out for the new size."""
-        self.update_classes({"-wide": event.size.width >= WIDE, "-huge": event.size.width >= HUGE})
+        self.update_classes({"-wide": self.room.width >= WIDE, "-huge": self.room.width >= HUGE})
         self._show()
         self.call_after_refresh(self._show)
 
@@ -213,7 +213,7 @@ class ChartsScreen(ConsoleScreen):
     @property
     def _visible(self) -> int:
         """Charts that have room."""
-        room = self.size.height - 4 - (4 if self.size.width >= WIDE else 3)
+        room = self.room.height - 4 - (4 if self.room.width >= WIDE else 3)
         return max(1, min(len(self._model.charts.charts) or 1, room // LEAST_ROWS))
 
     def _show(self) -> None:

@@ -246,7 +246,7 @@ class ConnectScreen(ConsoleScreen):
 
     def _show(self) -> None:
         model, snapshot = self._model, self._state.snapshot
-        model.shows_logs = self.size.width >= WIDE
+        model.shows_logs = self.room.width >= WIDE
         if model.chosen is ConnectPanel.LOGS and not model.shows_logs:
             model.choose_panel(1)
         known = {each.name: found for each, found in self._disk.summaries.items()}

@@ -15,6 +15,9 @@ from __future__ import annotations
 CONSOLE_SIZE = (80, 24)
 """Columns and rows below which the console does not fit; the driving strip takes its place."""
 
+LOW_CONSOLE_SIZE = (80, 18)
+"""The same above the pane of a lesson, whose class -low leaves out the heading tape, the log and two lines."""
+
 MIN_STRIP_SIZE = (40, 10)
 """Columns and rows below which mode, ARMED, the bar of a held key and the first alert would not fit: nothing drives."""
 

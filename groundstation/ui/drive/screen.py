@@ -19,7 +19,15 @@ from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.drive.instrument_table import INSTRUMENTS
 from groundstation.ui.drive.instruments.stops import StopsPanel
 from groundstation.ui.drive.instruments.strip import DrivingStrip, StripValue
-from groundstation.ui.drive.layout import CLASSES, CONSOLE_SIZE, MIN_STRIP_SIZE, Size, is_smaller, layout_classes
+from groundstation.ui.drive.layout import (
+    CLASSES,
+    CONSOLE_SIZE,
+    LOW_CONSOLE_SIZE,
+    MIN_STRIP_SIZE,
+    Size,
+    is_smaller,
+    layout_classes,
+)
 from groundstation.ui.drive.pane import CLOSER, WIDER, PaneFrame
 from groundstation.ui.drive.panes import SECOND, SPEED_CHART, PaneInput, speed_samples
 from groundstation.ui.map.plan.copies import PlanCopies
@@ -63,7 +71,7 @@ class DriveScreen(ConsoleScreen):
 
     def compose(self) -> ComposeResult:
         """Lay out the places of INSTRUMENTS; drive.tcss sets their sizes."""
-        self._choose_layout(self.app.size)  # before there are widgets, which need no second style then
+        self._choose_layout()  # before there are widgets, which need no second style then
         with Vertical(id="console"):
             yield from self.build_place("top")
             with Horizontal(id="body"):
@@ -85,10 +93,11 @@ class DriveScreen(ConsoleScreen):
             yield from self.build_place("bottom")
         yield self._strip
         yield Static(id="too-small", markup=False)
+        yield from self.build_pane()
 
     def on_resize(self, event: events.Resize) -> None:
         """Show what fits: a layout of the console, the driving strip, or the size that is needed."""
-        self._choose_layout(self.size)
+        self._choose_layout()
         self._show_small()
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
@@ -96,21 +105,28 @@ class DriveScreen(ConsoleScreen):
         if self.is_mounted:
             self.show_state(self._state)
 
-    def _choose_layout(self, size: Size) -> None:
+    def _choose_layout(self) -> None:
         """Set the classes of a size: at once, because each update matches all style rules with all widgets."""
+        size = self.room
         chosen = layout_classes(size)
         too_small = is_smaller(size, MIN_STRIP_SIZE)
-        small = {"-too-small": too_small, "-strip": is_smaller(size, CONSOLE_SIZE) and not too_small}
+        small = {"-too-small": too_small, "-strip": is_smaller(size, self._console_size) and not too_small}
+        small["-low"] = not small["-strip"] and is_smaller(size, CONSOLE_SIZE)
         self.update_classes({name: name in chosen for name in CLASSES} | small)
 
     @property
     def too_small(self) -> bool:
         """Not even the driving strip fits."""
-        return is_smaller(self.size, MIN_STRIP_SIZE)
+        return is_smaller(self.room, MIN_STRIP_SIZE)
 
     @property
     def _small(self) -> bool:
-        return is_smaller(self.size, CONSOLE_SIZE)
+        return is_smaller(self.room, self._console_size)
+
+    @property
+    def _console_size(self) -> Size:
+        """The least size of the console: above the pane of a lesson it does without some rows."""
+        return CONSOLE_SIZE if self.context.lesson is None else LOW_CONSOLE_SIZE
 
     def _show_small(self) -> None:
         if self.too_small:
@@ -119,7 +135,7 @@ class DriveScreen(ConsoleScreen):
             self._strip.show(StripValue.from_state(self._state))
 
     def _show_too_small(self) -> None:
-        width, height = self.size
+        width, height = self.room
         text = (
             f"This terminal has {width} x {height} characters.\n"
             f"Driving needs {MIN_STRIP_SIZE[0]} x {MIN_STRIP_SIZE[1]}.\n\n"

@@ -108,7 +108,7 @@ class LinksScreen(ConsoleScreen):
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the requests for the views of the panels that are shown."""
-        wide = (MessagesRequest(order="bytes", count=BYTES_SOURCES),) if self.size.width >= WIDE else ()
+        wide = (MessagesRequest(order="bytes", count=BYTES_SOURCES),) if self.room.width >= WIDE else ()
         return VehiclesRequest(), LinksRequest(), ControlRequest(), *wide
 
     def show_view(self, view: View) -> None:
@@ -292,10 +292,10 @@ class LinksScreen(ConsoleScreen):
 
     def _lay_out(self) -> None:
         """Share the rows: all panels as they need it, else the chosen one gets the room."""
-        width, wide = max(1, self.size.width - 2), self.size.width >= WIDE
-        beside = BYTES_ROWS if wide and self.size.height >= TALL else 0
+        width, wide = max(1, self.room.width - 2), self.room.width >= WIDE
+        beside = BYTES_ROWS if wide and self.room.height >= TALL else 0
         wanted = (self._vehicles.wanted, self._links.wanted(width), max(beside, self._control.wanted))
-        heights = share_rows(PanelHeights(wanted, least=(4, 3, 3)), self._chosen, self.size.height - CHROME_ROWS)
+        heights = share_rows(PanelHeights(wanted, least=(4, 3, 3)), self._chosen, self.room.height - CHROME_ROWS)
         self._where.display = self._bytes.display = wide
         for number, (place, height) in enumerate(zip(self._places, heights, strict=True)):
             self._panels[number].set_class(number == self._chosen, "-chosen")

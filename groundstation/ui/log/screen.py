@@ -118,21 +118,21 @@ class LogScreen(ConsoleScreen):
         """Show the alerts, and the lines at their place."""
         alerts = tuple(active_alerts(now))
         self._alerts.show(AlertListValue(alerts, min(self._alerts.value.top, self._last_alert_row(len(alerts)))))
-        wanted = max(1, len(alert_rows(alerts, self.size.width - BORDERS)))
+        wanted = max(1, len(alert_rows(alerts, self.room.width - BORDERS)))
         running = min(len(self._tasks.running), MAX_TASKS)
         self._task_rows.display = running > 0
         self._task_rows.styles.height = running + BORDERS
         self._task_rows.show(replace(tasks_value(self._tasks, None), notes=()))
         below = self._place_detail() + (running + BORDERS if running else 0)
-        room = self.size.height - 4 - 2 * BORDERS - LEAST_ROWS - below
+        room = self.room.height - 4 - 2 * BORDERS - LEAST_ROWS - below
         self._alerts.styles.height = BORDERS + max(1, min(wanted, room))
         self._alerts.border_subtitle = plain(f"{wanted} rows · TAB, then ↑ ↓" if wanted > room else "")
         self._show_lines()
 
     def _place_detail(self) -> int:
         """Show the detail at its place; return the rows that it takes below the messages."""
-        wide = self.size.width >= WIDE
-        rows = 0 if wide or not self._detail_open else min(MOST_DETAIL, self.size.height - 5 - LEAST_ROWS - 2 * BORDERS)
+        wide = self.room.width >= WIDE
+        rows = 0 if wide or not self._detail_open else min(MOST_DETAIL, self.room.height - 5 - LEAST_ROWS - 2 * BORDERS)
         self.set_class(wide, "-wide")
         self._detail.display = wide or rows > BORDERS
         self._detail.styles.height = "1fr" if wide else max(1, rows)
@@ -226,7 +226,7 @@ class LogScreen(ConsoleScreen):
         """Close what `e` or ENTER has opened, the last one first; return False where nothing is open."""
         if self._model.filter.moment is not None:
             self._toggle_around()
-        elif self._detail_open and self.size.width < WIDE:
+        elif self._detail_open and self.room.width < WIDE:
             self._toggle_detail()
         else:
             return False

@@ -213,7 +213,7 @@ class MapScreen(ConsoleScreen):
 
     @property
     def _narrow(self) -> bool:
-        return self.size.width < NARROW
+        return self.room.width < NARROW
 
     def _show(self, *, forced: bool) -> None:
         self._model.replay = self._state.snapshot.replay is not None

@@ -111,8 +111,8 @@ class MessagesScreen(ConsoleScreen):
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out the panels, and show the rows at the size that the table has then."""
-        self.set_class(event.size.width >= WIDE, "-wide")
-        self.set_class(event.size.width >= WIDE and event.size.height >= TALL, "-tall")
+        self.set_class(self.room.width >= WIDE, "-wide")
+        self.set_class(self.room.width >= WIDE and self.room.height >= TALL, "-tall")
         self.call_after_refresh(self._show_table)
 
     @property

@@ -76,7 +76,7 @@ class ParamsScreen(ConsoleScreen):
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out the panels, and show the rows at the size that the table has then."""
-        self.update_classes({"-wide": event.size.width >= WIDE, "-side": event.size.width >= SIDE})
+        self.update_classes({"-wide": self.room.width >= WIDE, "-side": self.room.width >= SIDE})
         self.call_after_refresh(self._show)
 
     def show_body(self, now: DisplayState) -> None:
@@ -215,7 +215,7 @@ class ParamsScreen(ConsoleScreen):
         """Rows for the pending changes below the table: half of the screen while it is asked whether to write them."""
         if self.has_class("-side"):
             return 0
-        whole = self.size.height
+        whole = self.room.height
         return whole // 2 if self.question is not None else MAX_PENDING if whole < TALL else whole // 5
 
 

@@ -49,12 +49,19 @@ def replay_command(file: Path, at: str, options: Sequence[str]) -> list[str]:
 class LogChild:
     """Lends the terminal to one child at a time. The loop, the lease and the link to the station go on meanwhile.
 
-    `options` are for the child; `say` shows how it ended; `close_gate` closes the key gate before it starts.
+    `options` returns those of the child; `say` shows how it ended; `close_gate` closes the key gate before it starts.
     """
 
     def __init__(
-        self, app: App[Any], options: Sequence[str], say: Callable[[str], None], close_gate: Callable[[], None]
+        self,
+        app: App[Any],
+        options: Callable[[], Sequence[str]],
+        say: Callable[[str], None],
+        close_gate: Callable[[], None],
+        returned: Callable[[], object] = lambda: None,
     ) -> None:
+        """Lend nothing yet. `returned` is called when the terminal is back."""
+        self._returned = returned
         self._app, self._options, self._say, self._close_gate = app, options, say, close_gate
         self._task: asyncio.Task[None] | None = None
         self._process: asyncio.subprocess.Process | None = None
@@ -73,7 +80,9 @@ class LogChild:
             return refusal
         if not isinstance(driver, ConsoleDriver):
             return NO_TERMINAL
-        self._task = asyncio.get_running_loop().create_task(self._show(driver, replay_command(file, at, self._options)))
+        self._task = asyncio.get_running_loop().create_task(
+            self._show(driver, replay_command(file, at, self._options()))
+        )
         self._close_gate()
         return ""
 
@@ -100,6 +109,7 @@ class LogChild:
                 problem = error.strerror or str(error)
             returned(self._process is None or (self._process.returncode or 0) >= 0)
         self._task = self._process = None
+        self._returned()
         if self._after is not None:
             self._after()
         elif problem:

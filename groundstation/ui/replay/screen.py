@@ -135,7 +135,7 @@ class ReplayScreen(ConsoleScreen):
         self._export.tell_end()
         view = self._model.view
         if view is not None:
-            self._timeline.border_subtitle = plain(summary(view) if self.size.width >= WIDE else short_summary(view))
+            self._timeline.border_subtitle = plain(summary(view) if self.room.width >= WIDE else short_summary(view))
             self._events.border_subtitle = plain(f"{view.total} · / searches")
 
     @property

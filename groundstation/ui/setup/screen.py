@@ -109,8 +109,8 @@ class SetupScreen(ConsoleScreen):
 
     def on_resize(self, event: events.Resize) -> None:
         """Choose the layout."""
-        self.set_class(event.size.width >= WIDE, "-wide")
-        self.set_class(event.size.width >= WIDEST, "-widest")
+        self.set_class(self.room.width >= WIDE, "-wide")
+        self.set_class(self.room.width >= WIDEST, "-widest")
 
     @property
     def advice(self) -> str:

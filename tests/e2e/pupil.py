@@ -1,0 +1,136 @@
+"""A pupil at a lesson in a real terminal. It knows what the pane says, presses those keys, and nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import NamedTuple
+
+from tests.e2e.programs import LET_GO
+from tests.e2e.test_in_tmux import Tmux
+from tests.waits import PATIENCE, Patience
+
+PANE_COLUMNS, PANE_ROWS = 40, 6
+WIDE = 120
+TMUX_NAMES = {"SPACE": "Space", "ENTER": "Enter", "TAB": "Tab", "ESC": "Escape", "END": "End", "BACKSPACE": "BSpace",
+              "UP": "Up", "DOWN": "Down", "LEFT": "Left", "RIGHT": "Right", ";": "\\;"}  # fmt: skip
+"""Key as the pane writes it -> tmux's name, where they differ."""
+HOLD, UNTIL = 2.0, 15.0
+"""s for which a key is held: without a time in the task, and until something has happened."""
+PAGES = 8
+"""Turns of the page after which the task must have been seen."""
+
+
+class Deed(NamedTuple):
+    """One thing that a task asks for."""
+
+    what: str
+    """"hold", "press" or "type"."""
+    key: str
+    seconds: float = 0.0
+    times: int = 1
+
+
+def read_deeds(task: str) -> Iterator[Deed]:
+    """Yield what a task asks for, in its order."""
+    found = list(re.finditer(r"\[([^\[\]]+|\[|\])\]", task))
+    verb = "press"
+    for at, key in enumerate(found):
+        before = task[found[at - 1].end() if at else 0 : key.start()].casefold()
+        after = task[key.end() : found[at + 1].start() if at + 1 < len(found) else len(task)]
+        verbs = re.findall(r"\b(hold|press|type)\b", before)
+        verb = verbs[-1] if verbs else "press"
+        if at and not verbs and not re.search(r"(^\W*(and)?|\bthen)\W*$", before):
+            continue  # a key that is only named
+        times = re.match(r" (\d+) times", after)
+        if verb != "hold":
+            yield Deed(verb, key[1], times=int(times[1]) if times else 1)
+        elif "until" in after:
+            yield Deed("hold", key[1], UNTIL)
+        else:
+            seconds = re.search(r"for (a|\d+) s", after)
+            yield Deed("hold", key[1], HOLD if seconds is None or seconds[1] == "a" else float(seconds[1]) + 0.5)
+
+
+class Pupil:
+    """Reads the pane and acts."""
+
+    def __init__(self, terminal: Tmux, columns: int) -> None:
+        self.terminal, self._columns = terminal, columns
+        self.log: list[str] = []
+
+    def pane(self, screen: str) -> list[str]:
+        """Return the lines of the pane."""
+        lines = screen.split("\n")
+        lines = lines[:-1] if lines and not lines[-1] else lines
+        if self._columns >= WIDE:
+            return [line.ljust(self._columns)[self._columns - PANE_COLUMNS :].rstrip() for line in lines]
+        return lines[-PANE_ROWS:]
+
+    def step(self, screen: str) -> int:
+        """Return the number of the task that is due; 0 when all are done, -1 without a pane."""
+        found = re.search(r"Lesson ?\d* · (?:task (\d+) of \d+|(done))", "\n".join(self.pane(screen)))
+        return -1 if found is None else int(found[1] or 0)
+
+    def marked(self, screen: str, mark: str) -> str:
+        """Return the text behind a mark; "" where it is not on this page."""
+        lines = self.pane(screen)
+        at = next((number for number, line in enumerate(lines) if line.startswith(f" {mark} ")), None)
+        if at is None:
+            return ""
+        text = [lines[at][3:]]
+        for line in lines[at + 1 :]:
+            if not line.startswith("   "):
+                break
+            text.append(line.strip())
+        return " ".join(" ".join(text).split())
+
+    def read_task(self) -> str:
+        """Turn pages until the task is shown, and return it."""
+        for _ in range(PAGES):
+            if task := self.marked(self.terminal.screen(), "›"):
+                return task
+            before = "\n".join(self.pane(self.terminal.screen()))
+            self.terminal.press("C-l")
+            self.terminal.until(lambda screen, before=before: "\n".join(self.pane(screen)) != before, PATIENCE)  # type: ignore[misc]
+        raise AssertionError(self.terminal.screen())
+
+    def learn(self) -> str:
+        """Do every task, and return the last screen."""
+        screen = self.terminal.until(lambda screen: self.step(screen) > 0, PATIENCE)
+        self.terminal.until(lambda screen: "DISARMED" in screen or "Rover 1" in screen, PATIENCE)
+        while (step := self.step(screen)) > 0:
+            screen = self._do(step)
+        return screen
+
+    def _do(self, step: int) -> str:
+        """Do one task, again where a late machine did not see it; return the screen when another one is due."""
+        patience = Patience(2 * PATIENCE)
+        while True:
+            assert not patience.ended, "\n".join([*self.log, self.terminal.screen()])
+            task = self.read_task()
+            self.log.append(f"{step}: {task}")
+            for deed in read_deeds(task):
+                self._perform(deed, step)
+            with suppress(AssertionError):
+                return self.terminal.until(lambda screen: self.step(screen) not in (step, -1), UNTIL)
+            self.terminal.until(lambda screen: self.step(screen) != -1, PATIENCE)  # another program has the terminal
+
+    def _perform(self, deed: Deed, step: int) -> None:
+        key = self._tmux_name(deed.key)
+        if deed.what == "type":
+            self.terminal.press(*("Space" if each == " " else each for each in deed.key))
+        elif deed.what == "press":
+            self.terminal.press(*[key] * deed.times)
+        else:
+            with suppress(AssertionError):
+                self.terminal.until(lambda screen: self.step(screen) != step, deed.seconds, holding=key)
+            self.terminal.pause(LET_GO)
+        self.terminal.pause(0.8)
+
+    @staticmethod
+    def _tmux_name(key: str) -> str:
+        if key.startswith("^") and len(key) == 2:
+            return f"C-{key[1]}"
+        return TMUX_NAMES.get(key, key)

@@ -1,0 +1,141 @@
+"""What a pupil did is told from what the rover did: steps go on, wrong deeds get their hint, nothing counts twice."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from msgspec.structs import replace
+
+from groundstation.learn.attempt import Attempt
+from groundstation.learn.course import load_course
+from groundstation.learn.lesson import Lesson, Step
+from groundstation.snapshot import LogLine, OperatorView, ReplayStatus, Snapshot, VehicleView
+
+NEUTRAL = OperatorView(gate_open=True)
+FORWARD = OperatorView(gate_open=True, held=("i",), throttle=0.6)
+LEFT = OperatorView(gate_open=True, held=("j",), steering=-0.6)
+TICK = 0.2
+
+
+class Course:
+    """A rover that moves as it is told, and an attempt that watches it."""
+
+    def __init__(self, *steps: Step, lesson: Lesson | None = None) -> None:
+        self.attempt = Attempt(lesson or Lesson(title="t", text="t", why=("", "", ""), steps=steps))
+        who: Any = {"system": 1, "name": "Rover 1", "autopilot": 3, "mode": "MANUAL", "armed": True, "status": 4}
+        where: Any = {"alive": True, "silence": 0.0, "position": (0.0, 0.0), "heading": 0.0, "speed": 0.0}
+        self.now = Snapshot(vehicle=VehicleView(**who, **where))
+
+    @property
+    def vehicle(self) -> VehicleView:
+        assert self.now.vehicle is not None
+        return self.now.vehicle
+
+    def go(
+        self, seconds: float, operator: OperatorView = NEUTRAL, speed: float = 0.0, turn: float = 0.0, **changes: Any
+    ) -> None:
+        """Let time pass: m/s to the north, rad/s to the right."""
+        for _ in range(round(seconds / TICK)):
+            position, heading = self.vehicle.position or (0.0, 0.0), self.vehicle.heading or 0.0
+            moved = replace(
+                self.vehicle,
+                position=(position[0] + speed * TICK, position[1]),
+                heading=(heading + turn * TICK) % math.tau,
+                speed=speed,
+                **changes,
+            )
+            self.now = replace(self.now, uptime=self.now.uptime + TICK, operator=operator, vehicle=moved)
+            self.attempt.see(self.now, "drive")
+
+
+def step(check: str, value: float = 0.0, name: str = "") -> Step:
+    return Step(task="t", check=check, value=value, name=name)
+
+
+def passes(asked: Step) -> Course:
+    """Return a course of one step that is seen not to be done by a rover that stands."""
+    course = Course(asked)
+    course.go(2)
+    assert not course.attempt.done
+    return course
+
+
+def test_driving_counts_only_with_the_right_key() -> None:
+    course = passes(step("drove_forward", 2))
+    course.go(5, speed=1.0)
+    course.go(5, LEFT, speed=1.0)
+    assert not course.attempt.done
+    course.go(3, FORWARD, speed=1.0)
+    assert course.attempt.done
+
+
+def test_a_turn_counts_in_its_direction_also_over_north() -> None:
+    course = passes(step("turned_left", 90))
+    course.go(2, LEFT, turn=1.0)
+    assert not course.attempt.done
+    course.go(2, LEFT, turn=-1.0)
+    assert course.attempt.done
+
+
+def test_a_stop_counts_after_motion_and_in_time() -> None:
+    course = passes(step("stopped_after_release", 1.0))
+    course.go(2, FORWARD, speed=1.0)
+    course.go(2, speed=0.5)
+    course.go(1)
+    assert not course.attempt.done
+    course.go(2, FORWARD, speed=1.0)
+    course.go(1)
+    assert course.attempt.done
+
+
+def test_a_cut_is_judged_by_where_the_rover_stands() -> None:
+    for rolled, done in ((0.0, True), (9.0, False)):
+        course = passes(step("stopped_in_cut", 3))
+        course.go(2, FORWARD, speed=1.0)
+        course.go(2, FORWARD, silence=1.0, speed=1.0)
+        lost = (course.vehicle.position or (0.0, 0.0))[0] - 1.8
+        course.now = replace(course.now, vehicle=replace(course.vehicle, position=(lost + rolled, 0.0)))
+        course.go(1, silence=0.0)
+        assert course.attempt.done is done
+
+
+def test_late_programs_and_texts() -> None:
+    course = passes(step("refused_as_late"))
+    course.go(1, FORWARD, limits=("stale",))
+    assert course.attempt.done
+    course = passes(step("moved_without_key", 1))
+    course.go(3, FORWARD, speed=1.0, demand=(0.5, 0.0))
+    assert not course.attempt.done
+    course.go(4, speed=1.0, demand=(0.5, 0.0))
+    assert course.attempt.done
+    course = passes(step("said", name="mission complete"))
+    course.now = replace(
+        course.now, texts=(LogLine(time=0, severity=6, label="vehicle", text="Mission complete", number=1),)
+    )
+    course.go(1)
+    assert course.attempt.done
+
+
+def test_a_replay_counts_where_it_stands_in_the_stop() -> None:
+    course = passes(step("paused_at_stop"))
+    course.now = replace(course.now, replay=ReplayStatus(file="f", wall=0, position=1, duration=9, playing=True))
+    course.go(1, speed=0.4, demand=(0.0, 0.0))
+    assert not course.attempt.done
+    course.now = replace(course.now, replay=ReplayStatus(file="f", wall=0, position=1, duration=9))
+    course.go(1, speed=0.4, demand=(0.6, 0.0))
+    assert not course.attempt.done
+    course.go(1, speed=0.4, demand=(0.0, 0.0))
+    assert course.attempt.done
+
+
+def test_wrong_deeds_of_the_first_lesson_get_their_hints() -> None:
+    course = Course(lesson=load_course()[0].lesson)
+    course.go(1, FORWARD, armed=False)
+    assert "the rover is disarmed" in course.attempt.hint
+    course.go(1, armed=True)
+    assert (course.attempt.step, course.attempt.hint) == (1, "")
+    course.go(2, LEFT, turn=-1.0)
+    assert course.attempt.hint == "That was a turn. Hold `drive.forward`."
+    course.go(3, FORWARD, speed=1.0)
+    assert (course.attempt.step, course.attempt.hint) == (2, "")
