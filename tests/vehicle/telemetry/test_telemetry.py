@@ -246,7 +246,7 @@ def test_links_are_told_and_their_trouble_is_said_once() -> None:
 WILD = st.one_of(st.none(), st.floats(), st.sampled_from([math.nan, math.inf, -math.inf, 1e300, -1e300, 0.0]))
 
 
-NO_NUMBERS = ("wheel_speeds", "computer", "configured", "faults")
+NO_NUMBERS = ("wheel_speeds", "ranges", "computer", "configured", "faults")
 
 
 @settings(max_examples=60)
