@@ -45,6 +45,7 @@ with needing("test"):
         strangers,
         tenth_core,
         verb,
+        video_frames,
     )
     from tests.benchmarks.figures import BenchmarkError, Options
     from tests.benchmarks.pictures import write_pictures
@@ -80,6 +81,7 @@ BENCHMARKS: dict[str, tuple[Benchmark, str]] = {
     "rover": (rover_program.run, "a program with Rover: start to first motion, memory and CPU while it drives"),
     "recording": (recording.run, "what recording costs the station at 1000 messages/s"),
     "calls": (calls.run, "functions that a key, a view and a snapshot call, counted in virtual time"),
+    "video_frames": (video_frames.run, "a frame of video: CPU and bytes for each way to draw it"),
     "replay": (replay.run, "a log of 1 GB: first snapshot, index, jumps, memory"),
 }
 """Name -> its function, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""

@@ -110,6 +110,7 @@ def test_kitty_shows_one_picture_and_deletes_the_rest() -> None:
     assert not screen.placed
 
 
+@pytest.mark.slow
 def test_sixel_shows_each_pixel_with_near_colours() -> None:
     painter = PAINTERS[Protocol.SIXEL]()
     assert painter.fit(AREA) == (160, 108)
@@ -125,6 +126,7 @@ def test_a_recorded_sixel() -> None:
     assert encode_sixel(picture) == '\x1bP0;1;0q"1;1;5;7#5;2;0;0;100#180;2;100;0;0#180!5~-#5!5@\x1b\\'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("protocol", list(Protocol))
 def test_a_coarser_picture_takes_fewer_bytes(protocol: Protocol) -> None:
     """Of noise: the worst picture there is."""
