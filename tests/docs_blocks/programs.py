@@ -27,6 +27,7 @@ class Stays(NamedTuple):
 
 STAYS = (
     Stays(r"mavhelm (?:attach|replay)\b", "F1.*F10|Drive", CTRL_Q),
+    Stays(r"mavhelm learn$", r"Lesson 1 .* task 1", CTRL_Q),
     Stays(r"mavhelm keys\b", "q", "q"),
     Stays(r"mavhelm video (?!.*--snapshot)", "age|NO PICTURE", "q"),
     Stays(r"mavhelm serve --web\b", r"http://127\.0\.0\.1:\d+/\?token=\w+"),
