@@ -71,10 +71,13 @@ def _end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
     """Return what a child runs before its program, so that the kernel sends it a signal when we die."""
     import ctypes  # by those that need it: it takes 5 ms
 
+    parent = os.getpid()
     prctl = ctypes.CDLL(None).prctl  # looked up before the fork: as little as possible may run after it
 
     def prepare() -> None:
         prctl(PR_SET_PDEATHSIG, number)
+        if os.getppid() != parent:  # it died before the kernel was told
+            os._exit(1)
 
     return prepare
 
