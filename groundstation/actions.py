@@ -132,6 +132,8 @@ _ROWS = (
     *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
     OperatorAction("app.goto", "Go to", "Menu of the screens; then the digit of one", "app", keys=("ctrl+g",)),
     OperatorAction("app.command", "Command", "Command line: verbs, screens by name", "app", keys=("colon",)),
+    OperatorAction("app.mute", "Mute", "Mute what --speak says, or speak again", "app", keys=("quotation_mark",),
+                   steady=True),
     OperatorAction("app.next_screen", "Next screen", "Screen to the right in the tab bar", "app",
                    keys=("right_square_bracket",)),
     OperatorAction("app.previous_screen", "Previous screen", "Screen to the left in the tab bar", "app",

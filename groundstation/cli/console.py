@@ -28,11 +28,13 @@ from groundstation.input.pad_mapping import OFF, add_buttons, build_mapping
 from groundstation.input.style import Style
 from groundstation.recent.recent_file import RecentFile
 from groundstation.recording.options import RecordOptions
+from groundstation.speech.programs import find_program, missing_program
 from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
 from groundstation.ui.terminal.tmux import TmuxSession
 from link.runtime.whole_file import PRIVATE
 
 if TYPE_CHECKING:
+    from groundstation.ui.app.without_looking import Aids
     from groundstation.ui.learn.lesson_dock import LessonDock  # the UI is imported while the station starts
     from groundstation.ui.look.appearance import Look
 import contextlib
@@ -106,6 +108,8 @@ def open_screen(
     """
     keymap = build_keymap(settings)
     check_terminal()
+    if settings.speak and find_program() is None:
+        raise UsageError(missing_program())
     gamepad = stick or _gamepad(settings)
     if gamepad is not None:
         keymap = add_buttons(keymap, gamepad.mapping)
@@ -129,6 +133,7 @@ def open_screen(
             replay_options=option_words(settings, REPLAY_SETTINGS),
             gamepad=gamepad,
             lesson=lesson,
+            aids=_aids(settings),
         )
         quits = code == 0
         return code
@@ -157,6 +162,12 @@ def _look(settings: Settings) -> Look:
         ascii=needs_ascii() if settings.ascii is None else settings.ascii,
         reduce_motion=settings.reduce_motion,
     )
+
+
+def _aids(settings: Settings) -> Aids:
+    from groundstation.ui.app.without_looking import Aids
+
+    return Aids(settings.speak, settings.bell, settings.cursor)
 
 
 def remember(endpoints: Sequence[str], vehicle: str = "") -> None:

@@ -35,6 +35,7 @@ def run(arguments: Sequence[str]) -> int:
     """
     endpoints = [each for each in arguments if not each.startswith("-") and ":" in each]
     options = [each for each in arguments if each not in endpoints and each != "--sitl"]
+    options += _aids(options)
     words = [*VERB, *options, *(word for each in endpoints for word in ("-e", each))]
     if NOT_ABOUT_A_VEHICLE.intersection(each.partition("=")[0] for each in options) or _has_station(endpoints):
         return _print_changes(words)
@@ -86,6 +87,20 @@ def _usual_endpoints(options: Sequence[str]) -> list[str]:
 
     config = dict(zip(("option", "value"), _option(options, "--config"), strict=False)).get("value")
     return choose_endpoints(None, config, os.environ, note=_note, reserved=EVERY_VERB)
+
+
+def _aids(options: Sequence[str]) -> list[str]:
+    """Return --speak and --bell if the config file asks for them and the command line does not say otherwise."""
+    from groundstation.config.config_file import ConfigError
+    from groundstation.config.effective import load_config, merge
+
+    config = dict(zip(("option", "value"), _option(options, "--config"), strict=False)).get("value")
+    try:
+        settings = merge(load_config(config, os.environ, EVERY_VERB), os.environ, {}).settings
+    except ConfigError:  # told by what needs the file
+        return []
+    chosen = {"speak": settings.speak, "bell": settings.bell}
+    return [f"--{name}" for name, on in chosen.items() if on and not {f"--{name}", f"--no-{name}"} & set(options)]
 
 
 def _note(text: str) -> None:

@@ -62,6 +62,12 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Draw with ASCII characters only."""
     reduce_motion: Annotated[bool, Option("--reduce-motion")] = False
     """Nothing on the screen moves by itself: no spinners, no animations, no blinking cursor."""
+    speak: Annotated[bool, Option("--speak")] = False
+    """Say what changes: by speech-dispatcher, espeak-ng, or say on macOS. docs/accessibility.md."""
+    bell: Annotated[bool, Option("--bell")] = False
+    """Ring the bell of the terminal for what must not be missed: a lost link, a failsafe, a stop."""
+    cursor: Annotated[bool, Option("--cursor")] = False
+    """Show the cursor of the terminal on the focused row, for screen readers."""
     keep: Annotated[bool, Option("--keep")] = False
     """Keep the station when the screen is killed or hung up, as by SSH: it goes neutral; `mavhelm attach`."""
     folder: Annotated[str | None, Option("--folder", "FOLDER", "that of the log file")] = None

@@ -49,6 +49,9 @@ class CollectedOutput:
         """Note how the verb ended."""
         self.fields = {key: value for key, value in fields.items() if key not in ("text", "name")}
 
+    def announce(self, priority: int, text: str) -> None:
+        """Leave out speech."""
+
     def flush(self) -> None:
         """Do nothing."""
 

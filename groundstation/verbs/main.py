@@ -28,7 +28,7 @@ from groundstation.verbs.client.verb_client import HANGS_AFTER, VerbClient
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyModule
-from groundstation.verbs.common.output import Output
+from groundstation.verbs.common.output import Output, ring_bell
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
 from groundstation.verbs.session.vehicle_choice import choose_group
@@ -41,6 +41,7 @@ from link.runtime.event_loop import run_loop
 
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
+    from groundstation.speech.voice import Voice
     from groundstation.verbs.session.core import VerbCore
     from groundstation.verbs.session.demand_guard import DemandGuard
     from groundstation.verbs.session.doctor_session import DoctorSession
@@ -87,6 +88,7 @@ def run(arguments: Sequence[str]) -> int:
         options.words = tuple(arguments)
         group = choose_group(output.verb, action, options)
         options.given = None if action.prepare is None else action.prepare(options)
+        output.voice = _open_voice(options)
         code = run_loop(
             _run_offline(action, options, output, caught)
             if action.offline
@@ -106,7 +108,22 @@ def run(arguments: Sequence[str]) -> int:
         return stdio.end_output(error, lambda reason: output.error(f"output: {reason}"))
     finally:
         output.clear_progress()
+        if output.voice is not None:
+            output.voice.close()
     return code
+
+
+def _open_voice(options: argparse.Namespace) -> Voice | None:
+    """Return what speaks and rings for --speak and --bell. Raises VerbError."""
+    speak, bell = bool(getattr(options, "speak", False)), bool(getattr(options, "bell", False))
+    if not speak and not bell:
+        return None
+    from groundstation.speech.programs import find_program, missing_program
+    from groundstation.speech.voice import Voice
+
+    if speak and find_program() is None:
+        raise VerbError(ExitCode.USAGE, missing_program())
+    return Voice.open(speak=speak, ring=ring_bell if bell else None)
 
 
 def choose_action(verb: str, options: argparse.Namespace) -> VerbAction:

@@ -35,6 +35,7 @@ STAYS = (
     Stays(r"mavhelm ros1\b", "publish to command or cmd_vel", codes=(130,)),
     Stays(r"mavhelm ros2\b", "node /mavhelm_1 at", codes=(130,)),
     Stays(r"mavhelm watch (?!.*--(?:until|for|count)\b)", r"\d", codes=(0, 130)),
+    Stays(r"mavhelm --plain\b", "link up", codes=(130,)),
     Stays(r"mavhelm(?! (?:[a-z]+[0-9]?)(?: |$))", "Drive", CTRL_Q),
     Stays(r"mavhelm control give\b", "waiting until", codes=(130,)),
     Stays(r"(?:until )?\S*mavhelm vehicle (?=--|udp)|GPIOZERO", "vehicle: ready"),

@@ -58,6 +58,11 @@ class Tmux:
         """Return the text on the screen."""
         return self._run("capture-pane", "-p")
 
+    def cursor(self) -> tuple[int, int, bool]:
+        """Return column and line of the cursor, and whether it is shown."""
+        column, line, shown = self._run("display-message", "-p", "#{cursor_x} #{cursor_y} #{cursor_flag}").split()
+        return int(column), int(line), shown == "1"
+
     @property
     def tty(self) -> str:
         """Path of the terminal."""

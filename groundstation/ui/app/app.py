@@ -29,6 +29,7 @@ from groundstation.ui.app.palette import ActionProvider, action_commands, line_c
 from groundstation.ui.app.quitting import Quitting
 from groundstation.ui.app.ticks import Ticks
 from groundstation.ui.app.view_subscription import ViewSubscription
+from groundstation.ui.app.without_looking import Aids, WithoutLooking
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.display.request_numbers import RequestNumbers
@@ -84,6 +85,7 @@ class ConsoleApp(App[int]):
         replay_options: Sequence[str] = (),
         gamepad: PadSource | None = None,
         lesson: LessonDock | None = None,
+        aids: Aids = Aids(),  # noqa: B008  # frozen
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`first` is the id of the screen that is shown at first, `first_request` the number of its first request.
@@ -113,6 +115,7 @@ class ConsoleApp(App[int]):
         self._tmux = TmuxSession.from_environment()
         self._gamepad = PadInput(gamepad, self.gate, client.send, self.post_message) if gamepad else None
         self._appearance = Appearance(self, look)
+        self._without_looking = WithoutLooking(self, aids)
         context = ScreenContext(
             keymap,
             self._send,
@@ -140,6 +143,7 @@ class ConsoleApp(App[int]):
             "app.quit": self._quitting.request,
             "drive.gamepad": self._choose_gamepad,
             "view.lesson": self._turn_page,
+            "app.mute": lambda: self._say(self._without_looking.switch_mute()),
             **self._navigator.actions,
             **self.drive.actions,
         }
@@ -168,6 +172,7 @@ class ConsoleApp(App[int]):
         self._ticks.stop()
         self._pings.stop()
         self._tmux.stop()
+        self._without_looking.close()
         for descriptor in self._reading:
             asyncio.get_running_loop().remove_reader(descriptor)
 
@@ -247,6 +252,7 @@ class ConsoleApp(App[int]):
             self._handle_snapshot(snapshot)
         if self._client.outage != self._outage:
             self._outage = self._client.outage
+            self._without_looking.handle_outage(self._outage.text)
             self._tick()
         for descriptor in set(self._reading).difference(self._client.filenos()):
             self._reading.remove(descriptor)
@@ -267,6 +273,7 @@ class ConsoleApp(App[int]):
         self._snapshot = snapshot
         if self._lesson is not None:
             self._lesson.see(snapshot, self._navigator.current)
+        self._without_looking.handle_snapshot(snapshot)
         vehicle, operator = snapshot.vehicle, snapshot.operator
         self._tmux.handle_control(vehicle is not None and vehicle.in_control, any_vehicle=bool(snapshot.left_armed))
         driving = bool(operator.moves or operator.held)
@@ -287,6 +294,7 @@ class ConsoleApp(App[int]):
             self.drive.keep_state(now)
         if shown is not None and shown.is_mounted:
             shown.show_state(now)
+            self._without_looking.place_cursor(shown)
 
     def _find_proxy(self) -> str:
         return self._proxy or self._tmux.proxy

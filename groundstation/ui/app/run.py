@@ -9,6 +9,7 @@ from pathlib import Path
 from groundstation.input.keymap import Keymap
 from groundstation.ui.app.app import ConsoleApp
 from groundstation.ui.app.exit import exit_on_signals
+from groundstation.ui.app.without_looking import Aids
 from groundstation.ui.keys.key_gate import StationConnection
 from groundstation.ui.keys.pad_input import PadSource
 from groundstation.ui.learn.lesson_dock import LessonDock
@@ -29,6 +30,7 @@ def run(
     replay_options: Sequence[str] = (),
     gamepad: PadSource | None = None,
     lesson: LessonDock | None = None,
+    aids: Aids = Aids(),  # noqa: B008  # frozen
 ) -> int:
     """Run the UI to its end. Return 0 after a quit, 128 + n after signal n, 1 after an internal error.
 
@@ -48,6 +50,7 @@ def run(
             replay_options=replay_options,
             gamepad=gamepad,
             lesson=lesson,
+            aids=aids,
         )
         with exit_on_signals(app.end_threadsafe, terminal):
             # No mouse events for widgets: mouse.py captures the mouse and discards its reports.

@@ -33,6 +33,9 @@ class CallOutput:
         """Keep how the verb ended."""
         self.fields = {"ok": ok, **fields}
 
+    def announce(self, priority: int, text: str) -> None:
+        """Leave out speech."""
+
     def flush(self) -> None:
         """Do nothing: all is sent at once."""
 

@@ -152,5 +152,5 @@ class VerbClient:
             getattr(self._output, printed.method)(*printed.arguments, **printed.fields)
 
 
-PRINTS = frozenset(("line", "record", "result", "flush", "note", "error", "count"))
+PRINTS = frozenset(("line", "record", "result", "flush", "note", "error", "count", "announce"))
 """Methods of Output that a station may call."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from dialects.printable import printable
 
 if TYPE_CHECKING:  # it loads the dialect, which a program that only prints does without
+    from groundstation.speech.voice import Voice
     from groundstation.vehicles.requests.requests import RequestReport
 
 PROGRESS_PERIOD = 0.1
@@ -27,6 +28,8 @@ class Output:
         self._began = time.monotonic()
         self._shows_progress = sys.stderr.isatty() and not quiet
         self._progress_due = 0.0
+        self.voice: Voice | None = None
+        """What speaks and rings; None: silent."""
         self._progress_shown = False
 
     def line(self, text: str) -> None:
@@ -40,6 +43,13 @@ class Output:
         if self.as_json:
             self.clear_progress()
             sys.stdout.write(json.dumps(_finite(fields)) + "\n")
+
+    def announce(self, priority: int, text: str) -> None:
+        """Say a text, where that is asked for."""
+        if self.voice is not None:
+            from groundstation.speech.announcements import Announcement, Priority  # a verb that is silent does without
+
+            self.voice.say(Announcement(Priority(priority), text))
 
     def flush(self) -> None:
         """Pass on what was printed: somebody watches."""
@@ -94,3 +104,10 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def ring_bell() -> None:
+    """Ring the bell of the terminal, if there is one; what is printed is left as it is."""
+    if sys.stderr.isatty():
+        sys.stderr.write("\a")
+        sys.stderr.flush()

@@ -70,6 +70,8 @@ def check_status(options: argparse.Namespace) -> None:
         raise VerbError(ExitCode.USAGE, "status --watch is for one vehicle; the Links screen shows all of them")
     if not options.watch and (options.changes or options.seconds is not None):
         raise VerbError(ExitCode.USAGE, "--changes and --for belong to status --watch")
+    if (options.speak or options.bell) and not options.changes:
+        raise VerbError(ExitCode.USAGE, "--speak and --bell belong to status --watch --changes")
 
 
 async def _print_changes(session: VerbSession, asker: _Asker, end: float, output: Output) -> int:

@@ -5,6 +5,7 @@ To add a verb, write its function in a module beside this one and add its row to
 
 from __future__ import annotations
 
+import argparse
 from typing import TYPE_CHECKING
 
 from groundstation.verbs.action import ONLY, VerbAction
@@ -44,7 +45,10 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("print the state of the vehicle", status.status,
         (("--watch", {"action": "store_true", "help": "print a line each second"}),
          ("--changes", {"action": "store_true", "help": "with --watch: print a line for each change, and each text"}),
-         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"})),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"}),
+         ("--speak", {"action": argparse.BooleanOptionalAction, "help": "with --changes: say them, too"}),
+         ("--bell", {"action": argparse.BooleanOptionalAction,
+                     "help": "with --changes: ring for what must not be missed"})),
         watches=True, many=True, check=status.check_status)}),
     "vehicles": Verb(Group.VEHICLE, (
         Example("mavhelm vehicles", "all vehicles that are heard"),

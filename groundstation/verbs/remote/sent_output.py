@@ -33,6 +33,10 @@ class SentOutput(Output):
         if self.as_json:
             self._send(Printed("result", (ok, vehicle), fields))
 
+    def announce(self, priority: int, text: str) -> None:
+        """Have the shell say a text."""
+        self._send(Printed("announce", (priority, text)))
+
     def flush(self) -> None:
         """Have the shell pass on what was printed."""
         self._send(Printed("flush"))

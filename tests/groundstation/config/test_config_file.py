@@ -74,7 +74,7 @@ def test_a_dialect_beside_the_file_or_with_a_folder_is_a_path(tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ("sped = 0.3", "1: sped: unknown setting; did you mean speed?"),
+        ("sped = 0.3", "1: sped: unknown setting; did you mean speed or speak?"),
         ("\n\nspeed = 2", "3: speed: 2 is not a number from 0.1 to 1"),
         ("speed = nan", "1: speed: NaN is not a number from 0.1 to 1"),
         ("speed = true", "1: speed: true is not a number from 0.1 to 1"),
