@@ -24,13 +24,18 @@ def plain_keys(keys: tuple[str, ...]) -> list[str]:
     return [key for key in keys if not FUNCTION_KEY.fullmatch(key)]
 
 
+def plain_keys_of(action: str, keymap: Keymap) -> list[str]:
+    """Return those of an action, for a rover or for a copter."""
+    return plain_keys((*keymap.get_keys(action), *keymap.in_flight().get_keys(action)))
+
+
 @pytest.mark.parametrize("name", KEYMAPS)
 @pytest.mark.parametrize("action", ACTIONS.values(), ids=ACTIONS)
 def test_every_action_has_a_plain_key_or_is_in_a_menu(action: OperatorAction, name: str) -> None:
     keymap = Keymap(name, KEYMAPS[name])
     titles = {command.title.partition("   ")[0] for command in action_commands(keymap, print)}
     menu = {row.action for row in SCREENS if row.digit} | titles
-    assert plain_keys(keymap.get_keys(action.id)) or {action.id, action.label} & menu
+    assert plain_keys_of(action.id, keymap) or {action.id, action.label} & menu
 
 
 @pytest.mark.parametrize("name", KEYMAPS)
@@ -38,9 +43,9 @@ def test_what_the_menus_leave_out_and_what_stops_has_a_plain_key(name: str) -> N
     """Driving and confirming mean holding a key, which no menu can; a stop must not need one."""
     keymap = Keymap(name, KEYMAPS[name])
     held = [each.id for each in ACTIONS.values() if isinstance(each.intent, DriveKeyDown) or each.confirm]
-    assert len(held) == 10
+    assert len(held) == 16
     for action in (*held, "drive.stop", "stop.emergency", "app.goto", "app.quit"):
-        assert plain_keys(keymap.get_keys(action)), action
+        assert plain_keys_of(action, keymap), action
 
 
 @pytest.mark.parametrize("row", SCREENS, ids=lambda row: row.id)
