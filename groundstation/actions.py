@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import msgspec
 
+from groundstation.intents.agents import DeclineProposal, PermitProposal
 from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop, SetStyle, StepLimits, Stop
 from groundstation.intents.session import StartSimulator
 from groundstation.intents.union import AnyIntent
@@ -44,6 +45,8 @@ class OperatorAction(msgspec.Struct, frozen=True):
     """Keys in every key map, by Textual's names ("i", "comma", "up", "ctrl+q"). KEYMAPS (input/keymap.py) adds more."""
     confirm: bool = False
     """The key must be held for `hold_time`; then `intent` is sent, with that time in its field `held` if it has one."""
+    keeps: bool = False
+    """With `confirm`: `intent` is sent again with each repeat of the key, and EndPermission when it is released."""
     when_armed: AnyIntent | None = None
     """Sent in place of `intent`, without confirmation, while the vehicle is armed."""
     steady: bool = False
@@ -128,6 +131,10 @@ _ROWS = (
                    "vehicle", KeepControl(), ("N",)),
     OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
                    SelectNextVehicle(), ("n",)),
+    OperatorAction("agent.permit", "Permit agent", "Let the proposal of an agent run while this key is held", "vehicle",
+                   PermitProposal(), ("p",), confirm=True, keeps=True),
+    OperatorAction("agent.decline", "Decline", "Decline the proposal of an agent", "vehicle", DeclineProposal(),
+                   ("P",)),
     OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator()),
     *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
     OperatorAction("app.goto", "Go to", "Menu of the screens; then the digit of one", "app", keys=("ctrl+g",)),

@@ -27,7 +27,7 @@ MARKED = ("e2e", "interop")
 LONG = (
     "animation/test_drawing.py", "animation/test_recorder.py",
     "benchmarks", "test_benchmark_run.py", "fuzz", "mutation", "oldest", "packages", "recipes", "soak", "stress",
-    "test_ci_again.py", "test_examples.py", "test_order.py", "test_suite.py",
+    "test_agents.py", "test_ci_again.py", "test_examples.py", "test_order.py", "test_suite.py",
     "test_release.py::test_a_signature",
     "test_keys_to_motion.py::test_every_key_and_chord", "test_missions.py", "test_roaming.py",
     "test_secure_by_default.py::test_no_data_becomes_code", "test_signed_stops.py::test_every_stop_stops_a_rover",

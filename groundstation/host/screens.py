@@ -75,6 +75,7 @@ class ScreenSet:
         self._station = station
         self.lease = ScreenLease(station.operator, station.driving, station.log)
         station.verbs.screen_that_drives = lambda: self.lease.holder.name if self.lease.holder else None
+        station.proposals.permitting_screen = station.verbs.screen_that_drives
         self._host = host
         self._lifetime = lifetime
         self._attached: dict[ScreenPort, _Attached] = {}

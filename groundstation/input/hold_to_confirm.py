@@ -4,6 +4,8 @@ A held key sends its press, a pause (the repeat delay), then repeats. Only those
 over its hold time, confirm an action. Typed or pasted text cannot: it is faster, slower, or contains other keys. A key
 that has acted (armed, or disarmed) does nothing more until it was released. Terminals that report releases must send
 repeats, too: on a bad line the release may be late or lost, and such a key must not arm.
+
+A key that permits what an agent proposes goes on to confirm with each repeat; anything else that is read ends it.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import msgspec
 from groundstation.actions import OperatorAction
 from groundstation.input.key_repeat import LONGEST_DELAY, REPEAT_GAP, REPEAT_WINDOW_MAX, REPEAT_WINDOW_MIN
 from groundstation.input.keymap import KeyEvent, Keymap
+from groundstation.intents.agents import EndPermission
 from groundstation.intents.union import AnyIntent
 
 MIN_REPEATS = 5
@@ -39,7 +42,7 @@ class HoldResult(msgspec.Struct, frozen=True):
     passing: list[KeyEvent]
     """The read without the repeats of a key that has acted already."""
     confirmed: AnyIntent | None = None
-    """The intent of the action that this read has confirmed."""
+    """The intent of the action that this read has confirmed, or keeps going, or ends."""
 
 
 class _Hold(msgspec.Struct):
@@ -58,6 +61,10 @@ class _Hold(msgspec.Struct):
     """Longest gap of those repeats, s."""
     spent: bool = False
     """The key has acted or was cancelled: it must be released first."""
+    subject: int = 0
+    """What the key was pressed for."""
+    keeps: bool = False
+    """It has confirmed, and each of its repeats does so again."""
 
     @property
     def window(self) -> float:
@@ -85,24 +92,30 @@ class HoldToConfirm:
     def __init__(self, keymap: Keymap) -> None:
         self.keymap = keymap
         self._hold: _Hold | None = None
+        self._subject = 0
 
-    def handle_read(self, batch: Sequence[KeyEvent], *, armed: bool, allowed: bool, now: float) -> HoldResult:
-        """Handle the keys of one read. `allowed`: a hold may begin or end now."""
+    def handle_read(
+        self, batch: Sequence[KeyEvent], *, armed: bool, allowed: bool, now: float, subject: int = 0
+    ) -> HoldResult:
+        """Handle the keys of one read. `allowed`: a hold may begin or end; `subject`: the proposal that is shown."""
         text = len(batch) > MAX_EVENTS or len({press.key for press in batch}) > 1
+        kept, self._subject = self._hold if self._hold is not None and self._hold.keeps else None, subject
         passing = [press for press in batch if not self._swallow(press, armed, allowed and not text, now)]
         if text or not allowed:
             self.cancel()
+        if kept is not None and batch and (self._hold is not kept or kept.spent):
+            return HoldResult(passing, EndPermission())
         return HoldResult(passing, self._confirm(now) if batch else None)
 
     def cancel(self) -> None:
         """End a hold; its key must be released before it counts again."""
         if self._hold is not None:
-            self._hold.spent = True
+            self._hold.spent, self._hold.keeps = True, False
 
     def progress(self, now: float) -> HoldProgress | None:
         """Return the hold that has begun, None if there is none or its key is no longer held."""
         hold = self._hold
-        if hold is None or hold.spent or now - hold.seen > hold.window:
+        if hold is None or hold.spent or hold.keeps or now - hold.seen > hold.window:
             return None
         return HoldProgress(hold.action, hold.key, min(now - hold.pressed, hold.action.hold_time))
 
@@ -121,16 +134,20 @@ class HoldToConfirm:
         if action is None or not action.confirm or press.release or press.repeat:
             return None
         acts = armed and action.when_armed is not None
-        return _Hold(press.key, action, now, now, spent=acts) if acts or allowed else None
+        if not (acts or allowed) or (action.keeps and not self._subject):
+            return None
+        return _Hold(press.key, action, now, now, spent=acts, subject=self._subject)
 
     def _confirm(self, now: float) -> AnyIntent | None:
         hold = self._hold
         if hold is None or hold.spent or now - hold.pressed < hold.action.hold_time or hold.repeats < MIN_REPEATS:
             return None
-        hold.spent = True
-        return None if hold.action.intent is None else _with_time(hold.action.intent, now - hold.pressed)
+        hold.keeps = hold.action.keeps
+        hold.spent = not hold.keeps
+        return None if hold.action.intent is None else _with_hold(hold.action.intent, hold, now)
 
 
-def _with_time(intent: AnyIntent, held: float) -> AnyIntent:
-    """Return the intent with the time of its hold, which the station checks."""
-    return msgspec.structs.replace(intent, held=held) if "held" in intent.__struct_fields__ else intent
+def _with_hold(intent: AnyIntent, hold: _Hold, now: float) -> AnyIntent:
+    """Return the intent with the time of its hold, which the station checks, and with what the key was pressed for."""
+    known = {"held": now - hold.pressed, "number": hold.subject}
+    return msgspec.structs.replace(intent, **{name: known[name] for name in known if name in intent.__struct_fields__})

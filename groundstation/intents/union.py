@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from groundstation.intents import (  # noqa: F401 - defines the classes
+    agents,
     charts,
     driving,
     files,

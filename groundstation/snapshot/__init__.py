@@ -9,6 +9,7 @@ from enum import Enum
 
 import msgspec
 
+from groundstation.snapshot.agents import ProposalView
 from groundstation.snapshot.drive import HealthLine, KeyToMotor, MissionProgress, StopBound
 from groundstation.snapshot.lease import LeaseView
 from groundstation.snapshot.log_origin import LogOrigin
@@ -313,6 +314,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """A request of another ground station that waits for the operator's answer."""
     operator: OperatorView = OperatorView()
     lease: LeaseView = LeaseView()
+    proposal: ProposalView | None = None
+    """Of an agent; None: none waits or runs."""
     links: tuple[LinkView, ...] = ()
     signing: SigningView | None = None
     """Of the selected vehicle; without one, of the system whose frames are refused. None: there is nothing to tell."""

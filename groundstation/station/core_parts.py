@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import MutableMapping, Sequence
 
 from groundstation.input.style import Style
+from groundstation.station.agents.proposals import ProposalBook
 from groundstation.station.component import COMPONENT
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.driving import DrivingController
@@ -59,5 +60,7 @@ class CoreParts:
         self.link_closing = LinkClosing(operator, fleet, stats)
         self.queries = VehicleQueries(fleet, commander, stats, log, self.services)
         self.verbs = RunningVerbs(fleet, operator, log)
+        self.proposals = ProposalBook(fleet, operator, commander, log)
+        self.driving.is_lent = self.verbs.drives_for_operator
         self.refusals = Refusals(fleet, commander, self.verbs, log)
         self.operator_log = OperatorLog(log)

@@ -13,6 +13,7 @@ from typing import Any
 
 from dialects.enums import Severity
 from dialects.mode_tables import HOLD
+from groundstation.intents.agents import DeclineProposal, EndPermission, PermitProposal
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import (
     STOP_KEY,
@@ -46,7 +47,7 @@ from groundstation.vehicles.state.vehicle_state import VehicleState
 SECOND_STOP_WITHIN = 3.0
 """s after an emergency stop within which another one goes to every vehicle, not only to ours."""
 
-MOVES_STICKS = frozenset((DriveKeyDown, DriveKeyUp, DrivePad, ReleasePad, StepLimits))
+MOVES_STICKS = frozenset((DriveKeyDown, DriveKeyUp, DrivePad, ReleasePad, StepLimits, PermitProposal))
 """Intents that change the demand and nothing that decides who may drive, so that it need not be judged again."""
 
 Handle = Callable[[Any, float], None]
@@ -61,7 +62,7 @@ class IntentHandler:
         self._operator, self._fleet, self._log = parts.operator, parts.fleet, parts.log
         self._commander, self._driving, self._services = parts.commander, parts.driving, parts.services
         self._shutdown, self._handover, self._link_closing = parts.shutdown, parts.handover, parts.link_closing
-        self._verbs = parts.verbs
+        self._verbs, self._proposals = parts.verbs, parts.proposals
         self._emergency_at = -math.inf
         self._permission = Permission("starting", "starting")
         """Before the intent that is being carried out."""
@@ -91,6 +92,7 @@ class IntentHandler:
         """
         if intent.is_input:
             self._operator.record_input(now)
+            self._proposals.interrupt(intent, now)
         self._permission = permission
         self._driving.apply(permission, now)
         for handle in self._table.get(type(intent), ()):
@@ -176,9 +178,19 @@ class IntentHandler:
 
     def _set_gate(self, intent: SetKeyGate, now: float) -> None:
         self._operator.set_gate(intent, now)
+        self._proposals.tick(now)
 
     def _renew_lease(self, intent: RenewLease, now: float) -> None:
         self._operator.renew_lease(now)
+
+    def _permit(self, intent: PermitProposal, now: float) -> None:
+        self._proposals.permit(intent, self._permission.screen, now)
+
+    def _end_permission(self, intent: EndPermission, now: float) -> None:
+        """Do nothing more: every input but the held key has ended it."""
+
+    def _decline(self, intent: DeclineProposal, now: float) -> None:
+        self._proposals.decline(intent, now)
 
     def _select(self, intent: SelectVehicle, now: float) -> None:
         self._operator.reset_demand(now)
@@ -236,6 +248,9 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     ReportKeyReleases: IntentHandler._set_reports_releases,
     SetKeyGate: IntentHandler._set_gate,
     RenewLease: IntentHandler._renew_lease,
+    PermitProposal: IntentHandler._permit,
+    EndPermission: IntentHandler._end_permission,
+    DeclineProposal: IntentHandler._decline,
     SelectVehicle: IntentHandler._select,
     SelectNextVehicle: IntentHandler._select_next,
     RequestControl: IntentHandler._request_control,

@@ -47,7 +47,7 @@ class OperatorCore:
         self.parts = parts
         self.log, self.operator, self.fleet = parts.log, parts.operator, parts.fleet
         self.services, self.driving, self.verbs = parts.services, parts.driving, parts.verbs
-        self.shutdown, self.link_closing = parts.shutdown, parts.link_closing
+        self.shutdown, self.link_closing, self.proposals = parts.shutdown, parts.link_closing, parts.proposals
         self.station_info, self.params = parts.links.station_info, parts.links.params
         self._listener = listener or CoreListener()
         self._commander, self._handover, self._queries = parts.commander, parts.handover, parts.queries
@@ -130,6 +130,8 @@ class OperatorCore:
             return
         self._tick_due = now + TICK_PERIOD
         self._expire_lease(now)
+        if self.proposals.busy:
+            self.proposals.tick(now)
         self._handle_texts(self.log.expire(now), now)
         self.fleet.update(now)
         self._commander.tick(now)
@@ -189,6 +191,7 @@ class OperatorCore:
             self._commander.busy
             or self.services.busy
             or self._handover.busy
+            or self.proposals.busy
             or self._listener.busy
             or self.driving.ending
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from dialects.enums import StationEventKind as Kind
 from dialects.messages import Message
 from groundstation.intents.charts import PinSeries
 from groundstation.intents.union import AnyIntent
@@ -34,6 +35,7 @@ class ScreenFeed(DoctorFeed):
         self._charts = ChartRecorder(fleet, self._traffic, links.stats, links.timesync)
         self.notes = StationNotes(parts.operator, fleet)
         parts.log.listener = self.notes.add_line
+        parts.proposals.take_note = lambda now, text: self.notes.add(now, Kind.REQUEST, text)
         shown = (self._charts, self._detail, self.doctor, self._display)
         self.views = build_view_feed(parts, texts.files, *(each.sources for each in shown))
 

@@ -37,6 +37,7 @@ class SnapshotBuilder:
             operator=parts.operator.build_view(
                 parts.driving.judge(now).reason, bool(selected and selected.demand_stream.streaming), now
             ),
+            proposal=parts.proposals.view(now),
             links=links.stats.build_views(links.timesync.round_trip),
             signing=fleet.signing_of(selected, now),
             texts=parts.log.build_lines(now, wall),

@@ -41,6 +41,8 @@ class VerbAction(msgspec.Struct, frozen=True):
     programs and libraries of others. `session.companion` is the other end of its channel."""
     finds: bool = True
     """Waits for the vehicle before it runs."""
+    in_station: bool = False
+    """Only a ground station that runs can do it."""
     many: bool = False
     """May be done for many vehicles at once (--all, --group). Nothing that steers is."""
     watches: bool = False

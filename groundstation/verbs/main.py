@@ -61,6 +61,8 @@ STOP_WAIT = 30.0
 HELD = "--station {pid} goes through it"
 """What to do where a station of one's own has the port or device that a verb opens."""
 
+NO_STATION = "no ground station of yours runs here: start `mavhelm` in a terminal first"
+
 HELP_ALL = "all vehicles that are heard, at once; prints a table, and the exit code is the worst"
 HELP_GROUP = "several vehicles: a name of [groups] in the config file, system ids as 1-20,31, or a pattern of names"
 
@@ -284,6 +286,8 @@ def _find_way(
     station = find_station(through, endpoints, hello, output.note, within)
     if station is not None:
         return station, station.endpoints
+    if action.in_station:
+        raise VerbError(ExitCode.NO_VEHICLE, NO_STATION)
     check_options(action, options)
     return None, endpoints or choose()
 

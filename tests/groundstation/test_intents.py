@@ -52,7 +52,18 @@ def test_every_intent_has_a_handler() -> None:
 
 def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
     late = {kind.__name__ for kind in KINDS if kind.valid_when_late}
-    stops = {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "ReleaseControl", "Quit", "Detach", "StopMotorTest"}
+    stops = {
+        "EndPermission",
+        "DeclineProposal",
+        "Stop",
+        "EmergencyStop",
+        "Disarm",
+        "DriveKeyUp",
+        "ReleaseControl",
+        "Quit",
+        "Detach",
+        "StopMotorTest",
+    }
     assert late == stops | {
         "ReleasePad",
         "SetKeyGate",

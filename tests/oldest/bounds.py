@@ -30,6 +30,7 @@ TESTS: Mapping[str, tuple[str, ...]] = {
     "mcap": ("tests/groundstation/export/test_mcap.py",),
     "rosbags": ("tests/groundstation/export/test_mcap.py",),
     "eclipse-zenoh": ("tests/link/fleet/test_transport.py",),
+    "mcp": ("tests/groundstation/verbs/agents/test_server.py",),
     "xxhash": ("tests/groundstation/ros/rmw",),
 }
 """Package -> the tests that import it. A new dependency needs a row."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from dialects.axes import NEUTRAL, Axes, build_manual_control
 from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverOperatorPresence
@@ -26,6 +27,8 @@ class DrivingController:
     def __init__(self, operator: OperatorSession, fleet: Fleet, commander: Commander, ids: tuple[int, int]) -> None:
         self._operator = operator
         self._fleet = fleet
+        self.is_lent: Callable[[int, float], bool] = lambda system, now: False
+        """Whether a verb makes the demands of this vehicle in the place of keys, while the operator holds one."""
         self._commander = commander
         self._ids = ids
         self._system = ids[0]
@@ -69,6 +72,9 @@ class DrivingController:
         for contact in self._fleet:
             controlled = contact.state.system in permission.controlled
             self._update_ours(contact, controlled=controlled)
+            if self.is_lent(contact.state.system, now):
+                contact.demand_stream.resume(now)  # with neutral as soon as that ends
+                continue
             chosen = contact is selected
             streaming = chosen and self._may_stream(contact, controlled=controlled)
             axes = contact.demand_stream.next_due(demand if chosen else NEUTRAL, streaming, now)
@@ -239,6 +245,8 @@ class DrivingController:
         if contact is None or self._ending or not self._operator.live or proven:
             return
         state = contact.state
+        if self.is_lent(state.system, now):
+            return
         if state.has_rover_dialect and state.system not in self._demands:
             self._proven_at = now
             self._demands[state.system] = [

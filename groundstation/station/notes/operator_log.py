@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from dialects.axes import Axes
+from groundstation.intents.agents import DeclineProposal
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import (
     PAD,
@@ -53,6 +54,7 @@ TEXTS: dict[type[Intent], Callable[[Any], str]] = {
     ReleaseControl: lambda intent: "release control of all vehicles" if intent.all else "release control",
     GiveControl: lambda _: "give control",
     KeepControl: lambda _: "keep control",
+    DeclineProposal: lambda _: "decline the proposal of the agent",
     SelectVehicle: lambda intent: f"select vehicle {intent.system}",
     SelectNextVehicle: lambda _: "select the next vehicle",
     RunChecks: lambda _: "run the pre-arm checks",

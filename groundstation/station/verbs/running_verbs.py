@@ -20,7 +20,7 @@ import msgspec
 
 from dialects import messages as m
 from dialects.enums import Severity
-from dialects.traits import ACKED
+from dialects.traits import ACKED, is_stop, only_asks
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.vehicles.demand.demand_neutrals import DEMANDS
@@ -38,6 +38,11 @@ CONSTANT = frozenset((m.AutopilotVersion.id, m.RoverDriveInfo.id, m.HomePosition
 
 MAX_KINDS = 64 * MAX_VEHICLES
 """Kinds of messages, of all senders together, whose newest is kept."""
+
+
+_READS = (m.ParamRequestRead, m.ParamRequestList, m.MissionRequestList, m.MissionRequestInt, m.MissionRequest,
+          m.MissionAck, m.LogRequestList, m.Timesync, m.Ping)  # fmt: skip
+"""Messages that only read. An agent may send them, stops and questions without a person."""
 
 
 class Purpose(Enum):
@@ -88,6 +93,8 @@ class RunningVerb(msgspec.Struct, eq=False):
     seat: VerbSeat
     follows: bool = False
     """It keeps the session going that a verb has used just before."""
+    is_permitted: Callable[[float], bool] | None = None
+    """Of a verb of an agent: whether a person lets it act now. None: it is the user's own."""
     alone: bool = False
     """The station is that of its own process: nobody else drives there, and its watchdog ends what it demands."""
     heard_at: float = 0.0
@@ -195,6 +202,8 @@ class RunningVerbs:
         self._senders.append((message, verb))
 
     def _may_pass(self, verb: RunningVerb, said: VerbMessage, now: float) -> bool:
+        if verb.is_permitted is not None and not verb.is_permitted(now):
+            return said.purpose is Purpose.OTHER and _changes_nothing(said.message)
         if said.purpose is Purpose.OTHER:
             return True
         if said.purpose is Purpose.PRESENCE:
@@ -217,7 +226,9 @@ class RunningVerbs:
             verb.seat.tick(now)
             verb.follows &= not self._operator.live
             self._check_silence(verb, now)
-            if screen is not None and verb.demands:
+            if verb.is_permitted is not None and verb.demands and not verb.is_permitted(now):
+                self._refuse(verb, "its permission has ended", now)
+            elif screen is not None and verb.demands and verb.is_permitted is None:
                 self._refuse(verb, f"the {screen} drives", now)
         for ending in list(self._endings):
             self._continue(ending, now)
@@ -240,6 +251,13 @@ class RunningVerbs:
         for verb in self._verbs:
             if verb.alone:
                 verb.seat.tell_refusal(message, why, now)
+
+    def drives_for_operator(self, system: int, now: float) -> bool:
+        """Return whether a verb demands motion of this vehicle that a person permits at this moment."""
+        return any(
+            verb.is_permitted is not None and verb.is_permitted(now) and any(to == system for _, to in verb.demands)
+            for verb in self._verbs
+        )
 
     @property
     def busy(self) -> bool:
@@ -270,7 +288,7 @@ class RunningVerbs:
             verb.demands.pop((type(message), contact.state.system), None)
             return not contact.demand_stream.streaming  # else the station sends them
         other = next((each for each in self._verbs if each is not verb and each.demands), None)
-        screen = self.screen_that_drives()
+        screen = self.screen_that_drives() if verb.is_permitted is None else None
         if not verb.refused and (screen or other):
             self._refuse(verb, f"the {screen or (other.name if other else '')} drives", now)
         if verb.refused:
@@ -328,6 +346,10 @@ class RunningVerbs:
         ending.left, ending.due = ending.left - 1, now + DRIVING_PERIOD
         if not ending.left:
             self._endings.remove(ending)
+
+
+def _changes_nothing(message: m.Message) -> bool:
+    return is_stop(message) or only_asks(message) or isinstance(message, _READS)
 
 
 def _values(message: m.Message) -> dict[str, Any]:

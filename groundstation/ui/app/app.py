@@ -278,7 +278,9 @@ class ConsoleApp(App[int]):
         self._tmux.handle_control(vehicle is not None and vehicle.in_control, any_vehicle=bool(snapshot.left_armed))
         driving = bool(operator.moves or operator.held)
         armed = vehicle is not None and vehicle.armed
-        self.gate.update(armed=armed, driving=driving, flies=vehicle is not None and vehicle.flies)
+        flies = vehicle is not None and vehicle.flies
+        proposal = snapshot.proposal.number if snapshot.proposal is not None else 0
+        self.gate.update(armed=armed, driving=driving, flies=flies, proposal=proposal)
         interpreter.favour_input(driving or (armed and vehicle is not None and vehicle.in_control))
         self._adapt_ticks()
         if self._clock() - self._shown_at >= MIN_FRAME_TIME:

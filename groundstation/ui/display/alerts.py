@@ -98,6 +98,25 @@ def _hold(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.QUESTION, text)
 
 
+def _proposal(now: DisplayState) -> Iterator[Alert]:
+    proposal = now.snapshot.proposal
+    if proposal is None or now.hold is not None:
+        return
+    permits, declines = now.key("agent.permit"), now.key("agent.decline")
+    if proposal.runs:
+        covered = f", {proposal.covered:.1f} m" if proposal.meters is not None else ""
+        text = f"the AGENT acts while {permits} is held: {proposal.ran:.1f} of {proposal.seconds:g} s{covered}"
+        yield Alert(AlertLevel.QUESTION, text)
+        return
+    if now.snapshot.lease.driver:
+        can = f"{now.snapshot.lease.driver} can permit it"
+    elif proposal.vehicle:
+        can = f"it is for {proposal.vehicle}: {now.key('vehicle.next')} selects it"
+    else:
+        can = f"hold {permits} to let it"
+    yield Alert(AlertLevel.QUESTION, f"agent asks: {can}, {declines} declines ({proposal.left:.0f} s): {proposal.text}")
+
+
 def _stop_question(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.stop_question is not None:
@@ -315,9 +334,9 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _stop_question, _silence, _emergency, _failsafe, _breach, _flight, _handover, _duplicates, _state,
-    _key, _gate, _obeys, _operator, _driver, _gamepad, _refusal, _id_conflict, _limits, _watched, _settings, _recording,
-    _vehicles,
+    _station, _hold, _stop_question, _proposal, _silence, _emergency, _failsafe, _breach, _flight, _handover,
+    _duplicates, _state, _key, _gate, _obeys, _operator, _driver, _gamepad, _refusal, _id_conflict, _limits, _watched,
+    _settings, _recording, _vehicles,
 )  # fmt: skip
 """Most urgent first."""
 

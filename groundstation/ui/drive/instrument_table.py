@@ -11,6 +11,7 @@ from groundstation.ui.drive.instruments.key_to_motor import WayPanel, WayValue
 from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.drive.instruments.links import LinksPanel
 from groundstation.ui.drive.instruments.mission import MissionStrip, MissionValue
+from groundstation.ui.drive.instruments.proposal import ProposalLines
 from groundstation.ui.drive.instruments.speed import Readout, SpeedReadout
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.stops import StopsLine, StopsPanel, StopsValue
@@ -44,6 +45,7 @@ INSTRUMENTS: tuple[InstrumentRow, ...] = (
     instrument_row("stops-line", "bottom", StopsLine, StopsValue.from_state, slow=True, urgent=is_near,
                    layout="-narrow"),
     instrument_row("log", "bottom", LogPanel, lambda now: now.snapshot.texts),
+    instrument_row("proposal", "bottom", ProposalLines, lambda now: now.snapshot.proposal),
     instrument_row("alert", "bottom", AlertLine, AlertValue.from_state),
     HINT,
     FOOTER,

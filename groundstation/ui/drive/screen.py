@@ -247,7 +247,12 @@ def _conditions(now: DisplayState) -> dict[str, bool]:
     """Return the style classes that depend on the state, and whether they apply."""
     vehicle = now.snapshot.vehicle
     no_legs = vehicle is None or vehicle.mission is None or not vehicle.mission.legs
-    return {"-waiting": vehicle is None, "-no-legs": no_legs, "-alert": bool(active_alerts(now))}
+    return {
+        "-waiting": vehicle is None,
+        "-no-legs": no_legs,
+        "-alert": bool(active_alerts(now)),
+        "-proposal": now.snapshot.proposal is not None,
+    }
 
 
 def format_arming(vehicle: VehicleView | None) -> str:

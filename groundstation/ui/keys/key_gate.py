@@ -139,6 +139,7 @@ class KeyGate:
         """The terminal says that it reports releases. Only a release or a repeat proves it."""
         self._armed = False
         self._driving = True
+        self._proposal = 0
         self._opening_until = -math.inf
         self._hold = HoldToConfirm(keymap)
         self._shown_key, self._shown_at = "", -math.inf
@@ -158,9 +159,12 @@ class KeyGate:
         """Why the gate is not open; None when it is."""
         return self._closure
 
-    def update(self, *, armed: bool, driving: bool, flies: bool = False) -> None:
-        """Set what the newest snapshot reports; it decides what some keys mean (arm or disarm, stop or not, climb)."""
-        self._armed, self._driving = armed, driving
+    def update(self, *, armed: bool, driving: bool, flies: bool = False, proposal: int = 0) -> None:
+        """Set what the newest snapshot reports; it decides what some keys mean (arm or disarm, stop or not, climb).
+
+        `proposal`: number of that which is shown; 0: none is.
+        """
+        self._armed, self._driving, self._proposal = armed, driving, proposal
         if self.keymap is not self._keymaps[flies]:
             with self._lock:
                 self.keymap = self._hold.keymap = self._keymaps[flies]
@@ -171,7 +175,11 @@ class KeyGate:
         with self._lock:
             self.split_keys += batch.count(SPLIT)
             read = self._hold.handle_read(
-                self._drop_stray_repeats(batch), armed=self._armed, allowed=self._closure is None, now=self._clock()
+                self._drop_stray_repeats(batch),
+                armed=self._armed,
+                allowed=self._closure is None,
+                now=self._clock(),
+                subject=self._proposal,
             )
             if self._opens_screen(batch):
                 self._opening_until = self._clock() + OPENING_TIMEOUT

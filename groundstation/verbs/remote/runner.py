@@ -117,6 +117,7 @@ class ShellVerb:
 
         session = build_session(action, options, output, endpoints, build_core, (ids, station.operator.session))
         session.files, session.companion = self._files, self._companion
+        session.program, session.silence = self._name, self._silence
         return session
 
     def _note_vehicle(self, name: str) -> None:

@@ -1,4 +1,4 @@
-"""The table of the verbs in this room, and of `mavhelm api`.
+"""The table of the verbs in this room, and of `mavhelm api` and `mavhelm mcp`.
 
 To add a verb, write its function in a module beside this one and add its row to VERBS.
 """
@@ -18,7 +18,7 @@ else:
     ros2 = LazyModule("ros.ros2")
 
 
-api = LazyModule("api.api")  # a room above this one
+api, agents = LazyModule("api.api"), LazyModule("agents.agents")  # rooms above this one
 
 VERBS: dict[str, Verb] = {
     "api": Verb(Group.LINKS, (
@@ -26,6 +26,11 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("be driven by a program: calls on stdin, answers on stdout, one JSON object a line", api.run,
         (("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what the program has armed"}),),
         needs_session=True, guarded=lambda _: True, companion=api.serve)}),
+    "mcp": Verb(Group.LINKS, (
+        Example("mavhelm mcp", "an MCP client starts it; a person at the screen permits; docs/agents.md",
+                Stage.OTHER_VEHICLE),
+    ), {ONLY: VerbAction("be the tools of an agent (MCP): it reads, and a person holds a key for all else", agents.run,
+        watches=True, finds=False, in_station=True, prepare=agents.prepare, companion=agents.serve)}),
     "ros1": Verb(Group.LINKS, (
         Example("mavhelm ros1 --arm", "a node of ROS 1: /command and /cmd_vel drive; docs/ros.md", Stage.STOPPED),
     ), {ONLY: VerbAction("be a node of ROS 1: /command and /cmd_vel drive, telemetry is published; until Ctrl-C",

@@ -51,6 +51,9 @@ class DoctorSession:
         """The files of whoever typed the verb."""
         self.companion = CompanionChannel()
         """As of a VerbSession."""
+        self.program = ""
+        """As of a VerbSession, like the next one."""
+        self.silence: Callable[[float], float] = lambda now: 0.0
         self.observe: Callable[[], None] = lambda: None
         """Gets the newest reports of links of its own; those of a station come by themselves."""
         self._request = DoctorRequest(station=getattr(options, "driver", 0))

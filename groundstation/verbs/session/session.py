@@ -65,6 +65,10 @@ class VerbSession:
         """Of a verb that has a companion in the process of the user."""
         self.where = ""
         """The endpoints, for texts."""
+        self.program = ""
+        """What a station calls the program whose verb this is."""
+        self.silence: Callable[[float], float] = lambda now: 0.0
+        """For how many s that program was silent; gets the time."""
         self.began = self.now
         """When the verb began."""
         self.afterwards = "; this program no longer sends heartbeats"

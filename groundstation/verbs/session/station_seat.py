@@ -39,17 +39,18 @@ class StationSeat:
         follows: bool = False,
         silence: Callable[[float], float] = lambda now: 0.0,
         alone: bool = False,
+        is_permitted: Callable[[float], bool] | None = None,
         speak: Callable[[], list[VerbMessage]] | None = None,
     ) -> None:
         """`flush` sends what the station has queued; `silence`: for how many s the shell of the verb was silent.
 
-        `alone`: the station is that of the verb's own process. `speak` returns what the verb sends now; None: what
-        its VerbCore does.
+        `alone`: the station is that of the verb's own process. `is_permitted`: see RunningVerb. `speak`
+        returns what the verb sends now; None: what its VerbCore does.
         """
         self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
         self._speak = core.messages_to_send if isinstance(core, VerbCore) else speak
-        self._verb = RunningVerb(name, needs_session, self, follows=follows, alone=alone)
+        self._verb = RunningVerb(name, needs_session, self, follows=follows, alone=alone, is_permitted=is_permitted)
 
     @cached_property
     def broken(self) -> asyncio.Future[None]:

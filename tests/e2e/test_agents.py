@@ -1,0 +1,143 @@
+"""Agents with the SDK's own client, a real screen in tmux and the simulator: wheels turn only while a key is held."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from groundstation.station_socket.connect import running_stations
+from tests.e2e.programs import Vehicle
+from tests.e2e.test_in_tmux import Tmux, tmux
+from tests.e2e.test_stop_matrix import FALLS_WITHIN, NEUTRAL_WITHIN
+from tests.e2e.tmux_marks import IN_TMUX
+from tests.groundstation.held_key import event_times
+from tests.ports import free_port
+from tests.waits import PATIENCE, Waits, wait_until
+
+__all__ = ["tmux"]
+
+pytestmark = [*IN_TMUX, pytest.mark.xdist_group("verbs through a station")]
+
+DRIVE = {"throttle": 60, "seconds": 9, "max_meters": 50, "reason": "look behind the chair"}
+
+
+class Agent:
+    """An MCP client in a process of its own, that calls tools."""
+
+    def __init__(self, folder: Path, *calls: tuple[str, dict[str, Any]]) -> None:
+        self._out = folder / f"agent{time.monotonic_ns()}.out"
+        words = [word for tool, arguments in calls for word in (tool, json.dumps(arguments))]
+        with self._out.open("wb") as out:
+            command = [sys.executable, "-m", "tests.e2e.agent", *words]
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=out)
+
+    @property
+    def answers(self) -> list[Any]:
+        """The answers so far."""
+        return [json.loads(line) for line in self._out.read_text().splitlines() if line.startswith("{")]
+
+    @property
+    def said(self) -> str:
+        """All that it has printed."""
+        return self._out.read_text()
+
+    def end(self) -> None:
+        """End it in any state."""
+        self.process.kill()
+        self.process.wait()
+
+
+@contextmanager
+def held(terminal: Tmux, key: str) -> Iterator[Callable[[], float]]:
+    """Hold a key; yields what lets it go and returns when it was pressed last."""
+    ended = threading.Event()
+
+    def press() -> None:
+        begun = time.monotonic()
+        for at in event_times(60.0):
+            if ended.wait(max(0.0, begun + at - time.monotonic())):
+                return
+            terminal.press(key)
+
+    thread = threading.Thread(target=press)
+    thread.start()
+
+    def release() -> float:
+        ended.set()
+        thread.join()
+        return time.monotonic()
+
+    yield release
+    release()
+
+
+def kill_screen(terminal: Tmux) -> None:
+    """Kill the screen's process: the child of the shell in the window."""
+    shell = terminal._run("display-message", "-p", "#{pane_pid}").strip()
+    children = Path(f"/proc/{shell}/task/{shell}/children").read_text().split()
+    os.kill(int(children[0] if children else shell), signal.SIGKILL)
+
+
+WAYS: dict[str, tuple[Callable[[Tmux, Agent], object], str]] = {
+    "a released key": (lambda terminal, agent: None, "the key was released"),
+    "a stop key": (lambda terminal, agent: terminal.press("Space"), "something else"),
+    "another key": (lambda terminal, agent: terminal.press("k"), "something else"),
+    "the key that declines": (lambda terminal, agent: terminal.press("P"), ""),
+    "SIGSTOP of the agent": (lambda terminal, agent: agent.process.send_signal(signal.SIGSTOP), ""),
+    "kill -9 of the agent": (lambda terminal, agent: agent.process.kill(), ""),
+    "kill -9 of the screen": (lambda terminal, agent: kill_screen(terminal), ""),
+}
+"""What ends a proposal that runs, and what the agent is told, if it can be. The last one ends the station, too."""
+
+
+def test_wheels_turn_while_the_key_is_held_and_stop(tmux: Callable[..., Tmux], tmp_path: Path) -> None:
+    port = free_port()
+    vehicle = Vehicle(tmp_path, port)
+    terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")
+    agents: list[Agent] = []
+    try:
+        terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+        wait_until(running_stations, "the station listens")
+        for name in WAYS:
+            see_it_stop(terminal, vehicle, tmp_path, agents, name)
+    finally:
+        for agent in agents:
+            agent.end()
+        vehicle.end()
+
+
+def see_it_stop(terminal: Tmux, vehicle: Vehicle, folder: Path, agents: list[Agent], name: str) -> None:
+    """Arm, propose, hold the key until the wheels turn at full demand, end it in one way, and see them stop."""
+    act, told = WAYS[name]
+    if "ARMED" not in (screen := terminal.screen()) or "DISARMED" in screen:
+        terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
+    agent = Agent(folder, ("drive", DRIVE))
+    agents.append(agent)
+    terminal.until(lambda screen: "agent asks" in screen and DRIVE["reason"] in screen, PATIENCE)  # type: ignore[operator]
+    assert not vehicle.turning()
+    with held(terminal, "p") as release:
+        wait_until(vehicle.at_full, lambda: f"{name}: turning: {agent.said}\n{terminal.screen()}", 20.0)
+        waits = Waits(vehicle.process.pid)
+        if told == "the key was released":
+            at = release()
+        else:
+            at = time.monotonic()
+            act(terminal, agent)
+        wait_until(vehicle.stands, lambda: f"{name}: standing", 8.0)
+    falls, stops = vehicle.falls_and_stops_after(at)
+    assert falls <= FALLS_WITHIN + waits.total(), name
+    assert stops <= NEUTRAL_WITHIN + waits.total(), name
+    if told:
+        wait_until(lambda: agent.answers, lambda: agent.said)
+        assert told in agent.answers[0]["error"]
