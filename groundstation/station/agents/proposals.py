@@ -19,7 +19,7 @@ from dialects.mode_tables import HOLD
 from dialects.printable import printable
 from groundstation.intents.agents import DeclineProposal, EndPermission, PermitProposal
 from groundstation.intents.base import Intent
-from groundstation.intents.driving import HOLD_TIME
+from groundstation.intents.vehicle_intent import HOLD_TIME
 from groundstation.snapshot.agents import ProposalView
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import OperatorSession
