@@ -19,7 +19,7 @@ BLOCKS = [(page, block) for page in PAGES for block in find_blocks(page.read_tex
 TYPED = sorted({page for page, block in BLOCKS if block.is_shell and "not run" not in block.notes})
 EXPLAINED = {
     "hardware": 5,  # commands: a compass, a receiver; faq: a Bluetooth gamepad; pi: raspi-config; video: cameras
-    "network": 19,  # install: package indexes; faq, ros: uv; faq: git pull; browser, phone: ssh; fleet; remote: a VPN
+    "network": 20,  # agents, install: package indexes; faq, ros: uv; faq: git pull; browser, phone: ssh; fleet; remote
     "program": 2,  # ros: ROS 2
     "root": 16,  # faq: a firewall; faq, install, pi: packages, services; reliability: a VM; remote: a VPN; ros
     "time": 4,  # performance: an hour; reliability: the soak, the mutation run and the rounds on a late machine

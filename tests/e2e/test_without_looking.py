@@ -65,10 +65,10 @@ def test_the_screen_speaks_and_rings_when_the_link_is_lost(tmp_path: Path, monke
     station = GroundStation(tmp_path, f"udpin:127.0.0.1:{port}", "--config", str(config))
     try:
         station.wait_for(lambda: any("Rover 1: " in each for each in ear.heard), PATIENCE, "the vehicle is announced")
-        assert b"\a" not in station.screen
+        rung = station.screen.count(b"\a")  # on a late machine the link may have been lost before
         vehicle.end()
         station.wait_for(lambda: "said: link lost" in ear.heard, PATIENCE, "link lost")
-        station.wait_for(lambda: b"\a" in station.screen, PATIENCE, "the bell")
+        station.wait_for(lambda: station.screen.count(b"\a") > rung, PATIENCE, "the bell")
         station.type('"')
         station.look(1.0)
         assert "said: speech is on" not in ear.heard
