@@ -14,9 +14,9 @@ from groundstation.station.driving.claims import Claims
 from groundstation.station.driving.command_results import CommandResults
 from groundstation.station.driving.emergency import EmergencyLock
 from groundstation.station.driving.stop_questions import FALLS, StopQuestions
-from groundstation.station.driving.take_off import find_refusal, take_off_params
 from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, mode_stop
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, StopKind
+from groundstation.vehicles.demand.take_off import find_refusal, take_off_params
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Outgoing, Received

@@ -1,0 +1,1 @@
+"""`mavhelm learn`: its command line, and how replay and attach continue its lesson."""
