@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from groundstation.intents.agents import PermitProposal
 from groundstation.intents.driving import (
     DriveKeyDown,
     DriveKeyUp,
@@ -123,6 +124,7 @@ STICKS: tuple[AnyIntent, ...] = (
     DrivePad(1.0, 0.0, 102.0),
     ReleasePad(),
     StepLimits(0.1, 0.1),
+    PermitProposal(number=1, held=1.0),
 )
 
 
