@@ -15,12 +15,12 @@ from groundstation.cli import (
     completion_verb,
     config_verb,
     keys_verb,
+    learn_verb,
     replay_verb,
     serve_verb,
     video_verb,
 )
 from groundstation.cli import options as station_options
-from groundstation.cli.lessons import learn_verb
 from groundstation.cli.verb_help import LOCAL_VERBS
 from groundstation.verbs import main as verbs_main
 from groundstation.verbs.table import VERBS

@@ -92,7 +92,7 @@ def _run_local(verb: str, arguments: Sequence[str]) -> int:
     elif verb == "replay":
         from groundstation.cli.replay_verb import run
     elif verb == "learn":
-        from groundstation.cli.lessons.learn_verb import run
+        from groundstation.cli.learn_verb import run
     elif verb == "serve":
         from groundstation.cli.serve_verb import run
     elif verb == "video":

@@ -156,10 +156,10 @@ class Drive:
         if avoid is None or not any(targets):
             return targets
         share, reason = avoid(targets, self._gate.wheels)
-        if not share < 1.0:  # also a share that is not a number: values that are not go to the gate as they are
+        if share >= 1.0:
             return targets
         self._limits |= reason
-        share = max(0.0, share)
+        share = max(0.0, share)  # 0 of a share that is not a number; a target that is not one goes on to the gate
         slower = tuple(share * value if at < self._driven else value for at, value in enumerate(targets))
         self.avoiding_speed = self._travel_of(slower) * self._top
         return slower

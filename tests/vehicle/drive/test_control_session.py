@@ -36,12 +36,13 @@ class Sessions(Rig):
         clock: int | None = None,
         introduced: bool = True,
         numbering: int = 0,
+        flags: int = 0,
     ) -> bool:
         """A ROVER_OPERATOR_PRESENCE with axes, at once."""
         self.clock += 1
         message = RoverOperatorPresence(
             target, 1, self.clock if clock is None else clock, round((self.now - BOOT - age) * 1000), session, 1, 0,
-            int(OperatorFlag.AXES), x, y, INVALID_AXIS, r,
+            int(OperatorFlag.AXES) | flags, x, y, INVALID_AXIS, r,
         )  # fmt: skip
         received = self.received(message, system, introduced=introduced)._replace(numbering=numbering)
         self.control.hear(received, self.now)
@@ -275,3 +276,12 @@ class TestWithoutAGoodProof:
         assert rig.control.demand is not None
         assert rig.control.demand.lifetime == pytest.approx(ECHO_MAX - 0.2)
         assert rig.control.demand_timeout == pytest.approx(ECHO_MAX - 0.2)
+
+
+@pytest.mark.parametrize("flags", [0, int(OperatorFlag.OVERRIDE)])
+def test_a_demand_says_whether_it_overrides_obstacles(flags: int) -> None:
+    rig = Sessions().owned()
+    assert rig.prove(x=600, flags=flags)
+    assert rig.control.demand is not None
+    assert rig.control.demand.throttle
+    assert rig.control.demand.override == bool(flags)

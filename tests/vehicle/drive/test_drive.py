@@ -339,3 +339,22 @@ def test_steering_trim_counts_beside_a_motor_without_settings() -> None:
     rig = Rig(DRIVE_TYPE=DriveType.ACKERMANN, MOT2_TRIM=10.0)
     assert rig.update(direct(0.5)).throttles == (0.5, 0.1)
     assert rig.drive.wheels == (0.5, 0.0)
+
+
+@pytest.mark.parametrize("kind", [1, 2, 4])
+@pytest.mark.parametrize(
+    ("share", "left"), [(1.5, 1.0), (1.0, 1.0), (0.5, 0.5), (0.0, 0.0), (-1.0, 0.0), (math.nan, 0.0)]
+)
+def test_obstacles_make_values_smaller_and_never_larger(kind: int, share: float, left: float) -> None:
+    drive = Drive(Params({"DRIVE_TYPE": kind}), 0.0)
+    full = run(drive, demand(0.6, 0.2)).throttles
+    for cycle in range(1, 101):
+        drive.update(
+            demand(0.6, 0.2), CLEARED, limited=False, now=2.0 + cycle * CYCLE,
+            avoid=lambda wanted, present: (share, DriveLimit.OBSTACLE.value),
+        )  # fmt: skip
+    driven = 1 if kind == 2 else len(full)
+    assert drive.outputs.throttles[:driven] == pytest.approx([left * value for value in full[:driven]])
+    assert drive.outputs.throttles[driven:] == full[driven:], "a servo steers as before"
+    assert bool(drive.limits & DriveLimit.OBSTACLE) == (left < 1.0)
+    assert (drive.avoiding_speed < math.inf) == (left < 1.0)

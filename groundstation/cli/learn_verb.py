@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from groundstation.cli.console import import_screen, open_screen, record_options, terminal_path
-from groundstation.cli.lessons.lesson_options import find_lesson, lesson_words, open_lesson
+from groundstation.cli.lesson_options import find_lesson, lesson_words, open_lesson
 from groundstation.cli.local_verb import UsageError, load_settings, run_local
 from groundstation.cli.options import add_config, add_settings
 from groundstation.cli.verb_help import local_examples
