@@ -32,8 +32,12 @@ class Deed(NamedTuple):
     times: int = 1
 
 
-def read_deeds(task: str) -> Iterator[Deed]:
-    """Yield what a task asks for, in its order."""
+def read_deeds(task: str) -> list[Deed]:
+    """Return what a task or a hint asks for, in its order."""
+    return list(_find_deeds(task))
+
+
+def _find_deeds(task: str) -> Iterator[Deed]:
     found = list(re.finditer(r"\[([^\[\]]+|\[|\])\]", task))
     verb = "press"
     for at, key in enumerate(found):
@@ -109,9 +113,9 @@ class Pupil:
         patience = Patience(2 * PATIENCE)
         while True:
             assert not patience.ended, "\n".join([*self.log, self.terminal.screen()])
-            task = self.read_task()
-            self.log.append(f"{step}: {task}")
-            for deed in read_deeds(task):
+            task, hint = self.read_task(), self.marked(self.terminal.screen(), "!")
+            self.log.append(f"{step}: {hint or task}")
+            for deed in read_deeds(hint) or read_deeds(task):
                 self._perform(deed, step)
             with suppress(AssertionError):
                 return self.terminal.until(lambda screen: self.step(screen) not in (step, -1), UNTIL)

@@ -10,7 +10,7 @@ from dialects.enums import DriveLimit, DriveType
 from vehicle.drive.stopping import Stopping
 from vehicle.params import Params
 from vehicle.proximity.cones import angle_between
-from vehicle.proximity.outline import Motion, Outline, WheelMotion
+from vehicle.proximity.outline import Motion, Outline, WheelMotion, turn_rate_of
 from vehicle.proximity.source import RangeSource
 from vehicle.readings import RangeReading, Scan
 
@@ -206,7 +206,7 @@ class Obstacles:
         self._wheels = WheelMotion(params, self._kind)
         self._stopping = Stopping.of(params, params["AVOID_ACCEL_MAX"])
         self._margin: float = params["AVOID_MARGIN"]
-        self._fastest = CORNER_SPEED * max(params["SPEED_MAX"], self._outline.radius / params["ATC_STR_RAT_FF"])
+        self._fastest = CORNER_SPEED * max(params["SPEED_MAX"], self._outline.radius * turn_rate_of(params))
         self._reach = self._margin + self._stopping.distance(self._fastest) + self._outline.radius
 
 

@@ -85,13 +85,22 @@ class Outline:
         return Gap(clearance, away_x, away_y, x * away_y - y * away_x)
 
 
+LEAST_FEED_FORWARD = 0.01
+"""ATC_STR_RAT_FF below which the turn rate is not known from it: 0 is its end."""
+
+
+def turn_rate_of(params: Params) -> float:
+    """Return the rad/s of full steering."""
+    return 1.0 / max(LEAST_FEED_FORWARD, params["ATC_STR_RAT_FF"])
+
+
 class WheelMotion:
     """How the rover moves by the values of its wheels."""
 
     def __init__(self, params: Params, kind: DriveType) -> None:
         self._kind = kind
         self._top: float = params["SPEED_MAX"]
-        self._turn = 1.0 / max(0.01, params["ATC_STR_RAT_FF"])
+        self._turn = turn_rate_of(params)
         self._curve = math.atan(params["WHEELBASE"] / params["TURN_RADIUS"])
         self._wheelbase: float = params["WHEELBASE"]
 

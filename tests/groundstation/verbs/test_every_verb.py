@@ -95,7 +95,8 @@ LINES: dict[str, tuple[Line, ...]] = {
 }  # fmt: skip
 """Verb and action -> what is run, in an order in which each finds what it needs."""
 ELSEWHERE = {
-    "api": "api/test_api.py", "export": "files/test_export.py", "ros1": "ros/test_ros1.py", "ros2": "ros/test_ros2.py",
+    "api": "api/test_api.py", "mcp": "agents/test_server.py", "export": "files/test_export.py",
+    "ros1": "ros/test_ros1.py", "ros2": "ros/test_ros2.py",
     "sign": "setup/test_sign.py",
 }  # fmt: skip
 """Verb without a vehicle, with one on a cable, or that needs another program -> its test."""

@@ -28,6 +28,7 @@ SHORTER = {
 ELSEWHERE = frozenset(
     {
         "api",
+        "mcp",
         "drive",
         "turn",
         "send",

@@ -11,7 +11,8 @@ from dialects import messages as m
 from dialects.codec import decode, encode_payload
 from dialects.enums import Command, Result
 from dialects.modes import Mode
-from link.core import LinkReport, Peer
+from link.core import LinkReport, Peer, Received
+from link.signing.role import SigningRole
 from tests.vehicle.bench import EVERYTHING, OTHER, Bench, Equipped
 from vehicle.modes import MODES
 from vehicle.telemetry.streams import STREAMS, Stream
@@ -26,13 +27,22 @@ def equipped(**params: float) -> Bench:
     return bench
 
 
+def see_obstacle(bench: Bench) -> None:
+    """A companion reports an obstacle 1 m ahead."""
+    message = m.DistanceSensor(0, 2, 600, 100, 0, 0, 0, 255, 0.4, 0)
+    peer = Peer(0, "companion")
+    bench._receive(Received(message, 1, 196, 0, peer, introduced=True, role=SigningRole.SET_UP))
+
+
 @pytest.mark.parametrize("stream", STREAMS, ids=lambda stream: stream.message.msgname)
 def test_every_stream_can_be_asked_for(stream: Stream) -> None:
-    bench = equipped(FENCE_ENABLE=1)
+    bench = equipped(FENCE_ENABLE=1, PRX1_TYPE=2)
+    see_obstacle(bench)
     bench.arm()
     bench.set_mode(Mode.LOITER)
     bench.meet(OTHER)
     bench.wait(0.6)
+    see_obstacle(bench)
     count = len(bench.all(stream.message))
     assert bench.command(REQUEST, stream.message.id, system=OTHER) is Result.ACCEPTED
     assert len(bench.all(stream.message)) == count + 1
