@@ -62,7 +62,7 @@ def test_all_streams_together_stay_below_their_share(capacity: float) -> None:
     bench = greedy()
     streamed(bench, 2.0, report(capacity))
     share = streamed(bench, 20.0, report(capacity)) / capacity
-    assert 0.35 < share <= 0.6
+    assert 0.34 < share <= 0.6
 
 
 def test_nothing_starves() -> None:

@@ -21,8 +21,9 @@ from vehicle.telemetry.telemetry import LINK_MESSAGE_RATE_MAX
 
 ONE, OTHER, THIRD = Peer(0, "one"), Peer(0, "other"), Peer(0, "third")
 RADIO = Peer(1, "radio")
-UNTOLD = {m.PositionTargetGlobalInt, m.PositionTargetLocalNed, m.NavControllerOutput, m.FenceStatus, m.RelayStatus}
-"""By a rover that drives to no place and has no fence and no relay."""
+UNTOLD = {m.PositionTargetGlobalInt, m.PositionTargetLocalNed, m.NavControllerOutput, m.FenceStatus, m.RelayStatus,
+          m.ObstacleDistance, m.DistanceSensor}  # fmt: skip
+"""By a rover that drives to no place, has no fence and no relay, and sees no obstacle."""
 SIK = 5760.0
 """bytes/s: 57600 baud."""
 OWN = {m.RoverDriveStatus, m.RoverFailsafeStatus, m.RoverLinkStatus, m.RoverDriveInfo}
