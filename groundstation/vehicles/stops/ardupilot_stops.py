@@ -24,18 +24,28 @@ ACTIONS = {0: "", 1: "RTL", 2: "HOLD", 3: "SmartRTL", 4: "SmartRTL", 5: "termina
 """FS_ACTION -> what follows; "": nothing."""
 
 
-def _age(facts: StopFacts) -> float | None:
+def demand_age(facts: StopFacts) -> float | None:
+    """Return the s since the last demand; None while none counts."""
     return None if facts.drives_itself else facts.command_age
 
 
-def _override(facts: StopFacts) -> StopBound:
-    kept = facts.value("RC_OVERRIDE_TIME") if facts.kind in ROVERS else None
+def override_bound(kept: float | None, facts: StopFacts) -> StopBound:
+    """Return the end of the last demand, which is kept for `kept` s (RC_OVERRIDE_TIME); None: not known."""
     if kept is not None and kept < 0:
         return StopBound("no command", "nothing", "RC_OVERRIDE_TIME", never=True)
     bound = kept or None  # 0 means that it ignores our demands: there is nothing to end
     return StopBound(
-        "no command", "RC input" if bound else "--", "RC_OVERRIDE_TIME", bound, _age(facts), estimated=facts.estimated
+        "no command",
+        "RC input" if bound else "--",
+        "RC_OVERRIDE_TIME",
+        bound,
+        demand_age(facts),
+        estimated=facts.estimated,
     )
+
+
+def _override(facts: StopFacts) -> StopBound:
+    return override_bound(facts.value("RC_OVERRIDE_TIME") if facts.kind in ROVERS else None, facts)
 
 
 def _radio(facts: StopFacts) -> StopBound:
@@ -43,7 +53,9 @@ def _radio(facts: StopFacts) -> StopBound:
     if facts.kind not in ROVERS or enabled is None or kept is None or (enabled and kept < 0):
         return StopBound("... no RC", "--", "FS_THR_ENABLE")
     action = "" if is_off(enabled) else "neutral"
-    return action_bound("... no RC", "FS_THR_ENABLE", RADIO_TIMEOUT, action, _age(facts), estimated=facts.estimated)
+    return action_bound(
+        "... no RC", "FS_THR_ENABLE", RADIO_TIMEOUT, action, demand_age(facts), estimated=facts.estimated
+    )
 
 
 def _radio_action(facts: StopFacts) -> StopBound:
@@ -52,7 +64,7 @@ def _radio_action(facts: StopFacts) -> StopBound:
         return StopBound("... no RC", "--", "FS_TIMEOUT")
     action = "" if is_off(enabled) else _action(facts)
     bound = facts.sum(RADIO_TIMEOUT, "FS_TIMEOUT")
-    return action_bound("... no RC", "FS_TIMEOUT", bound, action, _age(facts), estimated=facts.estimated)
+    return action_bound("... no RC", "FS_TIMEOUT", bound, action, demand_age(facts), estimated=facts.estimated)
 
 
 def _station(facts: StopFacts) -> StopBound:

@@ -7,6 +7,7 @@ radio failsafe follows 0.5 s later. MANUAL_CONTROL counts as a sign of the stati
 from __future__ import annotations
 
 from groundstation.snapshot.drive import StopBound
+from groundstation.vehicles.stops.ardupilot_stops import demand_age, override_bound
 from groundstation.vehicles.stops.copter_checks import (
     PILOT_GOES_ON,
     RADIO_ACTIONS,
@@ -16,18 +17,8 @@ from groundstation.vehicles.stops.copter_checks import (
 from groundstation.vehicles.stops.stop_rules import StopFacts, StopRules, action_bound, is_off
 
 
-def _age(facts: StopFacts) -> float | None:
-    return None if facts.drives_itself else facts.command_age
-
-
 def _override(facts: StopFacts) -> StopBound:
-    kept = facts.value("RC_OVERRIDE_TIME")
-    if kept is not None and kept < 0:
-        return StopBound("no command", "nothing", "RC_OVERRIDE_TIME", never=True)
-    bound = kept or None  # 0 means that it ignores our demands: there is nothing to end
-    return StopBound(
-        "no command", "RC input" if bound else "--", "RC_OVERRIDE_TIME", bound, _age(facts), estimated=facts.estimated
-    )
+    return override_bound(facts.value("RC_OVERRIDE_TIME"), facts)
 
 
 def _radio(facts: StopFacts) -> StopBound:
@@ -36,7 +27,7 @@ def _radio(facts: StopFacts) -> StopBound:
         return StopBound("... no RC", "--", "FS_THR_ENABLE")
     action = "" if is_off(enabled) else RADIO_ACTIONS.get(int(enabled))
     bound = facts.sum(RADIO_TIMEOUT, "RC_OVERRIDE_TIME")
-    return action_bound("... no RC", "FS_THR_ENABLE", bound, action, _age(facts), estimated=facts.estimated)
+    return action_bound("... no RC", "FS_THR_ENABLE", bound, action, demand_age(facts), estimated=facts.estimated)
 
 
 def _station(facts: StopFacts) -> StopBound:
