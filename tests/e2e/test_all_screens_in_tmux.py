@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import select
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -45,22 +46,35 @@ def rover(tmp_path: Path) -> Iterator[Callable[[int], Vehicle]]:
 
 
 def drive(terminal: Tmux, vehicle: Vehicle) -> None:
-    """Release the key, choose MANUAL, hold the key until the wheels turn."""
+    """Release the key, show Drive, choose MANUAL, hold the key until the wheels turn."""
+    terminal.press_until("F1", lambda screen: "HOLD to drive" in screen)
     select.select([], [], [], LET_GO)
     terminal.press("1")
-    terminal.until(lambda _: vehicle.at_full(), PATIENCE, holding=HELD)
+    terminal.drive_until(lambda _: vehicle.at_full())
+
+
+def shows_or_holds(words: Sequence[str], screen: str) -> bool:
+    """Return whether all words are on a screen, or its title shows HOLD."""
+    return all(each in screen for each in words) or in_hold(screen)
+
+
+def in_hold(screen: str) -> bool:
+    """Return whether the title shows HOLD."""
+    return " HOLD " in screen.partition("\n")[0]
 
 
 def stands_on_all_screens(terminal: Tmux, vehicle: Vehicle) -> bool:
     """Show each screen with the key held, then Drive; the wheels must not turn there.
 
-    Return False if there was a pause between two repeats as before a new press: then they may turn.
+    Return False if there was a pause between two repeats as before a new press: then they may turn. Return False, too,
+    if the vehicle has changed to HOLD: a late station was lost to it.
     """
     stood, terminal.longest_pause = 0.0, 0.0
     for row in OTHERS:
         terminal.press("C-g", row.digit)  # in one read, as a fast typist's
         words = (NARROW_TITLES[row.id], "neutral", "! ", " ARMED")
-        terminal.until(lambda screen, words=words: all(each in screen for each in words), PATIENCE, holding=HELD)  # type: ignore[misc]
+        if in_hold(terminal.until(partial(shows_or_holds, words), PATIENCE, holding=HELD)):
+            return False
         terminal.until(lambda _: vehicle.stands(), PATIENCE, holding=HELD)
         stood = stood or time.monotonic()
     terminal.press("C-g", "1")

@@ -49,32 +49,26 @@ def test_every_screen_shows_hostile_words_as_they_are(tmux: Callable[..., Tmux],
         vehicle.send(m.StatusText(2, text.encode()))
     for key in KEYS:
         visit(terminal, key)
-    terminal.press("F4")
-    terminal.until(lambda screen: "[red]a" in screen and "[/x]" in screen, PATIENCE)
+    terminal.press_until("F4", lambda screen: "[red]a" in screen and "[/x]" in screen)
     for _ in HOSTILE:
         terminal.press("Down")  # each has its name in the title of the panel beside the list
     terminal.until(lambda screen: "[red]a" in screen.replace("│", ""), PATIENCE)
-    terminal.press("F6")
-    terminal.until(lambda screen: "[@click=app.quit]b[/]" in screen, PATIENCE)
+    terminal.press_until("F6", lambda screen: "[@click=app.quit]b[/]" in screen)
     for line, answer in LINES.items():
         run_line(terminal, line, answer)
-    terminal.press("F1")
-    screen = terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)
+    screen = terminal.press_until("F1", lambda screen: "DISARMED" in screen)
     assert "EXIT CODE" not in screen
 
 
 def run_line(terminal: Tmux, line: str, answer: str) -> None:
     """Type a line on Drive, see the answer, below the line or in the log, and leave by a function key."""
-    terminal.press("F1")
-    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
-    terminal.press(":")
-    terminal.until(lambda screen: "ESC closes" in screen, PATIENCE)
+    terminal.press_until("F1", lambda screen: "hold r to arm" in screen)
+    terminal.press_until(":", lambda screen: "ESC closes" in screen)
     terminal.press(*(each if each != " " else "Space" for each in line))
     terminal.until(lambda screen: f":{line}" in screen.replace(": ", ":"), PATIENCE)
     terminal.press("Enter")
     terminal.until(lambda screen: answer in screen and "ESC closes" not in screen, PATIENCE)
-    terminal.press("F2")
-    terminal.until(lambda screen: "hold r to arm" not in screen, PATIENCE)
+    terminal.press_until("F2", lambda screen: "hold r to arm" not in screen)
 
 
 def visit(terminal: Tmux, key: str) -> None:

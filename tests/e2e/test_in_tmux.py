@@ -34,6 +34,8 @@ HELD = 10.0
 """s for a held key to show; then it is pressed anew."""
 SHOWN = 10.0
 """s for the charts to show what has been recorded."""
+PRESSED_AGAIN = 10.0
+"""s for a key to show, before it is pressed again: a screen ignores what was typed while it was frozen."""
 PAUSE = 0.04
 """s between two polls or two key repeats."""
 
@@ -84,6 +86,15 @@ class Tmux:
                 self.press(holding)
             select.select([], [], [], PAUSE)
         return screen
+
+    def press_until(self, key: str, condition: Callable[[str], bool]) -> str:
+        """Press a key, again after PRESSED_AGAIN s, until the condition holds for the screen; return the screen."""
+        patience = Patience()
+        while True:
+            self.press(key)
+            with suppress(AssertionError):
+                return self.until(condition, PRESSED_AGAIN)
+            assert not patience.ended, self.screen()
 
     def pause(self, seconds: float) -> None:
         """Keep the hands off the keys for so long."""
