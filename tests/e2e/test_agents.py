@@ -17,19 +17,24 @@ from typing import Any
 import pytest
 
 from groundstation.station_socket.connect import running_stations
-from tests.e2e.programs import Vehicle
+from tests.e2e.programs import LET_GO, Vehicle
 from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.test_stop_matrix import FALLS_WITHIN, NEUTRAL_WITHIN
 from tests.e2e.tmux_marks import IN_TMUX
 from tests.groundstation.held_key import event_times
 from tests.ports import free_port
-from tests.waits import PATIENCE, Waits, wait_until
+from tests.waits import PATIENCE, Patience, Waits, wait_until
 
 __all__ = ["tmux"]
 
 pytestmark = [*IN_TMUX, pytest.mark.xdist_group("verbs through a station")]
 
-DRIVE = {"throttle": 60, "seconds": 9, "max_meters": 50, "reason": "look behind the chair"}
+DRIVE = {"throttle": 60, "seconds": 9, "max_meters": 50}
+RELEASED = "the key was released"
+TRIES = 6
+"""Times that one way is tried: the screen of a late machine freezes, which ends what runs and takes the key."""
+TRY = 10.0
+"""s for a held key to turn the wheels; then it is pressed anew."""
 
 
 class Agent:
@@ -90,7 +95,7 @@ def kill_screen(terminal: Tmux) -> None:
 
 
 WAYS: dict[str, tuple[Callable[[Tmux, Agent], object], str]] = {
-    "a released key": (lambda terminal, agent: None, "the key was released"),
+    "a released key": (lambda terminal, agent: None, RELEASED),
     "a stop key": (lambda terminal, agent: terminal.press("Space"), "something else"),
     "another key": (lambda terminal, agent: terminal.press("k"), "something else"),
     "the key that declines": (lambda terminal, agent: terminal.press("P"), ""),
@@ -118,26 +123,42 @@ def test_wheels_turn_while_the_key_is_held_and_stop(tmux: Callable[..., Tmux], t
 
 
 def see_it_stop(terminal: Tmux, vehicle: Vehicle, folder: Path, agents: list[Agent], name: str) -> None:
-    """Arm, propose, hold the key until the wheels turn at full demand, end it in one way, and see them stop."""
+    """Let an agent drive and end it in one way; anew where the screen of a late machine has ended it before."""
+    for number in range(TRIES):
+        if "ARMED" not in (screen := terminal.screen()) or "DISARMED" in screen:
+            terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
+        reason = f"look behind chair {number} by {name}"
+        agents.append(Agent(folder, ("drive", {**DRIVE, "reason": reason})))
+        terminal.until(lambda screen, reason=reason: "agent asks" in screen and reason in screen, PATIENCE)  # type: ignore[misc]
+        assert not vehicle.turning()
+        if it_stops(terminal, vehicle, agents[-1], name):
+            return
+        agents[-1].end()
+        wait_until(lambda: not vehicle.turning(), f"{name}: neutral")
+        terminal.pause(LET_GO)
+    said = [agent.said for agent in agents[-TRIES:]]
+    raise AssertionError(f"{name}: {TRIES} times something else: {said}\n{terminal.screen()}")
+
+
+def it_stops(terminal: Tmux, vehicle: Vehicle, agent: Agent, name: str) -> bool:
+    """Hold the key until the wheels turn at full demand, end it in one way, and see them stop in time.
+
+    Returns False if something else has ended it.
+    """
     act, told = WAYS[name]
-    if "ARMED" not in (screen := terminal.screen()) or "DISARMED" in screen:
-        terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
-    agent = Agent(folder, ("drive", DRIVE))
-    agents.append(agent)
-    terminal.until(lambda screen: "agent asks" in screen and DRIVE["reason"] in screen, PATIENCE)  # type: ignore[operator]
-    assert not vehicle.turning()
     with held(terminal, "p") as release:
-        wait_until(vehicle.at_full, lambda: f"{name}: turning: {agent.said}\n{terminal.screen()}", 20.0)
-        waits = Waits(vehicle.process.pid)
-        if told == "the key was released":
-            at = release()
-        else:
-            at = time.monotonic()
-            act(terminal, agent)
-        wait_until(vehicle.stands, lambda: f"{name}: standing", 8.0)
+        patience = Patience(TRY, *running_stations())
+        wait_until(lambda: vehicle.at_full() or agent.answers or patience.ended, name)
+        if agent.answers or not vehicle.at_full():
+            return False
+        waits = Waits(vehicle.process.pid, *running_stations())
+        act(terminal, agent)
+        at = release() if told == RELEASED else time.monotonic()
+        wait_until(vehicle.stands, f"{name}: standing")
     falls, stops = vehicle.falls_and_stops_after(at)
     assert falls <= FALLS_WITHIN + waits.total(), name
     assert stops <= NEUTRAL_WITHIN + waits.total(), name
-    if told:
-        wait_until(lambda: agent.answers, lambda: agent.said)
-        assert told in agent.answers[0]["error"]
+    if not told:
+        return True
+    wait_until(lambda: agent.answers, lambda: agent.said)
+    return told in agent.answers[0]["error"]
