@@ -18,6 +18,7 @@ from groundstation.intents.session import Quit, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, CutMotors, Disarm, ReleaseControl, SetMode, TakeOff
 from groundstation.vehicles.demand.demand_stream import FINAL_NEUTRALS
+from groundstation.vehicles.demand.stop_commands import StopKind
 from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad
 from tests.flight import FlightCockpit, hovering_cockpit
 from tests.groundstation.cockpits import Cockpit
@@ -213,6 +214,51 @@ def test_the_emergency_stop_lands_and_never_falls(build: Build) -> None:
     assert copter.hit_ground_at < 1.0
     forced = [each for each in copter.commands(Command.COMPONENT_ARM_DISARM) if each.param2]
     assert forced == []
+
+
+def unheard_cockpit(build: Build) -> FlightCockpit:
+    """Return a station that has never heard the copter, which hovers."""
+    copter = build()
+    copter.mute = True
+    copter.lift(5.0)
+    cockpit = FlightCockpit(copter)
+    cockpit.run(0.5)
+    return cockpit
+
+
+def powers_ended(copter: FlyingVehicle) -> list[object]:
+    """Return the commands that let it fall."""
+    forced = [each for each in copter.commands(Command.COMPONENT_ARM_DISARM) if each.param2]
+    return [*forced, *copter.commands(Command.DO_SET_SAFETY_SWITCH_STATE)]
+
+
+@COPTERS
+@pytest.mark.parametrize("system", [0, 1])
+@pytest.mark.parametrize("kind", [StopKind.EMERGENCY, StopKind.DISARM, StopKind.HOLD], ids=lambda each: each.name)
+def test_no_stop_to_a_copter_that_was_not_heard_falls(build: Build, kind: StopKind, system: int) -> None:
+    cockpit = unheard_cockpit(build)
+    copter = cockpit.copter
+    cockpit.station.stop_blindly(kind, system, cockpit.now)
+    cockpit.run(1.0)
+    assert copter.altitude == pytest.approx(5.0, abs=LOSS)
+    cockpit.run(20.0)
+    assert powers_ended(copter) == []
+    assert copter.hit_ground_at < 1.0
+    assert copter.flies is (kind is not StopKind.EMERGENCY)
+    assert copter.armed is copter.flies
+
+
+@COPTERS
+def test_a_copter_heard_after_a_blind_stop_lands(build: Build) -> None:
+    cockpit = unheard_cockpit(build)
+    copter = cockpit.copter
+    cockpit.do(EmergencyStop())
+    cockpit.run(0.4)
+    copter.mute = False
+    cockpit.run(20.0)
+    assert powers_ended(copter) == []
+    assert copter.hit_ground_at < 1.0
+    assert not copter.armed
 
 
 @COPTERS

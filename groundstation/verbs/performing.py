@@ -77,7 +77,7 @@ async def _perform_for_group(
     sending: asyncio.Future[None] | None = None
     if action.stops:
         systems = group.listed or ((0,) if options.all else ())
-        sending = asyncio.ensure_future(stops.stop_unheard(session, output.verb, systems))
+        sending = asyncio.ensure_future(stops.stop_unheard(session, output.verb, options, systems))
     try:
         await session.find_vehicle(options.wait, None)
         code: int = await multi_vehicle.ManyVehicles(session, action, options, group, output).run()

@@ -80,7 +80,9 @@ class _Target(msgspec.Struct):
             case RoverDriveStatus():
                 self.stands = not any(message.output)
             case VfrHud() if self.vehicle.session is None:
-                self.slow_since = min(self.slow_since, now) if message.groundspeed < STANDING_SPEED else math.inf
+                fastest = max(message.groundspeed, abs(message.climb) if self.vehicle.flies else 0.0)
+                slow = fastest < STANDING_SPEED
+                self.slow_since = min(self.slow_since, now) if slow else math.inf
                 self.stands = now - self.slow_since >= STANDING_FOR
 
     @property
@@ -90,14 +92,15 @@ class _Target(msgspec.Struct):
 
     def describe(self, *, sending: bool) -> str:
         """Return what is known, as a text for the driver."""
-        name = self.vehicle.name
+        name, flies = self.vehicle.name, self.vehicle.flies
         if self.confirmed:
-            return f"{name} {'is disarmed' if self.disarmed else 'stands'}"
+            return f"{name} {'is disarmed' if self.disarmed else 'hovers' if flies else 'stands'}"
         if not self.sent:
-            return f"neutral could NOT be sent to {name} ({self.error or 'no link'})"
+            then = "; its own failsafe acts" if flies else ""
+            return f"neutral could NOT be sent to {name} ({self.error or 'no link'}){then}"
         if sending:
             return f"neutral is sent to {name}"  # short: an alert has 70 characters at 80 columns
-        return f"{name} may still move"
+        return f"{name}: its own failsafe flies it" if flies else f"{name} may still move"
 
 
 @dataclass(slots=True)

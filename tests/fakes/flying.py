@@ -56,9 +56,9 @@ class FlyingVehicle(FakeVehicle):
         self.kind = QUADROTOR
         for name, value in params.items():
             self.params[name] = Param(value, INT32) if name in whole else Param(value)
-        self.answers |= dict.fromkeys(
-            (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STATE), Result.UNSUPPORTED
-        )
+        self.answers[Command.REQUEST_OPERATOR_CONTROL] = Result.UNSUPPORTED
+        self.mute = False
+        """It obeys, and sends nothing but acknowledgements, as one that has no place for the station."""
         self.altitude = self.climb = self.highest = 0.0
         self.north = self.east = self.heading = 0.0
         self.speed_north = self.speed_east = 0.0
@@ -257,13 +257,23 @@ class FlyingVehicle(FakeVehicle):
         if message.command == Command.SET_MESSAGE_INTERVAL:
             self.asked_for.add(int(message.param1))
             return False
+        if message.command == Command.NAV_LAND:
+            self.set_mode("LAND" if "LAND" in self.table.values() else "AUTO_LAND")
+            return True
         if message.command == Command.DO_SET_MODE:
             self.target = 0.0
         return super()._obey(message, source)
 
     # ---- reports ----
 
+    def beat(self) -> None:
+        """Send a HEARTBEAT, unless mute."""
+        if not self.mute:
+            super().beat()
+
     def _report(self, now: float) -> None:
+        if self.mute:
+            return
         landed = LandedState.IN_AIR if self.flies else LandedState.ON_GROUND
         if m.ExtendedSysState.id in self.asked_for:
             self.send(m.ExtendedSysState(0, landed))
@@ -394,6 +404,7 @@ class Px4Quad(FlyingVehicle):
         self._manual_at = -math.inf
         self._lost_at: float | None = None
         self._acted = False
+        self.answers[Command.DO_SET_SAFETY_SWITCH_STATE] = Result.UNSUPPORTED
 
     @property
     def top_speed(self) -> float:

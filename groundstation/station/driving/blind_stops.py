@@ -84,7 +84,7 @@ class BlindStops:
         return "; ".join(_describe(each.stop) for each in self._sent.values())
 
 
-STRONGEST_FIRST = (StopKind.EMERGENCY, StopKind.DISARM, StopKind.HOLD)
+STRONGEST_FIRST = (StopKind.CUT, StopKind.EMERGENCY, StopKind.DISARM, StopKind.HOLD)
 
 
 def _describe(stop: BlindStop) -> str:

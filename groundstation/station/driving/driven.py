@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from dialects.kinds import find_kind
+
 if TYPE_CHECKING:
     from groundstation.vehicles.state.vehicle_state import VehicleState
 
@@ -30,6 +32,11 @@ class WatchdogTarget(msgspec.Struct, frozen=True, kw_only=True):
     """Newest time_boot_ms of the vehicle that we have seen."""
     verified: bool = False
     """It signs with a key of ours: what is not signed is not of it."""
+
+    @property
+    def flies(self) -> bool:
+        """Whether neutral makes it hover."""
+        return find_kind(self.autopilot, self.kind).flies
 
     @classmethod
     def of(cls, state: VehicleState, session: int, *, verified: bool = False) -> WatchdogTarget:

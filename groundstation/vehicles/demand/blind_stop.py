@@ -1,7 +1,8 @@
 """A stop for vehicles that were not heard: sent again and again, to a system id or to all. Time is an argument.
 
 A vehicle that has no place for us sends us nothing, and one that was switched on just now has not sent its HEARTBEAT
-yet; both obey a stop. COMMAND_LONG and COMMAND_INT alternate, because a vehicle may take one of them only.
+yet; both obey a stop. Nobody knows whether it flies, so that no stop but CUT lets one in the air fall.
+COMMAND_LONG and COMMAND_INT alternate, because a vehicle may take one of them only.
 """
 
 from __future__ import annotations

@@ -37,6 +37,8 @@ class StopKind(Enum):
     DISARM = "disarm"
     HOLD = "stop"
     EMERGENCY = "emergency stop"
+    CUT = "cut of the motors"
+    """An emergency stop that cuts the motors of what flies, too, which then falls: only where that is asked for."""
 
 
 STOP_VERBS = {"disarm": StopKind.DISARM, "stop": StopKind.HOLD, "estop": StopKind.EMERGENCY}
@@ -54,18 +56,25 @@ DISARM = StopCommand(Command.COMPONENT_ARM_DISARM, (0.0,))
 FORCED = StopCommand(Command.COMPONENT_ARM_DISARM, (0.0, float(FORCE_DISARM)))
 LOCK = StopCommand(Command.DO_SET_SAFETY_SWITCH_STATE, (float(SAFE),))
 PAUSED = StopCommand(Command.DO_PAUSE_CONTINUE, (float(PAUSE),))
+LANDED = StopCommand(Command.NAV_LAND, ())
 HELD = StopCommand(Command.DO_SET_MODE, (float(ModeFlag.CUSTOM), *HOLD_OF_ANY))
 
 BLIND: dict[StopKind, tuple[StopCommand, ...]] = {
     StopKind.DISARM: (DISARM,),
     StopKind.HOLD: (PAUSED,),
     StopKind.EMERGENCY: (DISARM,),
+    StopKind.CUT: (DISARM,),
 }
 """Commands for vehicles that were not heard. None ends the flight of one in the air, and a mode is not among them: its
-number is of the autopilot and its type."""
+number is of the autopilot and its type. Every rover disarms by this; what flies refuses it in the air."""
 
-BLIND_LATER: dict[StopKind, tuple[StopCommand, ...]] = {StopKind.HOLD: (HELD,), StopKind.EMERGENCY: (LOCK, FORCED)}
-"""Further ones once a heartbeat interval has passed in which no vehicle was heard."""
+BLIND_LATER: dict[StopKind, tuple[StopCommand, ...]] = {
+    StopKind.HOLD: (HELD,),
+    StopKind.EMERGENCY: (LANDED,),
+    StopKind.CUT: (LOCK, FORCED),
+}
+"""Further ones once a heartbeat interval has passed in which no vehicle was heard. A copter in the air obeys the safety
+switch and the forced disarm, and falls; so they are not sent to what may be one. It lands instead."""
 
 
 def mode_command(state: VehicleState, name: str) -> StopCommand | None:

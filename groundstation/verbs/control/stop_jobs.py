@@ -64,14 +64,24 @@ def hold_job(number: int, state: VehicleState, times: StopTimes) -> StopJob | Re
     return StopJob(number, hold)
 
 
+def cut_job(number: int, state: VehicleState, times: StopTimes) -> EmergencyJob:
+    """Return the emergency stop that ends the power of every vehicle; what flies falls."""
+    return EmergencyJob(number, EmergencyLock(state, times.began), times)
+
+
 def emergency_job(number: int, state: VehicleState, times: StopTimes) -> EmergencyJob | StopJob:
-    """Return the emergency stop of this vehicle: what flies lands, and is disarmed on the ground."""
+    """Return the emergency stop of this vehicle: what flies lands, and is disarmed on the ground.
+
+    What would fall and has no mode that lands it is only disarmed, which it refuses in the air.
+    """
+    if not state.model.falls:
+        return cut_job(number, state, times)
     if not state.model.flies:
-        return EmergencyJob(number, EmergencyLock(state, times.began), times)
+        return disarm_job(number, state, times)
     landing = None if state.is_landed(times.began) else mode_stop(state, state.model.land, times)
     if landing is None or not state.armed:
         return disarm_job(number, state, times)
-    return StopJob(number, landing, "it lands; its motors are cut by the key for that on Drive only")
+    return StopJob(number, landing, "it lands; `estop --cut` cuts its motors, and it falls")
 
 
 class RefusedJob(msgspec.Struct):

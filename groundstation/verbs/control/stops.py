@@ -22,7 +22,7 @@ from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.control.stop_jobs import disarm_job, emergency_job, hold_job
+from groundstation.verbs.control.stop_jobs import cut_job, disarm_job, emergency_job, hold_job
 from groundstation.verbs.session.contact import Job
 from groundstation.verbs.session.core import ALONE_AFTER
 from groundstation.verbs.session.reports import finish
@@ -103,9 +103,10 @@ async def _send_blind(session: VerbSession, blind: BlindStop, vehicle: int | Non
         await asyncio.sleep(LOOK_PERIOD)
 
 
-async def stop_unheard(session: VerbSession, verb: str, systems: Iterable[int]) -> None:
+async def stop_unheard(session: VerbSession, verb: str, options: argparse.Namespace, systems: Iterable[int]) -> None:
     """Send the stop of --all (system 0) or --group to vehicles that are not heard, until this is cancelled."""
-    blind = [_begin_blind(session, STOP_VERBS[verb], system) for system in systems]
+    kind = StopKind.CUT if verb == "estop" and options.cut else STOP_VERBS[verb]
+    blind = [_begin_blind(session, kind, system) for system in systems]
     await asyncio.gather(*(_send_blind(session, each, each.system or None) for each in blind))
 
 
@@ -153,10 +154,17 @@ _emergency_stop = _stop_all(
     "has stopped",
     emergency_job,
 )
+_cut = _stop_all(
+    StopKind.CUT,
+    "has stopped",
+    cut_job,
+)
 
 
 async def estop(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-    """Stop the motors and lock them, or release the lock with --clear."""
+    """Stop the motors and lock them, or release the lock with --clear. What flies lands, or falls with --cut."""
+    if options.cut:
+        return await _cut(session, options, output)
     if not options.clear:
         return await _emergency_stop(session, options, output)
     await session.find_vehicle(options.wait, options.vehicle)

@@ -41,10 +41,11 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop, finds=False,
                               own_timeout=True, many=True, stops=True)}),
     "estop": Verb(Group.DRIVE, (
-        Example("mavhelm estop", "motors off and locked", Stage.STOPPING),
+        Example("mavhelm estop", "motors off and locked; what flies lands", Stage.STOPPING),
         Example("mavhelm estop --clear", "releases the lock", Stage.STOPPING),
-    ), {ONLY: VerbAction("stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
-        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True,
+    ), {ONLY: VerbAction("stop the motors and lock them, or land what flies; repeated until the vehicle reports it",
+        stops.estop, (("--clear", {"action": "store_true", "help": "release the emergency stop"}),
+         ("--cut", {"action": "store_true", "help": "cut the motors of what flies, too: it falls"})), own_timeout=True,
         finds=False, many=True, stops=True)}),
     "control": Verb(Group.DRIVE, (
         Example("mavhelm control show", "who is in control", Stage.ARMED),

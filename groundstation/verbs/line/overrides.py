@@ -61,7 +61,12 @@ async def emergency_stop(session: LineSession, options: argparse.Namespace, outp
     """Stop the motors and lock them."""
     if options.clear:
         raise VerbError(ExitCode.USAGE, "estop --clear is the key t, held for 1 s on Drive, so that no text does it")
+    if options.cut:
+        raise VerbError(ExitCode.USAGE, "estop --cut is the key X, held for 2 s on Drive, so that no text does it")
     session.stop(StopKind.EMERGENCY, EmergencyStop())
+    if session.vehicle.model.flies and session.vehicle.may_fall:
+        output.note(f"{session.vehicle.name}: emergency stop; it lands")
+        return ExitCode.DONE
     done, doubt = await _wait_disarmed(session)
     output.note(f"{session.vehicle.name}: emergency stop{'' if done else f'; {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER

@@ -14,6 +14,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.axes import HOVER
+from dialects.enums import Command
 from groundstation.intents.driving import DriveKeyUp
 from groundstation.intents.session import Quit, ReportKeyReleases
 from groundstation.intents.vehicle import Arm, SetMode, TakeOff
@@ -123,3 +124,30 @@ def test_the_verb_for_the_emergency_stop_lands_it(build: Callable[[], FlyingVehi
     assert "it lands" in ended.stdout + ended.stderr, ended
     wait_until(lambda: not copter.armed)
     assert copter.hit_ground_at < 1.0
+
+
+@pytest.mark.parametrize(("build", "options"), [(ArduCopter, ()), (Px4Quad, ("-v", "1")), (ArduCopter, ("--all",))])
+def test_the_verb_lands_one_that_is_not_heard(
+    build: Callable[[], FlyingVehicle], options: tuple[str, ...], stack: ExitStack
+) -> None:
+    copter = build()
+    copter.mute = True
+    stack.enter_context(on_line(copter, "udpout"))
+    copter.lift(2.0)
+    verb = [sys.executable, "-m", "groundstation", "estop", "-e", copter.endpoint, "--wait", "4", *options]
+    ended = subprocess.run(verb, check=False, capture_output=True, text=True, timeout=PATIENCE)
+    assert ended.returncode != 0, ended
+    wait_until(lambda: not copter.armed)
+    assert copter.hit_ground_at < 1.0
+    assert [each for each in copter.commands(Command.COMPONENT_ARM_DISARM) if each.param2] == []
+
+
+def test_only_the_option_that_says_so_lets_it_fall(stack: ExitStack) -> None:
+    copter = ArduCopter()
+    stack.enter_context(on_line(copter, "udpin"))
+    copter.lift(HEIGHT)
+    verb = [sys.executable, "-m", "groundstation", "estop", "--cut", "-e", copter.endpoint]
+    ended = subprocess.run(verb, check=False, capture_output=True, text=True, timeout=PATIENCE)
+    assert ended.returncode == 0, ended
+    wait_until(lambda: not copter.flies)
+    assert copter.hit_ground_at > 5.0

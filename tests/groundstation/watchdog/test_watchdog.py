@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 import pytest
 
 from dialects import codec
@@ -15,6 +16,7 @@ from groundstation.watchdog.watchdog import SEND_FOR, Watchdog
 from link.protocol.framer import Framer
 
 STEP = 0.005
+QUADROTOR = 2
 ROVER = WatchdogTarget(
     system=1, component=1, name="Rover 1", autopilot=Autopilot.GENERIC, kind=10, session=7, boot_time=1000
 )
@@ -89,6 +91,19 @@ def test_it_ends_when_the_vehicle_has_stood_for_a_while() -> None:
     watchdog.handle_message(2, speed(0.0), 102.5)
     assert watchdog.finished(102.5)
     assert watchdog.outage(102.5) == StationOutage("station process ended: ArduPilot rover 2 stands", True)
+
+
+def test_a_copter_hovers_or_its_own_failsafe_flies_it() -> None:
+    watchdog = watching(msgspec.structs.replace(ARDUROVER, name="copter 2", kind=QUADROTOR))
+    watchdog.handle_end(100.0)
+    sent(watchdog, 100.0, 1.5)
+    for at, climb in ((101.5, -0.7), (102.2, -0.7), (102.4, 0.0)):
+        watchdog.handle_message(2, m.VfrHud(0.0, 0.0, 0, 0, 0.0, climb), at)
+        assert not watchdog.finished(at)
+    assert watchdog.outage(106.0).text == "station process ended: copter 2: its own failsafe flies it"
+    watchdog.handle_message(2, m.VfrHud(0.0, 0.1, 0, 0, 0.0, 0.1), 103.0)
+    assert watchdog.outage(103.0).text == "station process ended: copter 2 hovers"
+    assert watchdog.finished(103.0)
 
 
 def test_it_ends_on_disarming_but_not_before_a_second_of_neutral() -> None:

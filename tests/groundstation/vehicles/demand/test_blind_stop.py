@@ -40,6 +40,14 @@ def test_hold_by_a_number_waits_until_no_vehicle_was_heard() -> None:
     assert [each[1] for each in shown(stop.tick(9.0, heard=True))] == [193]
 
 
+def test_only_a_cut_ends_the_power_of_what_may_fly() -> None:
+    later = 1.0 + LATER + 0.1
+    stop, cut = (BlindStop(kind, 0, IDS, 1.0) for kind in (StopKind.EMERGENCY, StopKind.CUT))
+    assert [each[1:] for each in shown(stop.tick(later))] == [(400, 0, 0, 0), (21, 0, 0, 0)]
+    assert [each[1:] for each in shown(cut.tick(later))] == [(400, 0, 0, 0), (5300, 0, 0, 0), (400, 0, 21196, 0)]
+    assert [each[1] for each in shown(cut.tick(later + 1, heard=True))] == [400]
+
+
 def test_it_says_what_is_known() -> None:
     stop = BlindStop(StopKind.DISARM, 0, IDS, 1.0)
     stop.tick(1.0)
