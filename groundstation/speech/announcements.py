@@ -48,7 +48,7 @@ class SpokenState(msgspec.Struct, frozen=True):
     """Who is in control, in words; "" if that is not known."""
 
 
-class Announcer:
+class StateAnnouncer:
     """Compares the state of the vehicle with what was said last."""
 
     def __init__(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from groundstation.speech.announcements import Announcement, Announcer, Priority, SpokenState
+from groundstation.speech.announcements import Announcement, Priority, SpokenState, StateAnnouncer
 from groundstation.speech.programs import find_program
 from groundstation.speech.speaker import Speaker
 
@@ -14,7 +14,7 @@ class Voice:
 
     def __init__(self, speaker: Speaker | None, ring: Callable[[], None] | None) -> None:
         self._speaker, self._ring = speaker, ring
-        self._announcer = Announcer()
+        self._announcer = StateAnnouncer()
 
     @classmethod
     def open(cls, *, speak: bool, ring: Callable[[], None] | None) -> Voice:
@@ -38,6 +38,11 @@ class Voice:
     def speaks(self) -> bool:
         """Whether there is a program that speaks."""
         return self._speaker is not None
+
+    @property
+    def muted(self) -> bool:
+        """Whether it would speak, and is silent."""
+        return self._speaker is not None and self._speaker.muted
 
     def switch_mute(self) -> bool:
         """Be silent, or speak again; return whether it is silent now."""

@@ -317,6 +317,7 @@ class ConsoleApp(App[int]):
             promises_releases=self.gate.promises_releases,
             ascii=self._appearance.look.ascii,
             still=self._appearance.look.reduce_motion,
+            muted=self._without_looking.muted,
             gamepad=self._gamepad.state(self._clock()) if self._gamepad else None,
             kept=self._kept,
         )

@@ -56,6 +56,11 @@ class WithoutLooking:
             return "nothing is spoken: start with --speak"
         return "speech is muted" if self._voice.switch_mute() else "speech is on"
 
+    @property
+    def muted(self) -> bool:
+        """Whether speech was asked for and is silent."""
+        return self._voice.muted
+
     def place_cursor(self, screen: Screen[Any]) -> None:
         """Put the terminal's cursor on the focused row; a text field has it already."""
         if isinstance(screen.focused, Input):

@@ -76,6 +76,8 @@ class DisplayState(msgspec.Struct, frozen=True):
     """The terminal shows ASCII characters only."""
     still: bool = False
     """Nothing may move by itself."""
+    muted: bool = False
+    """`--speak` was given, and nothing is said."""
     gamepad: PadState | None = None
     """The gamepad; None where none was asked for."""
     kept: Mapping[type, Any] = msgspec.field(default_factory=dict)

@@ -48,12 +48,22 @@ class StatusBarValue(msgspec.Struct, frozen=True):
     """Key of the screen where they do."""
     station_runs: bool = True
     """The station process runs and responds."""
+    muted: bool = False
+    """Speech was asked for, and nothing is said."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> StatusBarValue:
         """Return the status bar of a display state."""
         runs = now.station_alive and not now.outage
-        return cls(now.snapshot, now.keymap, now.terminal_round_trip, now.screen.drives, now.key("app.drive"), runs)
+        return cls(
+            now.snapshot,
+            now.keymap,
+            now.terminal_round_trip,
+            now.screen.drives,
+            now.key("app.drive"),
+            runs,
+            now.muted,
+        )
 
 
 class StatusField(msgspec.Struct, frozen=True):
@@ -100,7 +110,7 @@ class StatusBar(Instrument[StatusBarValue]):
         if value.snapshot.also_armed:
             systems = ", ".join(map(str, value.snapshot.also_armed))
             parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
-        return parts
+        return [*parts, *muted_parts(muted=value.muted)]
 
 
 def _replay_badges(replay: ReplayStatus, vehicle: VehicleView | None) -> list[Part]:
@@ -125,6 +135,11 @@ def _fitting(fields: list[StatusField], room: int) -> list[Part]:
 def _spread(left: list[Part], right: list[Part], width: int) -> Strip:
     gap = max(1, width - length(left) - length(right))
     return strip(*left, (" " * gap, style()), *right).crop(0, width)
+
+
+def muted_parts(*, muted: bool) -> list[Part]:
+    """Return that speech is muted: who listens for a failsafe must not wait for it in vain."""
+    return [(" muted", style(AMBER, bold=True))] if muted else []
 
 
 def mode_badge(vehicle: VehicleView) -> Part:

@@ -13,8 +13,8 @@ from typing import Any
 from dialects.enums import Severity
 from groundstation.speech.announcements import (
     Announcement,
-    Announcer,
     SpokenState,
+    StateAnnouncer,
     is_worth_saying,
     spoken_state,
     text_announcement,
@@ -42,7 +42,7 @@ class ChangePrinter:
         self._read_state, self._read_fields = read_state, read_fields
         self._shown: Mapping[str, str] = {}
         self._log_state = 0
-        self._announcer = Announcer()
+        self._announcer = StateAnnouncer()
         self._texts_are_new = False
         """Not those that were known before the first look."""
 

@@ -6,14 +6,14 @@ from typing import Any
 
 import msgspec
 
-from groundstation.speech.announcements import Announcer, Priority, SpokenState
+from groundstation.speech.announcements import Priority, SpokenState, StateAnnouncer
 
 HOLD = SpokenState("Rover 1", alive=True, armed=False, mode="HOLD", stands=True)
 DRIVING = msgspec.structs.replace(HOLD, armed=True, mode="MANUAL", stands=False, driver="you")
 
 
 def said(before: SpokenState | None, **changes: Any) -> list[tuple[str, str]]:
-    announcer = Announcer()
+    announcer = StateAnnouncer()
     announcer.update(before)
     after = msgspec.structs.replace(before or HOLD, **changes)
     found = announcer.update(after)

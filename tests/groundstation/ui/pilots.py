@@ -17,8 +17,10 @@ from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app.app import MIN_FRAME_TIME, ConsoleApp
 from groundstation.ui.app.help import HelpScreen
+from groundstation.ui.app.without_looking import Aids
 from groundstation.ui.base.screen import ConsoleScreen
 from groundstation.ui.keys.key_gate import STARTING
+from groundstation.ui.learn.lesson_dock import LessonDock
 from groundstation.ui.look.appearance import PLAIN, Look
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import HeldTime
@@ -88,10 +90,13 @@ async def console(
     *,
     look: Look = PLAIN,
     clock: Callable[[], float] = time.monotonic,
+    lesson: LessonDock | None = None,
+    aids: Aids = Aids(),  # noqa: B008  # frozen
 ) -> AsyncIterator[Console]:
     """The app at work: a picture is shown and, where the size allows, keys drive."""
     station, held_time = Recorder(), HeldTime(clock)
-    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, look=look, clock=held_time)
+    keys = Keymap(keymap, KEYMAPS[keymap])
+    app = ConsoleApp(station, keys, folder=folder, look=look, clock=held_time, lesson=lesson, aids=aids)
     try:
         with painted_when_seen(app):
             async with app.run_test(size=size) as pilot:

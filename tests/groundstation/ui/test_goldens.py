@@ -13,10 +13,13 @@ import pytest
 from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents.watch import Watch
+from groundstation.learn.attempt import Attempt
+from groundstation.learn.course import load_course
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.snapshot.drive import KeyToMotor, StopBound
 from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.learn.lesson_dock import LessonDock
 from groundstation.ui.look.appearance import Look
 from groundstation.views.base import View
 from groundstation.views.line import RUNNING, LineView
@@ -152,6 +155,9 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "charts_add_140x45": (WIDE, snapshot(), ("f5", "a", *"volt")),
     **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
+    "lesson_80x24": (SMALL, STANDING, ()),
+    "lesson_text_80x24": (SMALL, STANDING, ("ctrl+l", "ctrl+l")),
+    "lesson_140x45": (WIDE, STANDING, ()),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
 
@@ -201,6 +207,13 @@ def views_for(name: str) -> Sequence[View]:
     return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE, TRACK, SPEEDS)
 
 
+def begin_lesson() -> LessonDock:
+    """Return the first lesson, with the hint of a wrong deed."""
+    attempt = Attempt(load_course()[0].lesson)
+    attempt.deeds.held_disarmed = True
+    return LessonDock("Lesson 1", attempt, next_heading="2 A key on the wire")
+
+
 def fill_recent(name: str) -> None:
     """Fill the file of the endpoints used before, for the frames that list them."""
     if "connect" in name and "nothing" not in name:
@@ -236,7 +249,8 @@ async def test_the_frame_is_the_golden_one(name: str, tmp_path: Path, monkeypatc
     monkeypatch.setenv("HOME", str(tmp_path))
     (tmp_path / "logs").mkdir()
     look, folder = Look(ascii=name.startswith("ascii")), fill_folder(tmp_path / "logs")
-    async with console(size, picture, folder=folder, look=look) as screen:
+    lesson = begin_lesson() if "lesson" in name else None
+    async with console(size, picture, folder=folder, look=look, lesson=lesson) as screen:
         opens = 2 if keys[:1] == ("ctrl+g",) else 1
         await screen.press(*keys[:opens])
         for view in views_for(name):

@@ -26,6 +26,7 @@ from groundstation.ui.widgets.status import (
     driver_part,
     health_parts,
     mode_badge,
+    muted_parts,
     recording_parts,
 )
 
@@ -123,8 +124,9 @@ class DrivingStrip(Instrument[StripValue]):
             yield [space, (self.value.status.snapshot.waiting or "", style(TEXT))]
             return
         dot = recording_parts(self.value.status.snapshot.recording)
-        yield [*arming_badges(vehicle), mode_badge(vehicle), (f" {vehicle.name} ", badge(BLUE)), *dot]
         status = self.value.status
+        mute = muted_parts(muted=status.muted)
+        yield [*arming_badges(vehicle), mode_badge(vehicle), *mute, (f" {vehicle.name} ", badge(BLUE)), *dot]
         who = driver_part(vehicle, station_runs=status.station_runs, watches=bool(status.snapshot.lease.driver))
         yield [space, who, space, *health_parts(vehicle)]
         demand = _demand(self.value.status.snapshot.operator)
