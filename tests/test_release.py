@@ -45,7 +45,7 @@ def test_a_release_lists_the_packages_of_every_extra() -> None:
 
 
 def test_the_extra_all_has_all_but_the_header_of_a_raspberry_pi() -> None:
-    assert (parts("all") - {"desk"}) | parts("desk") == listed_extras() - {"pi"}
+    assert (parts("all") - {"desk"}) | parts("desk") == listed_extras() - {"pi", "tof"}
 
 
 def test_the_extra_desk_needs_no_other_network_of_programs() -> None:

@@ -52,6 +52,21 @@ def _motor(number: int) -> tuple[Parameter, ...]:
     )  # fmt: skip
 
 
+RANGEFINDERS = 4
+
+
+def _rangefinder(number: int) -> tuple[Parameter, ...]:
+    """Return the parameters of one rangefinder of this computer (vehicle/proximity/mounting.py)."""
+    name = f"RNGFND{number}"
+    return (
+        Parameter(f"{name}_ORIENT", 0, 0, 7, "", f"Rangefinder {number} looks: 0 ahead, then in steps of 45 degrees to "
+                  "the right; 4 is behind", safety=True, whole=True),
+        Parameter(f"{name}_MIN", 0, 0, 10, "m", f"Rangefinder {number}: what is nearer counts as 0 m", safety=True),
+        Parameter(f"{name}_MAX", 0, 0, 100, "m", f"Rangefinder {number}: ignore what is farther; 0: its own range",
+                  safety=True),
+    )  # fmt: skip
+
+
 BUTTONS = 16
 """Bits of MANUAL_CONTROL's `buttons`."""
 
@@ -125,6 +140,7 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("PRX1_MIN", 0, 0, 10, "m", "OBSTACLE_DISTANCE: ignore what is nearer, as parts of the rover; 0: nothing",
               safety=True),
     Parameter("PRX1_MAX", 0, 0, 100, "m", "OBSTACLE_DISTANCE: ignore what is farther; 0: nothing", safety=True),
+    *(parameter for number in range(1, RANGEFINDERS + 1) for parameter in _rangefinder(number)),
     # Autonomous modes
     Parameter("WP_SPEED", 0.8, 0.1, 30, "m/s", "Speed along a path; SPEED_MAX is never exceeded"),
     Parameter("WP_RADIUS", 0.5, 0.1, 20, "m", "A waypoint without a stop is reached at this distance"),

@@ -70,6 +70,8 @@ class RangeReading(NamedTuple):
     """Where it looks; without distances until it has measured."""
     at: float | None
     """When it was measured; None before the first time."""
+    mount: int = -1
+    """How its directions become those of the rover (vehicle/proximity/mounting.py); -1: they are."""
 
 
 class Readings(msgspec.Struct, frozen=True):

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import errno
 import os
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -33,11 +34,14 @@ from vehicle.sensors.encoders import Encoders
 from vehicle.sensors.gps import GpsdClient
 from vehicle.sensors.pi_health import PiHealth
 from vehicle.sensors.power import PowerMonitor
+from vehicle.sensors.ranging.sources import RangeSource, open_lidar, open_rangefinder
 from vehicle.storage.dir_check import write_problem
 from vehicle.storage.recorder import LOGS
 
 GPS_WAIT = 3.0
 """s for a first report: gpsd responds at once, and receivers report once per second."""
+RANGE_WAIT = 2.0
+"""s for a first measurement: a lidar needs a second until it turns."""
 POLL = 0.1
 """s between two polls."""
 BUSY_ERRNOS = (errno.EADDRINUSE, errno.EBUSY, errno.EAGAIN)
@@ -115,6 +119,10 @@ def _sensors(config: Config) -> Iterator[CheckResult]:
         yield _try("sensors.gps", lambda: asyncio.run(_gps(config)))
     if sensors.encoders is not None:
         yield _try("sensors.encoders", lambda: _encoders(config))
+    for index, each in enumerate(sensors.rangefinders):
+        yield _try(f"sensors.rangefinders[{index}]", lambda each=each: _range(open_rangefinder(each)))  # type: ignore[misc]
+    if (lidar := sensors.lidar) is not None:
+        yield _try("sensors.lidar", lambda: _range(open_lidar(lidar)))
     if sensors.computer:
         yield _try("sensors.computer", _computer)
 
@@ -237,6 +245,22 @@ def _encoders(config: Config) -> str:
     encoders = Encoders(config.sensors.encoders)
     encoders.close()
     return f"{len(config.sensors.encoders.wheels)} wheels; turn one by hand while the vehicle runs to see it count"
+
+
+def _range(source: RangeSource) -> str:
+    """Wait for a measurement."""
+    try:
+        end = time.monotonic() + RANGE_WAIT
+        while (reading := source.latest(time.monotonic())) is None:
+            if time.monotonic() > end:
+                raise _CheckError(source.fault or "measures nothing")
+            time.sleep(POLL)
+    finally:
+        source.close()
+    distances = [cone.distance for cone in reading.scan if cone.distance is not None and not cone.is_clear]
+    if not any(cone.distance is not None for cone in reading.scan):
+        raise _CheckError(f"{source.name} measures nothing: is it covered?")
+    return f"{source.name}: {f'nearest obstacle {min(distances):.2f} m' if distances else 'no obstacle in range'}"
 
 
 def _computer() -> str:

@@ -6,8 +6,6 @@ slower and nothing else: each sensor counts for itself, and none makes another o
 
 from __future__ import annotations
 
-import math
-
 from dialects import messages as m
 from dialects.enums import Severity
 from link.core import Received
@@ -16,6 +14,7 @@ from vehicle.commands.access import Access
 from vehicle.commands.context import COMPONENT, Context
 from vehicle.commands.inbound import InboundMessage, InboundTable
 from vehicle.proximity.cones import parse_distance_sensor, parse_obstacle_distance
+from vehicle.proximity.mounting import mount_around
 from vehicle.readings import Scan
 
 
@@ -45,7 +44,7 @@ class ProximityMessages:
     def _handle_distances(self, received: Received, message: m.ObstacleDistance, now: float) -> None:
         if self._counts(received):
             scan = parse_obstacle_distance(message, self._navigator.estimate.yaw)
-            self._hear(received, "round", scan if isinstance(scan, str) else self._corrected(scan), now)
+            self._hear(received, "round", scan if isinstance(scan, str) else mount_around(scan, self._params), now)
 
     def _counts(self, received: Received) -> bool:
         is_component = received.system == self._control.system and received.component != COMPONENT
@@ -57,18 +56,3 @@ class ProximityMessages:
         self._obstacles.hear((received.peer, received.component, sensor), name, scan, now)
         if self._obstacles.refused > refused:
             self._texts.send_once("range sensors", Severity.WARNING, f"Range sensor {name} ignored: too many", now)
-
-    def _corrected(self, scan: Scan) -> Scan:
-        """Return the cones of a sensor as it is mounted (PRX1_ORIENT, _YAW_CORR), within PRX1_MIN and PRX1_MAX."""
-        params = self._params
-        sign = -1.0 if params["PRX1_ORIENT"] else 1.0
-        turned, near = math.radians(params["PRX1_YAW_CORR"]), params["PRX1_MIN"]
-        found = []
-        for cone in scan:
-            far = min(cone.far, params["PRX1_MAX"] or cone.far)
-            distance = cone.distance
-            if distance is not None and (distance > far or distance < near):
-                distance = far
-            bearing = (sign * cone.bearing + turned) % math.tau
-            found.append(cone._replace(bearing=bearing, distance=distance, far=far))
-        return tuple(found)

@@ -56,6 +56,8 @@ def iter_taken(table: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]
     parts = _motors(table["motors"]) if "motors" in table else {}
     sensors = msgspec.convert(table.get("sensors", {}), SensorSettings)
     parts |= {"sensors.encoders": sensors.encoders, "sensors.battery": sensors.battery}
+    parts |= {f"sensors.rangefinders[{index}]": each for index, each in enumerate(sensors.rangefinders)}
+    parts["sensors.lidar"] = sensors.lidar
     for owner, settings in [*parts.items(), *_accessories(table)]:
         for name in getattr(settings, "taken", ()):
             yield owner, name, None

@@ -33,6 +33,13 @@ COMMON_MOTOR: dict[str, Any] = {
 SENSORS: dict[str, Any] = {
     "battery": {"kind": "ina219"},
     "gps": {},
+    "rangefinders": [
+        {"driver": "hc-sr04", "number": 1, "trigger": 5, "echo": 6},
+        {"driver": "vl53l0x", "number": 2},
+        {"driver": "vl53l1x", "number": 3, "bus": 3},
+        {"driver": "tfmini", "number": 4, "port": "/dev/ttyUSB0"},
+    ],
+    "lidar": {"driver": "ld06", "port": "/dev/ttyUSB1"},
     "encoders": {"wheels": [{"a": 23, "b": 24}, {"a": 25, "b": 26}]},
 }
 TOP: dict[str, Any] = {

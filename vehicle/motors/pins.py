@@ -41,6 +41,7 @@ try:
     from gpiozero import (
         DigitalInputDevice,
         DigitalOutputDevice,
+        DistanceSensor,
         Motor,
         PhaseEnableMotor,
         PWMOutputDevice,
@@ -55,6 +56,7 @@ FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, ImportError, 
 __all__ = [
     "DigitalInputDevice",
     "DigitalOutputDevice",
+    "DistanceSensor",
     "Motor",
     "PWMOutputDevice",
     "PhaseEnableMotor",

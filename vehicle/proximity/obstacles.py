@@ -10,6 +10,7 @@ from dialects.enums import DriveLimit, DriveType
 from vehicle.drive.stopping import Stopping
 from vehicle.params import Params
 from vehicle.proximity.cones import angle_between
+from vehicle.proximity.mounting import mount_reading
 from vehicle.proximity.outline import Motion, Outline, WheelMotion, turn_rate_of
 from vehicle.proximity.source import RangeSource
 from vehicle.readings import RangeReading, Scan
@@ -94,12 +95,15 @@ class Obstacles:
 
     def sense(self, ranges: Sequence[RangeReading]) -> None:
         """Take the scans of the sensors of this computer. One that has never measured counts as lost."""
-        for name, scan, at in ranges:
-            if at is not None:
-                self.hear(name, name, scan, at)
-            elif name not in self.sources:
-                self.sources[name] = source = RangeSource(name, self._outline, -math.inf)
-                source.scan = scan
+        for reading in ranges:
+            name, at, source = reading.sensor, reading.at, self.sources.get(reading.sensor)
+            if source is None or (at is not None and at > source.heard):
+                scan = mount_reading(reading, self._params)
+                if at is not None:
+                    self.hear(name, name, scan, at)
+                else:
+                    self.sources[name] = source = RangeSource(name, self._outline, -math.inf)
+                    source.scan = scan
 
     def move(self, wheels: Sequence[float], speed: float | None, turn: float | None, now: float, dt: float, *,
              armed: bool) -> None:  # fmt: skip
@@ -173,11 +177,12 @@ class Obstacles:
         lost, least = self._params["AVOID_LOST_SPD"], OVERRIDE_SPEED if self.overridden else 0.0
         found, near = [], self._near(commanded) ** 2
         for source in self.sources.values():
-            for place in source.places():
-                if place[0] * place[0] + place[1] * place[1] < near:
-                    clearance, x, y, lever = self._outline.gap(place)
-                    allowed = self._stopping.speed_within(clearance - self._margin)
-                    found.append(Barrier(x, y, lever, max(allowed, least), OBSTACLE))
+            for places, reason in ((source.places(), OBSTACLE), (source.ends(), RANGE_SENSOR)):
+                for place in places:
+                    if place[0] * place[0] + place[1] * place[1] < near:
+                        clearance, x, y, lever = self._outline.gap(place)
+                        allowed = self._stopping.speed_within(clearance - self._margin)
+                        found.append(Barrier(x, y, lever, max(allowed, least), reason))
             if source.name in self.faults:
                 found += self._blocked(source, max(lost, least))
         if self.accepts_messages and not self.sources:

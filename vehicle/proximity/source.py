@@ -36,6 +36,7 @@ class RangeSource:
         """Why its newest message was not used."""
         self._outline = outline
         self._scans: list[list[Place]] = []
+        self._ends: list[Place] = []
         self._way = 0.0, 0.0
         """m ahead and to the right since any distance has changed."""
 
@@ -48,6 +49,12 @@ class RangeSource:
             self._way = 0.0, 0.0
         self.scan = scan
         self._scans = [*self._scans[1 - SCANS_KEPT :], [place for cone in scan for place in self._places(cone, reach)]]
+        self._ends = [
+            place
+            for cone in scan
+            if cone.is_clear and cone.far <= reach
+            for place in self._points(cone, self._start(cone) + cone.far)
+        ]
 
     def reject(self, problem: str, now: float) -> None:
         """Note a message that cannot be used."""
@@ -57,15 +64,21 @@ class RangeSource:
         """Carry the scans along with the rover."""
         if now - self.heard > MEMORY:
             self._scans.clear()
+            self._ends.clear()
         if not (motion.ahead or motion.right or motion.turn):
             return
         self._scans = [carry(places, motion, dt) for places in self._scans]
+        self._ends = carry(self._ends, motion, dt)
         ahead, right = self._way
         self._way = ahead + motion.ahead * dt, right + motion.right * dt
 
     def places(self) -> list[Place]:
         """Return where obstacles are."""
         return [place for places in self._scans for place in places]
+
+    def ends(self) -> list[Place]:
+        """Return where the sensor sees no farther, and has seen nothing: beyond may be an obstacle."""
+        return self._ends
 
     def find_fault(self, now: float) -> str | None:
         """Return why the sensor cannot be believed, or None."""
@@ -95,8 +108,10 @@ class RangeSource:
     def _places(self, cone: Cone, reach: float) -> list[Place]:
         if cone.distance is None or cone.is_clear or cone.distance > reach:
             return []
-        start = 0.0 if cone.central else self._outline.radius_at(cone.bearing)
-        return self._points(cone, start + cone.distance)
+        return self._points(cone, self._start(cone) + cone.distance)
+
+    def _start(self, cone: Cone) -> float:
+        return 0.0 if cone.central else self._outline.radius_at(cone.bearing)
 
     @staticmethod
     def _points(cone: Cone, radius: float) -> list[Place]:

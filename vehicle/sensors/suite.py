@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from vehicle.motors.settings import reject_duplicates
 from vehicle.readings import ComputerReadings, Readings, SensorFault
 from vehicle.safety.battery import SENSOR_TIMEOUT
 from vehicle.sensors.encoders import Encoders, EncoderSettings
@@ -20,6 +21,8 @@ from vehicle.sensors.pi_health import PiHealth
 from vehicle.sensors.power import MAX_AGE as POWER_AGE
 from vehicle.sensors.power import PERIOD as POWER_PERIOD
 from vehicle.sensors.power import PowerMonitor, PowerReading, PowerSettings
+from vehicle.sensors.ranging.settings import Lidar, Rangefinder
+from vehicle.sensors.ranging.sources import RangeSource, open_lidar, open_rangefinder
 from vehicle.sensors.sampler import Sampler
 
 
@@ -29,8 +32,15 @@ class SensorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     battery: PowerSettings | None = None
     gps: GpsSettings | None = None
     encoders: EncoderSettings | None = None
+    rangefinders: tuple[Rangefinder, ...] = ()
+    """Range sensors that look in one direction, each with a number of its own."""
+    lidar: Lidar | None = None
+    """A range sensor that looks all around."""
     computer: bool = True
     """Monitor the Raspberry Pi itself."""
+
+    def __post_init__(self) -> None:
+        reject_duplicates([f"number {each.number}" for each in self.rangefinders])
 
 
 @dataclass
@@ -41,12 +51,14 @@ class SensorSources:
     gps: SensorSource[GpsReading] | None = None
     encoders: SensorSource[tuple[float, ...]] | None = None
     computer: SensorSource[ComputerReadings] | None = None
+    ranges: tuple[RangeSource, ...] = ()
 
     def present(self) -> dict[str, SensorSource[Any]]:
         """Return the installed sensors by the name that the operator reads."""
         sources: dict[str, SensorSource[Any] | None] = {
             "battery": self.battery, "gps": self.gps, "encoders": self.encoders, "computer": self.computer
         }  # fmt: skip
+        sources |= {each.name: each for each in self.ranges}
         return {name: source for name, source in sources.items() if source is not None}
 
 
@@ -55,6 +67,7 @@ class SensorSuite:
 
     def __init__(self, sources: SensorSources) -> None:
         self._present = sources.present()
+        self._ranges = sources.ranges
         self._configured = tuple(self._present)
         self._last_value_at: dict[str, float] = {}
         """Name -> time of the last value, at first that of the first `read`."""
@@ -72,6 +85,8 @@ class SensorSuite:
             values.update(_position(position))
         if wheels := newest.get("encoders"):
             values.update(wheel_speeds=wheels, speed=sum(wheels) / len(wheels))
+        if self._ranges:
+            values["ranges"] = tuple(each.reading for each in self._ranges)
         faults = self._faults(now)
         return Readings(computer=newest.get("computer"), configured=self._configured, faults=faults, **values)
 
@@ -93,11 +108,20 @@ class SensorSuite:
 def open_sensors(settings: SensorSettings) -> SensorSuite:
     """Open the sensors of `settings` and start reading them. Call it in a running event loop.
 
-    Sensors that do not respond yet are tried again periodically; only encoders raise MotorError, if there are no pins.
+    Sensors that do not respond yet are tried again periodically; only sensors on pins raise MotorError, if there are
+    none.
     """
     sources = SensorSources()
-    if settings.encoders is not None:
-        sources.encoders = Encoders(settings.encoders)  # first, because only this raises
+    with contextlib.ExitStack() as opened:  # first, because only these raise
+        if settings.encoders is not None:
+            sources.encoders = Encoders(settings.encoders)
+            opened.callback(sources.encoders.close)
+        for each in settings.rangefinders:
+            sources.ranges += (source := open_rangefinder(each),)
+            opened.callback(source.close)
+        opened.pop_all()
+    if settings.lidar is not None:
+        sources.ranges += (open_lidar(settings.lidar),)
     if settings.battery is not None:
         sources.battery = _sampled(PowerMonitor(settings.battery).sample, POWER_PERIOD, POWER_AGE)
     if settings.gps is not None:

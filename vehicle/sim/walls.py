@@ -68,8 +68,8 @@ class SimulatedLidar:
     """Looks around ten times a second, with noise and dropouts."""
 
     def __init__(self, walls: Walls, seed: int, *, sectors: int = SECTORS, noise: float = RANGE_NOISE,
-                 dropouts: float = DROPOUTS) -> None:  # fmt: skip
-        self._walls, self._sectors = walls, sectors
+                 dropouts: float = DROPOUTS, far: float = FAR) -> None:  # fmt: skip
+        self._walls, self._sectors, self._far = walls, sectors, far
         self._noise, self._dropouts = noise, dropouts
         self._random = random.Random(seed)
         self._due = -math.inf
@@ -82,16 +82,16 @@ class SimulatedLidar:
             distances = self._walls.scan(Point(motion.north, motion.east), motion.yaw, self._sectors)
             step = math.tau / self._sectors
             cones = tuple(
-                Cone(index * step, step / 2, self._measure(distance), FAR, central=True)
+                Cone(index * step, step / 2, self._measure(distance), self._far, central=True)
                 for index, distance in enumerate(distances)
             )
             self._newest = RangeReading("lidar", cones, now)
         return self._newest
 
     def _measure(self, distance: float) -> float:
-        if distance >= FAR or self._random.random() < self._dropouts:
-            return FAR
-        return max(0.0, min(FAR, distance + self._random.gauss(0.0, self._noise)))
+        if distance >= self._far or self._random.random() < self._dropouts:
+            return self._far
+        return max(0.0, min(self._far, distance + self._random.gauss(0.0, self._noise)))
 
 
 class Surroundings:

@@ -13,6 +13,7 @@ from tests.ports import free_port
 from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty
+from tests.vehicle.sensors.ranging.frames import Line, tfmini_frame
 from tests.vehicle.words import said_by
 from vehicle.cli.check import run_checks
 from vehicle.config.template import build_template
@@ -236,3 +237,15 @@ def test_each_mistake_of_a_section_is_named(tmp_path: Path) -> None:
     named = [problem.partition(": ")[2].partition(": ")[0] for problem in problems]
     assert len(named) == len(set(named)) >= 4, problems
     assert {"motors.backwards", "motors.pwm", "sensors.battery.address"} <= set(named)
+
+
+def test_range_sensors_are_measured_or_say_why_not(tmp_path: Path) -> None:
+    with Line(lambda: tfmini_frame(150)) as line:
+        ranges = "".join(
+            f'[[sensors.rangefinders]]\ndriver = "tfmini"\nnumber = {number}\nport = "{port}"\n'
+            for number, port in ((1, line.path), (2, "/dev/nowhere"))
+        )
+        code, lines = checked(tmp_path, f'{FREE}[motors]\ndriver = "simulated"\n{QUIET}{ranges}')
+    assert code == 1
+    assert lines[-2] == "ok    sensors.rangefinders[0]: RNGFND1: nearest obstacle 1.50 m"
+    assert lines[-1].startswith("FAIL  sensors.rangefinders[1]: /dev/nowhere")

@@ -106,6 +106,8 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         (GPIO + 'wiring = "two-inputs"\nforward = 1\nbackward = 1', "motors: GPIO 1 is used twice"),
         ('[motors]\ndriver = "gpio"\nbridges = []', "motors.bridges: must have at least 1 entry"),
         ('[sensors]\nbatery = 1', "sensors.batery: unknown key; did you mean battery?"),
+        ('[[sensors.rangefinders]]\ndriver = "hc-sr4"', "sensors.rangefinders[0].driver: 'hc-sr4' is not known"),
+        ('[[sensors.rangefinders]]\ndriver = "vl53l0x"\nnumber = 9', "sensors.rangefinders[0].number: "),
         ('[sensors.battery]\nkind = "ina218"', "sensors.battery.kind: 'ina218' is not known; did you mean ina219 or"),
         ("[sensors.gps]\nport = 0", "sensors.gps.port: must be at least 1"),
         ("[sensors.encoders]\nwheels = [{ a = 5, b = 5 }]", "sensors.encoders: GPIO 5 is used twice"),

@@ -31,6 +31,15 @@ def wheels(*pins: int) -> str:
             BOARD + '[sensors.battery]\nkind = "ina219"',
             "sensors.battery: address 0x40 on I2C bus 1 is already used by motors",
         ),
+        (
+            '[[sensors.rangefinders]]\ndriver = "vl53l0x"\nnumber = 1\n'
+            '[[sensors.rangefinders]]\ndriver = "vl53l1x"\nnumber = 2',
+            "sensors.rangefinders[1]: address 0x29 on I2C bus 1 is already used by sensors.rangefinders[0]",
+        ),
+        (
+            'endpoints = ["serial:/dev/ttyAMA0:57600"]\n[sensors.lidar]\ndriver = "ld06"\nport = "/dev/ttyAMA0"',
+            "sensors.lidar: /dev/ttyAMA0 is already used by endpoints[0]",
+        ),
     ],
 )
 def test_what_is_wanted_twice_is_said_before_anything_is_opened(text: str, says: str) -> None:

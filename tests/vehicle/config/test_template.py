@@ -58,7 +58,10 @@ def test_every_sensor_is_in_it_with_every_key_at_its_default() -> None:
     table = live(BLOCKS[-1])["sensors"]
     assert set(table) == set(SensorSettings.__struct_fields__)
     required = {"battery": {"kind": "ina219"}, "gps": {}, "encoders": {"wheels": table["encoders"]["wheels"]}}
-    assert msgspec.convert(table, SensorSettings) == msgspec.convert(required, SensorSettings)
+    lists = {"rangefinders": table["rangefinders"], "lidar": table["lidar"]}
+    settings = msgspec.convert(required | lists, SensorSettings)
+    assert msgspec.convert(table, SensorSettings) == settings
+    assert tuple(table["rangefinders"]) == msgspec.to_builtins(settings)["rangefinders"]
     for name in required:
         assert set(table[name]) == set(msgspec.to_builtins(msgspec.convert(table, SensorSettings))[name])
 

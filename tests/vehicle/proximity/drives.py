@@ -27,6 +27,8 @@ DURATION = 4.0
 SECTORS = 36
 MARGIN = 0.15
 """m: half of AVOID_MARGIN; nearer than this the truth is looked at in each cycle."""
+FARS = (1.2, 3.0, 8.0, 8.0)
+"""m that the sensors see."""
 CLEARED = Clearance(armed=True, late=False, held=False, neutral_seen=True, demand_age=0.0, timeout=0.45)
 
 
@@ -65,7 +67,8 @@ def drive(seed: int, *, avoid: bool = True) -> Outcome:
     frame = ChassisDimensions(top_speed=speed)
     chassis, rover, obstacles = CHASSIS[kind](frame), Drive(params, 0.0), Obstacles(params, kind)
     walls = Walls(random_walls(chance))
-    lidar = SimulatedLidar(walls, seed, sectors=SECTORS, dropouts=chance.uniform(0.0, 0.2))
+    dropouts, far = chance.uniform(0.0, 0.2), FARS[seed % len(FARS)]
+    lidar = SimulatedLidar(walls, seed, sectors=SECTORS, dropouts=dropouts, far=far)
     dies = chance.uniform(1.0, DURATION) if seed % 3 == 0 else math.inf
     look = 0.0
     nearest, driven, until, demand = math.inf, 0.0, 0.0, Demand(0.0, 0.0, 0.0, 255, 0, 0.0)

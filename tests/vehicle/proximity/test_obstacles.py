@@ -9,7 +9,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.axes import Axes
-from dialects.enums import DriveLimit
+from dialects.enums import DriveLimit, DriveType
 from dialects.modes import Mode
 from link.core import Peer, Received
 from link.signing.role import SigningRole
@@ -17,8 +17,10 @@ from tests.vehicle.bench import AHEAD, BEAT, NEUTRAL, said
 from tests.vehicle.drive.test_operator_session import Station
 from tests.vehicle.field import Field
 from tests.vehicle.proximity.drives import drive
+from vehicle.params import Params
 from vehicle.proximity.obstacles import SOURCES_MAX, Obstacles
 from vehicle.proximity.override import LONGEST
+from vehicle.readings import Cone, RangeReading
 
 WALL = 3.0
 """m north of the start."""
@@ -34,6 +36,7 @@ class Walled(Field):
         self.measure: Callable[[], float | None] = lambda: WALL - self.truth.north - NOSE
         """m that the sensor reports; None: it is silent."""
         self.sensor_due = self.now
+        self.companion_far = 6.0
         self.station_ = Station(self)
         self.companion(BEAT)
 
@@ -46,7 +49,7 @@ class Walled(Field):
             self.sensor_due = self.now + 0.1
             distance = self.measure()
             if distance is not None:
-                self.companion(ahead(distance))
+                self.companion(ahead(distance, far=self.companion_far))
         super().cycle()
 
     def ready(self) -> None:
@@ -68,9 +71,12 @@ class Walled(Field):
         return DriveLimit(self.newest(m.RoverDriveStatus).limits)
 
 
-def ahead(distance: float, number: int = 0, orientation: int = 0, quality: int = 0) -> m.DistanceSensor:
-    centimetres = max(0, min(600, round(100 * distance)))
-    return m.DistanceSensor(0, 2, 600, centimetres, 0, number, orientation, 255, 0.4, 0, signal_quality=quality)
+def ahead(
+    distance: float, number: int = 0, orientation: int = 0, quality: int = 0, far: float = 6.0
+) -> m.DistanceSensor:
+    furthest = round(100 * far)
+    centimetres = max(0, min(furthest, round(100 * distance)))
+    return m.DistanceSensor(0, 2, furthest, centimetres, 0, number, orientation, 255, 0.4, 0, signal_quality=quality)
 
 
 def test_the_rover_stops_before_a_wall_and_drives_away() -> None:
@@ -236,6 +242,43 @@ def test_a_limit_never_creates_motion(kind: int) -> None:
             assert abs(wheel) <= 1.0
         if axes == AHEAD:
             assert not any(field.rover._drive.driven_wheels), "never backwards by itself"
+
+
+def reading(distance: float, number: int, far: float = 4.0) -> RangeReading:
+    return RangeReading(f"RNGFND{number}", (Cone(0.0, 0.2, distance, far),), 1.0, number)
+
+
+def share_of(params: dict[str, float], *ranges: RangeReading, speed: float = 0.0) -> tuple[float, float]:
+    """The shares of full speed ahead and backwards."""
+    obstacles = Obstacles(Params(params), DriveType.SKID)
+    obstacles.sense(ranges)
+    obstacles.move((0.0, 0.0), speed, 0.0, 1.0, 0.0, armed=True)
+    return obstacles.share((1.0, 1.0), (0.0, 0.0))[0], obstacles.share((-1.0, -1.0), (0.0, 0.0))[0]
+
+
+def test_parameters_say_where_a_rangefinder_looks_and_how_far() -> None:
+    behind = {"RNGFND2_ORIENT": 4.0}
+    assert share_of(behind, reading(0.2, 2)) == (1.0, 0.0)
+    assert share_of(behind, reading(0.2, 1)) == (0.0, 1.0)
+    assert share_of({"RNGFND1_MIN": 0.5, "AVOID_MARGIN": 0.05}, reading(0.4, 1))[0] == 0.0, "nearer than it measures"
+    assert 0.0 < share_of({"RNGFND1_MAX": 0.4}, reading(0.45, 1))[0] < 0.5, "nothing in range, and a short range"
+
+
+def test_the_rover_is_no_faster_than_its_sensor_sees_far() -> None:
+    near, far = (share_of({"SPEED_MAX": 3.0}, reading(reach, 1, reach), speed=1.0) for reach in (1.2, 12.0))
+    assert 0.1 < near[0] < 0.6
+    assert near[1] == 1.0, "backwards no sensor looks"
+    assert far == (1.0, 1.0)
+
+
+def test_a_short_sighted_rover_at_full_speed_stops_before_a_wall() -> None:
+    field = Walled(SPEED_MAX=2.0)
+    field.measure = lambda: min(1.2, WALL - field.truth.north - NOSE)
+    field.companion_far = 1.2
+    field.ready()
+    field.hold(6.0, AHEAD)
+    assert 0.15 < WALL - NOSE - field.truth.north < 0.6
+    assert abs(field.speed) < 0.02
 
 
 @pytest.mark.slow
