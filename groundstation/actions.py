@@ -88,6 +88,8 @@ _ROWS = (
     _fly("side_right", "Side right", "Copter: fly to the right, without a turn", 1, 0),
     _fly("climb", "Climb", "Copter: climb while held", 0, 1),
     _fly("descend", "Descend", "Copter: descend while held", 0, -1),
+    OperatorAction("drive.override", "Override", "With a drive key: creep on before an obstacle that is not there",
+                   "drive", DriveKeyDown(key="", throttle=0, steering=0, override=True), ("b",)),
     OperatorAction("drive.stop", "Stop", "Neutral at once; ends latched driving", "stop", Stop(),
                    ("k", "space", "ctrl+k")),
     OperatorAction("stop.emergency", "EMERGENCY STOP", "Motors off and locked, from every screen", "stop",

@@ -51,7 +51,7 @@ which use W, so it has no WASD."""
 
 FLIGHT_ACTIONS = {
     "drive.forward_left": "drive.side_left", "drive.forward_right": "drive.side_right", "view.closer": "drive.climb",
-    "view.wider": "drive.descend", "drive.backward_left": "", "drive.backward_right": "",
+    "view.wider": "drive.descend", "drive.backward_left": "", "drive.backward_right": "", "drive.override": "",
 }  # fmt: skip
 """Action of a rover's key -> that of a copter's; "": the key has none and so is a stop key."""
 CLIMB_KEYS = {"w": "drive.climb", "s": "drive.descend"}

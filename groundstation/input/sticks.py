@@ -36,6 +36,7 @@ class _Held(msgspec.Struct):
     until: float
     """inf where the terminal reports the release."""
     trace: KeyTrace
+    override: bool = False
 
 
 class Sticks:
@@ -64,12 +65,12 @@ class Sticks:
         """Handle a drive key that went down or repeats. Returns False if it must be released first."""
         if push.repeat:
             self.reports_releases = True
-        if not any(push.directions):
+        if not any(push.directions) and not push.override:
             return True
         if self._is_held_over(now) or self._is_blocked(push, now):
             return False
         self.pad.release()
-        if self.style is Style.HOLD:
+        if self.style is Style.HOLD or push.override:
             self._hold(push, now)
         elif self.style is Style.STEP:
             self._step(push, now)
@@ -201,6 +202,11 @@ class Sticks:
         self._expire(now)
         return (*self._held, *([PAD] if self.pad.held(now) else []))
 
+    def overrides(self, now: float) -> bool:
+        """Return whether the key is held that overrides the limits before obstacles."""
+        self._expire(now)
+        return any(held.override for held in self._held.values())
+
     @property
     def stop_bound(self) -> float:
         """Longest time for which a demand stays after the key is released, s: inf where only a key ends it."""
@@ -223,7 +229,7 @@ class Sticks:
         trace = self._windows.start_press(self._traces.get(push.key), now)
         self._traces[push.key] = trace
         until = math.inf if self.reports_releases else now + self._windows.press_window
-        self._held[push.key] = _Held(push.directions, until, trace)
+        self._held[push.key] = _Held(push.directions, until, trace, push.override)
         self._refresh_others(until)
 
     def _extend_hold(self, held: _Held, now: float) -> None:

@@ -27,6 +27,8 @@ class DriveKeyDown(Intent, frozen=True):
     side: int = 0
     """To the right; of what flies, as climb."""
     climb: int = 0
+    override: bool = False
+    """Overrides the limits before obstacles while it is held; moves nothing by itself."""
 
     @property
     def directions(self) -> tuple[int, int, int, int]:

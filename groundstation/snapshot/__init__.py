@@ -178,6 +178,8 @@ class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     0 if releases are reported, inf if driving goes on until the next key (latch, step)."""
     held: tuple[str, ...] = ()
     """Drive keys that count as held."""
+    overrides: bool = False
+    """The key is held that overrides the limits before obstacles."""
     held_over: bool = False
     """A drive key that repeats from before keys drove is ignored: it must be released first."""
     throttle: float = 0.0

@@ -313,6 +313,7 @@ class OperatorSession:
             reports_releases=sticks.reports_releases,
             stop_bound=sticks.stop_bound,
             held=sticks.held_keys(now),
+            overrides=reason is None and self._overrides(now),
             held_over=reason is None and sticks.held_over(now),
             throttle=self._sent_demand.throttle,
             steering=self._sent_demand.steering,
@@ -330,6 +331,9 @@ class OperatorSession:
     def _age_ms(self, now: float) -> int:
         return OLDEST_AGE if self._last_input_at is None else min(OLDEST_AGE, int((now - self._last_input_at) * 1000))
 
+    def _overrides(self, now: float) -> bool:
+        return self._live and self._driving_allowed and self.sticks.overrides(now)
+
     def _flags(self, now: float) -> Flag:
         flags = Flag(0)
         if self.sticks.held_keys(now) or not self._sent_demand.neutral:
@@ -338,4 +342,6 @@ class OperatorSession:
             flags |= Flag.FOCUSED
         if not self._live:
             flags |= Flag.INPUT_LOST
+        if self._overrides(now):
+            flags |= Flag.OVERRIDE
         return flags

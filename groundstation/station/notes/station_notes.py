@@ -39,6 +39,7 @@ class StationNotes:
         self._operator = operator
         self._fleet = fleet
         self._held: tuple[str, ...] = ()
+        self._overrides = False
         self._axes = NEUTRAL
         self._vehicle = 0
         self._blocked: str | None = ""
@@ -100,6 +101,9 @@ class StationNotes:
             self._add_key(now, Kind.KEYS_UP, f"{key}: {_why_up(intent, permission)}")
         for key in down:
             self._add_key(now, Kind.KEYS_DOWN, key)
+        if (overrides := self._operator.sticks.overrides(now)) != self._overrides:
+            self._overrides = overrides
+            self.add(now, Kind.DECISION, f"limits before obstacles {'overridden' if overrides else 'count again'}")
         if isinstance(intent, DriveKeyDown):
             self._follow_press(intent, permission, now, noted=bool(down), changed=self._axes != axes_before)
         elif not down and not up and self._axes.neutral and not axes_before.neutral:

@@ -294,6 +294,8 @@ def _operator(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
     elif operator.ignored and operator.ignored not in _ELSEWHERE:
         yield Alert(AlertLevel.WARNING, f"key ignored ({operator.ignored}): release it, then press again")
+    elif operator.overrides:
+        yield Alert(AlertLevel.WARNING, f"OBSTACLES OVERRIDDEN while {now.key('drive.override')} is held")
     elif operator.style == "latch" and operator.moves:
         yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
 

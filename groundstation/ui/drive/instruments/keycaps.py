@@ -65,6 +65,8 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     """The gamepad drives."""
     slowed: tuple[float, str] | None = None
     """m/s that the vehicle allows itself, and why."""
+    overrides: bool = False
+    """The key is held that overrides the limits before obstacles."""
     flies: bool = False
     full: tuple[float | None, float | None, float | None] = (None, None, None)
     """What full deflection asks for, of what flies: m/s, deg/s, m/s up."""
@@ -91,6 +93,7 @@ class KeycapsValue(msgspec.Struct, frozen=True):
             ignored=bool(operator.ignored),
             gamepad=PAD in operator.held,
             slowed=vehicle.slowed if vehicle is not None and vehicle.armed else None,
+            overrides=operator.overrides,
             recorded=None if now.snapshot.replay is None else operator.held,
         )
 
@@ -141,7 +144,8 @@ def limit_parts(value: KeycapsValue) -> list[Part]:
     """Return the limits of the keys; while the vehicle limits itself further, its limit and the reason."""
     if value.slowed is not None:
         speed, reason = value.slowed
-        return [("at most ", style(DIM)), (f"{speed:.1f} m/s", style(AMBER, bold=True)), (f": {reason}", style(AMBER))]
+        first = ("OVERRIDE ", style(RED, bold=True)) if value.overrides else ("at most ", style(DIM))
+        return [first, (f"{speed:.1f} m/s", style(AMBER, bold=True)), (f": {reason}", style(AMBER))]
     return [
         ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
         (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),

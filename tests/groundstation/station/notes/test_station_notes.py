@@ -86,6 +86,13 @@ def test_a_latched_key_is_noted_until_the_stop() -> None:
     assert book.of_keys() == [("i", 600, 0), (",", -600, 0), ("stop key", 0, 0)]
 
 
+def test_the_override_of_obstacles_is_a_decision() -> None:
+    cockpit = driving_cockpit()
+    book = Notebook(cockpit)
+    cockpit.do(DriveKeyDown(key="b", throttle=0, steering=0, override=True), DriveKeyUp("b"))
+    assert book.of(Kind.DECISION) == ["limits before obstacles overridden", "limits before obstacles count again"]
+
+
 def test_keys_that_are_letters_on_another_screen_are_not_noted() -> None:
     cockpit = armed_cockpit()
     cockpit.do(SetKeyGate(open=False, reason="a text field has the keys"))
