@@ -85,4 +85,4 @@ def test_no_key_has_two_actions_and_drive_keys_differ() -> None:
     keys = [key for action in ACTIONS.values() for key in action.keys]
     assert len(keys) == len(set(keys))
     drives = [action.intent for action in ACTIONS.values() if isinstance(action.intent, DriveKeyDown)]
-    assert len({(each.throttle, each.steering, each.side, each.climb) for each in drives}) == len(drives) == 12
+    assert len({(*each.directions, each.override) for each in drives}) == len(drives) == 13
