@@ -162,6 +162,17 @@ class AsyncRover(StateValues):
         outcome = await self._connected.call("turn", *words, drives=True)
         return float(outcome.fields["turned"])
 
+    async def take_off(self, altitude: float) -> None:
+        """Have a copter that is armed take off to an altitude above the ground, 1 to 30 m; done when it is reached.
+
+        It hovers until the program ends; then its own failsafe for a lost station lands it or flies it home.
+        """
+        await self._connected.call("takeoff", f"{altitude:g}", drives=True)
+
+    async def land(self) -> None:
+        """Have a copter land where it is; done when it reports that it lands. It disarms itself on the ground."""
+        await self.run("land")
+
     # ---- what the vehicle does by itself ----
 
     async def set_mode(self, name: str) -> None:
@@ -218,7 +229,7 @@ class AsyncRover(StateValues):
 
     async def run(self, *words: str) -> Outcome:
         """Run any verb of `mavhelm` that works with a vehicle, such as `log list`. Raises RoverError."""
-        return await self._connected.call(*words, drives=words[:1] in (("drive",), ("turn",)))
+        return await self._connected.call(*words, drives=words[:1] in (("drive",), ("takeoff",), ("turn",)))
 
     @property
     def _connected(self) -> ApiConnection:

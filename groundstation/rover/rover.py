@@ -174,6 +174,17 @@ class Rover(StateValues):
         """
         return self.call(lambda rover: rover.turn(degrees, demand))
 
+    def take_off(self, altitude: float) -> None:
+        """Have a copter that is armed take off to an altitude above the ground, 1 to 30 m; done when it is reached.
+
+        It hovers until the program ends; then its own failsafe for a lost station lands it or flies it home.
+        """
+        self.call(lambda rover: rover.take_off(altitude))
+
+    def land(self) -> None:
+        """Have a copter land where it is; done when it reports that it lands. It disarms itself on the ground."""
+        self.call(lambda rover: rover.land())
+
     # ---- what the vehicle does by itself ----
 
     def set_mode(self, name: str) -> None:

@@ -111,7 +111,7 @@ class FlyingVehicle(FakeVehicle):
         """Take demands of its station; the rest as FakeVehicle."""
         message = received.message
         self._now = now
-        if not (self.deaf or self.cut) and received.system == 255:
+        if not (self.deaf or self.cut) and self._obeys(received.system):
             if isinstance(message, m.Heartbeat):
                 self.station_at = now
             elif isinstance(message, m.ManualControl) and message.target == self.system:
@@ -140,6 +140,10 @@ class FlyingVehicle(FakeVehicle):
 
     def _watch(self, now: float) -> None:
         raise NotImplementedError
+
+    def _obeys(self, station: int) -> bool:
+        """Return whether the demands of a station with this id count."""
+        return True
 
     def _climb_of(self, z: int) -> float:
         """Return the climb in m/s that z asks for in a mode that holds altitude."""
@@ -327,6 +331,9 @@ class ArduCopter(FlyingVehicle):
     @property
     def top_speed(self) -> float:
         return self.params["LOIT_SPEED"].value / 100
+
+    def _obeys(self, station: int) -> bool:
+        return station == int(self.params["MAV_GCS_SYSID"].value)
 
     def _demand(self, message: m.ManualControl, now: float) -> None:
         self.station_at = now

@@ -34,7 +34,7 @@ from link.core import Received
 
 log = logging.getLogger(__name__)
 
-DRIVING = frozenset({"drive", "turn"})
+DRIVING = frozenset({"drive", "takeoff", "turn"})
 """Verbs that move the vehicle while they run."""
 LOOK_PERIOD = 0.05
 """s between looks whether the program still waits."""
@@ -71,6 +71,7 @@ class ProgramCalls:
             for task in (*beside, *self._tasks.values()):
                 task.cancel()
             await asyncio.wait({*beside, *self._tasks.values()})
+            session.goes_on = False
             await leave(session, disarm=self._armed_here and not self._stay_armed)
 
     def _send(self, value: object) -> None:

@@ -88,8 +88,11 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     return finish(session, report, output, armed=state.armed)
 
 
-async def arm(session: VerbSession, wait: float, output: Output) -> RequestReport:
-    """Arm a vehicle that is disarmed, once it is ready, `wait` s after the start at most. Raises VerbError."""
+async def arm(session: VerbSession, wait: float, output: Output, *, flown: bool = False) -> RequestReport:
+    """Arm a vehicle that is disarmed, once it is ready, `wait` s after the start at most. Raises VerbError.
+
+    `flown`: the verb flies a copter next, which without demands would disarm itself.
+    """
     contact, state = session.contact, session.vehicle
     need_driven(session.vehicle)
     if state.emergency_stop:
@@ -105,8 +108,9 @@ async def arm(session: VerbSession, wait: float, output: Output) -> RequestRepor
         session.flush()
         raise
     finally:
-        contact.operator.demanding = False
-    if not session.goes_on:
+        keeps = (session.goes_on or flown) and state.model.flies and state.armed
+        contact.operator.demanding = keeps
+    if not (session.goes_on or keeps):
         await session.wait_for(lambda: contact.operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
     return report
 

@@ -115,7 +115,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     if not state.armed:
         if not options.arm:
             raise VerbError(ExitCode.REFUSED, f"{state.name} is disarmed: `drive --arm` arms it, and disarms it again")
-        armed = await arm(session, options.wait, output)
+        armed = await arm(session, options.wait, output, flown=True)
         if armed.state is not RequestState.ACCEPTED:
             return finish(session, armed, output)
         armed_here = not options.stay_armed

@@ -18,11 +18,14 @@ from groundstation.verbs.control.stop_jobs import disarm_job
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import need_driven
 from groundstation.verbs.session.session import TOLD_WITHIN, VerbSession
+from link.core import Received
 
 DISARM_WITHIN = 10.0
 """s for which the disarming at the end is repeated."""
 SETTINGS_WITHIN = 6.0
 """s in which the settings are read that say what it does without a link: two rounds of requests."""
+SETTINGS_PERIOD = 0.1
+"""s between looks whether a question for them is due."""
 FRAME_PARAMETER = "CA_AIRFRAME"
 """What decides on the axes of PX4."""
 
@@ -52,9 +55,32 @@ async def need_safe_flight(session: VerbSession) -> None:
     state, fleet_contact = session.vehicle, session.contact.contact
     if not state.model.flies or state.in_air:
         return
-    await session.wait_for(lambda: not fleet_contact.take_off_refusal, SETTINGS_WITHIN)
+    await _read_settings(session)
     if why := fleet_contact.take_off_refusal:
         raise VerbError(ExitCode.REFUSED, f"{state.name}: no take-off: {why}")
+    check = fleet_contact.settings_check
+    if check is not None and check.obeys:
+        raise VerbError(ExitCode.REFUSED, f"{state.name}: {check.obeys}")
+
+
+async def _read_settings(session: VerbSession) -> None:
+    """Read the settings that say what it does without a link; a station that this verb goes through does so itself."""
+    core, contact = session.core, session.contact.contact
+    until = session.now + SETTINGS_WITHIN
+
+    def receive(received: Received, now: float) -> None:
+        if received.system == contact.state.system and contact.settings_check is not None:
+            contact.settings_check.receive(received, now)
+
+    if not core.has_heard_all:
+        core.taps.append(receive)
+    while contact.take_off_refusal and session.now < until:
+        if contact.settings_check is not None and not core.has_heard_all:
+            core.outbox += [each.message for each in contact.settings_check.tick(session.now)]
+            session.flush()
+        await session.wait_for(lambda: not contact.take_off_refusal, SETTINGS_PERIOD)
+    if receive in core.taps:
+        core.taps.remove(receive)
 
 
 async def learn_frame(session: VerbSession) -> None:
@@ -123,9 +149,11 @@ async def disarm_vehicle(session: VerbSession) -> RequestReport:
 
 
 async def leave(session: VerbSession, *, disarm: bool) -> RequestReport | None:
-    """Send the final neutrals, then disarm; return how that ended."""
+    """Send the final neutrals, then disarm; return how that ended. A program that goes on keeps a copter hovering."""
     operator = session.contact.operator
     operator.demand = lambda _: NEUTRAL
+    if session.goes_on and session.vehicle.model.flies and session.vehicle.armed:
+        return None  # it hovers by neutral demands until the program ends; without them its own failsafe acts
     operator.demanding = False
     await session.wait_for(lambda: operator.finished, 2 * FINAL_NEUTRALS * DRIVING_PERIOD)
     return await disarm_vehicle(session) if disarm and session.vehicle.armed else None

@@ -13,11 +13,12 @@ from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.verb import Example, Group, Stage, Verb
 
 if TYPE_CHECKING:
-    from groundstation.verbs.control import arm, control, drive, mode, motor, reboot, stops, turn
+    from groundstation.verbs.control import arm, control, drive, flight, mode, motor, reboot, stops, turn
 else:
     arm = LazyModule("control.arm")
     control = LazyModule("control.control")
     drive = LazyModule("control.drive")
+    flight = LazyModule("control.flight")
     mode = LazyModule("control.mode")
     motor = LazyModule("control.motor")
     reboot = LazyModule("control.reboot")
@@ -77,6 +78,15 @@ VERBS: dict[str, Verb] = {
          ("--arm", {"action": "store_true", "help": "arm first, and disarm at the end"}),
          ("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what --arm has armed"})),
         needs_session=True, prepare=drive.prepare, guarded=lambda _: True)}),
+    "takeoff": Verb(Group.DRIVE, (
+        Example("mavhelm takeoff 5 --arm", "a copter: arm, climb to 5 m and hover", Stage.OTHER_VEHICLE),
+    ), {ONLY: VerbAction("have a copter take off to an altitude above the ground, and hover there", flight.take_off,
+        (("altitude", {"type": flight.altitude, "metavar": "M", "help": "1 to 30 m above the ground"}),
+         ("--arm", {"action": "store_true", "help": "arm first"})),
+        needs_session=True, guarded=lambda _: True)}),
+    "land": Verb(Group.DRIVE, (
+        Example("mavhelm land", "a copter: land here; done when it reports that it lands", Stage.OTHER_VEHICLE),
+    ), {ONLY: VerbAction("have a copter land where it is; repeated until the heartbeat reports it", flight.land)}),
     "turn": Verb(Group.DRIVE, (
         Example("mavhelm turn 90", "on the spot, degrees to the right, then neutral. It must be armed", Stage.ARMED),
     ), {ONLY: VerbAction("turn on the spot by an angle, as the vehicle's heading reports it, then neutral", turn.run,

@@ -58,6 +58,7 @@ LINE_RULES: Mapping[str, LineRule] = {
     "control give": LineRule(elsewhere="Y on Drive gives control to the ground station that asks for it"),
     "goto": _ASK, "home": _ASK, "speed": _RUN,
     "drive": LineRule(elsewhere="the keys of the Drive screen (F1) drive"),
+    "takeoff": LineRule(elsewhere=f"{_HOLD_KEY}: T"), "land": LineRule(elsewhere="L lands, on the Drive screen (F1)"),
     "messages": _on(_MESSAGES), "watch": _on(_MESSAGES), "ping": _on(_LINKS),
     "send": LineRule(elsewhere="use `mavhelm send` in a shell, over another link of the vehicle"),
     "command": _ASK, "request": _RUN, "rate": _RUN,
