@@ -97,9 +97,9 @@ LINES: dict[str, tuple[Line, ...]] = {
 ELSEWHERE = {
     "api": "api/test_api.py", "mcp": "agents/test_server.py", "export": "files/test_export.py",
     "ros1": "ros/test_ros1.py", "ros2": "ros/test_ros2.py",
-    "sign": "setup/test_sign.py",
+    "sign": "setup/test_sign.py", "takeoff": "control/test_flight.py", "land": "control/test_flight.py",
 }  # fmt: skip
-"""Verb without a vehicle, with one on a cable, or that needs another program -> its test."""
+"""Verb without a vehicle, for a copter, with one on a cable, or that needs another program -> its test."""
 ALL, SECOND_PART = slice(None), [*LINES].index("mission put")
 """What of LINES is run; what comes from SECOND_PART on needs nothing of what is before it."""
 LOST = (5, 8)

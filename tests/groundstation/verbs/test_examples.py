@@ -31,6 +31,8 @@ ELSEWHERE = frozenset(
         "mcp",
         "drive",
         "turn",
+        "takeoff",
+        "land",
         "send",
         "doctor",
         "motor",

@@ -97,7 +97,7 @@ def test_nobody_steers_several(vehicles: Vehicles, words: str) -> None:
 
 
 def test_steering_is_never_for_many() -> None:
-    steering = ("api", "drive", "goto", "motor", "send", "turn")
+    steering = ("api", "drive", "goto", "motor", "send", "takeoff", "turn")
     assert not any(action.many for verb in steering for action in VERBS[verb].actions.values())
 
 
