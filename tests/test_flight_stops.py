@@ -20,6 +20,7 @@ from groundstation.intents.vehicle import Arm, CutMotors, Disarm, ReleaseControl
 from groundstation.vehicles.demand.demand_stream import FINAL_NEUTRALS
 from groundstation.vehicles.demand.stop_commands import StopKind
 from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad
+from tests.fakes.params import Param
 from tests.flight import FlightCockpit, hovering_cockpit
 from tests.groundstation.cockpits import Cockpit
 
@@ -119,6 +120,21 @@ def test_a_lost_link_is_its_own_failsafe(build: Build) -> None:
     cockpit.run(3.6)
     assert cockpit.copter.altitude == pytest.approx(altitude, abs=LOSS)
     assert cockpit.copter.mode_name in ("RTL", "LAND", "HOLD", "AUTO_RTL")
+
+
+def test_a_takeover_in_the_air_ends_by_its_own_failsafe() -> None:
+    """ArduCopter then obeys the id of that station alone, and our neutral does not count either."""
+    cockpit = flying_cockpit(ArduCopter)
+    copter = cockpit.copter
+    altitude = copter.altitude
+    copter.params["MAV_GCS_SYSID"] = Param(254)
+    cockpit.do(DriveKeyUp(key="i"))
+    cockpit.run(3.6)
+    assert copter.mode_name in ("RTL", "LAND")
+    assert copter.altitude == pytest.approx(altitude, abs=LOSS)
+    cockpit.run(1.0)
+    assert copter.lowest_z >= HOVER
+    assert copter.armed
 
 
 @COPTERS
