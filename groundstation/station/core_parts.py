@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import MutableMapping, Sequence
 
+from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.station.agents.proposals import ProposalBook
 from groundstation.station.component import COMPONENT
@@ -14,6 +15,7 @@ from groundstation.station.driving.link_closing import LinkClosing
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.driving.shutdown import StationShutdown
 from groundstation.station.links.link_monitor import LinkMonitor
+from groundstation.station.links.path_routing import PathRouting
 from groundstation.station.notes.operator_log import OperatorLog
 from groundstation.station.services.service_requests import ServiceRequests, TransferPause
 from groundstation.station.services.vehicle_queries import VehicleQueries
@@ -50,6 +52,7 @@ class CoreParts:
         log.name_of = fleet.name_of
         self.links = LinkMonitor(endpoints, log, system, now)
         stats = self.links.stats
+        self.paths = PathRouting(fleet)
         commander = self.commander = Commander(log, *ids)
         commander.take_off_refusal = fleet.take_off_refusal
         hold = TransferPause(fleet, operator, stats)
@@ -61,6 +64,7 @@ class CoreParts:
         self.queries = VehicleQueries(fleet, commander, stats, log, self.services)
         self.verbs = RunningVerbs(fleet, operator, log)
         self.proposals = ProposalBook(fleet, operator, commander, log)
+        self.driving.report = lambda at, text: log.add(at, "station", text, Severity.WARNING)
         self.driving.is_lent = self.verbs.drives_for_operator
         self.refusals = Refusals(fleet, commander, self.verbs, log)
         self.operator_log = OperatorLog(log)

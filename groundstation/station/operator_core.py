@@ -52,12 +52,15 @@ class OperatorCore:
         self._listener = listener or CoreListener()
         self._commander, self._handover, self._queries = parts.commander, parts.handover, parts.queries
         self._links, self._timesync, self._heartbeat = parts.links, parts.links.timesync, parts.links.heartbeat
+        self._paths = parts.paths
         self._refusals, self._operator_log = parts.refusals, parts.operator_log
         self._outbox: list[Outgoing] = []
         self._active_at = parts.started
         """When something was under way last."""
         self._tick_due = parts.started
         """When everything is to tick again while only verbs need all ticks."""
+        self._now = parts.started
+        """Time of the newest event."""
         self.on_rest_end: Callable[[], None] = lambda: None
         """Called at once when `rests` becomes False."""
 
@@ -71,14 +74,19 @@ class OperatorCore:
     # ---- Core ----
 
     def receive(self, received: Received, now: float) -> None:
-        """Handle one message at once."""
+        """Handle one message at once. What a second path to a vehicle repeats is only counted."""
+        self._now = now
         reading = type(received.message) in READINGS
         if not reading:
             self._links.receive(received, now)
             self._commander.blind_stops.receive(received)
         contact = self.fleet.get_or_add(received, now)
-        if contact is not None and self._commander.blind_stops:
-            self._commander.stop_late(contact.state, now)
+        if contact is not None:
+            if self._commander.blind_stops:
+                self._commander.stop_late(contact.state, now)
+            self._heartbeat.greet(received.peer, now)
+            if not contact.state.receive(received, now):
+                return
         self._listener.hear(received, contact, now)
         if contact is not None:
             self._receive_known(contact, received, now, reading=reading)
@@ -86,8 +94,6 @@ class OperatorCore:
 
     def _receive_known(self, contact: Contact, received: Received, now: float, *, reading: bool) -> None:
         """Handle a message of a vehicle, or of another component of its system."""
-        self._heartbeat.greet(received.peer, now)
-        contact.state.receive(received, now)
         contact.details.receive(received, now)
         self._listener.receive(contact, received, now)
         self._queries.receive(contact, received, now)
@@ -125,6 +131,7 @@ class OperatorCore:
 
     def tick(self, now: float) -> None:
         """Send what is due and handle what has timed out; often only for verbs, as nothing else needs all ticks."""
+        self._now = now
         if self.verbs.busy and now < self._tick_due and not self._works:
             self.verbs.tick(now)
             return
@@ -222,6 +229,7 @@ class OperatorCore:
 
     def act(self, now: float) -> None:
         """Send the demand that is due before the next tick."""
+        self._now = now
         self._expire_lease(now)
         before = self.operator.sent_demand
         permission = self.driving.judge(now)
@@ -238,6 +246,7 @@ class OperatorCore:
         selected = self.fleet.selected
         self._links.stats.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
+        self._links.measure_paths(self.fleet, now)
         self.driving.adapt(self._links.stats)
         self._links.log_events(reports, now)
 
@@ -247,7 +256,7 @@ class OperatorCore:
         demands = self.driving.messages_to_send()
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
         services = self.services.messages_to_send()  # repeated later if they are dropped here
-        return (
+        found = (
             demands
             + self.verbs.messages_to_send()
             + commands
@@ -256,6 +265,7 @@ class OperatorCore:
             + outbox
             + (services if self._uses_services else [])
         )
+        return [self._paths.route(each, self._now) for each in found]
 
     @property
     def _uses_services(self) -> bool:
@@ -319,6 +329,7 @@ class OperatorCore:
 
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
+        self._now = now
         self._expire_lease(now)
         permission = self.driving.judge(now)
         self._operator_log.handle(intent, now)

@@ -35,7 +35,7 @@ class Contact(msgspec.Struct):
     state: VehicleState
     stream_requests: StreamRequests
     link: int
-    """Index of the link on which the newest message of the vehicle arrived."""
+    """Index of the link that counts: of several the best (groundstation/vehicles/paths)."""
     changes: StateChanges
     details: VehicleDetails
     drive: DriveReadings
@@ -216,7 +216,8 @@ class Fleet:
         """Return the contact that sent a message; the HEARTBEAT of a new vehicle adds one."""
         contact = self._contacts.get(received.system)
         if contact is not None:
-            contact.link = received.peer.link
+            best = contact.state.paths.best
+            contact.link = received.peer.link if best is None else best.peer.link
             if replaces(received.component, contact.state.component) and is_vehicle(received.message):
                 self._change_component(contact, received, now)
         if contact is not None or not is_vehicle(received.message):
@@ -237,6 +238,7 @@ class Fleet:
             DriveReadings(state, VehicleParams(*self._own_id, target=target)),
             verified=received.signed,
         )
+        state.paths.on_new = lambda at: contact.stream_requests.restart(at)  # a link has rates of its own
         self._contacts[received.system] = contact
         self._check_settings(contact)
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)

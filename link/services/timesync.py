@@ -6,25 +6,34 @@ https://mavlink.io/en/services/timesync.html.
 
 from __future__ import annotations
 
+import math
+
 from dialects.messages import Ping, Timesync
-from link.core import Outgoing, Received
+from link.core import Outgoing, Peer, Received
 
 MEMORY = 4
 """Requests that may still be answered: at one a second an older reply says nothing about the present."""
+TRIPS = 16
+"""Peers whose round trips are kept."""
 
 
 class TimesyncClient:
-    """Sends a request every `period` s as `system`, and measures the round trip to one vehicle."""
+    """Sends a request every `period` s as `system`, and measures the round trip to one vehicle, on each path to it."""
 
     def __init__(self, system: int, period: float = 1.0) -> None:
         self.round_trip: float | None = None
-        """Newest round trip, s."""
+        """Newest round trip, s; of several paths that of the first answer to the newest request."""
         self.jitter: float | None = None
         """Smoothed difference between one round trip and the next, s (weights of RFC 3550)."""
         self._system = system
         self._period = period
         self._due = 0.0
         self._sent_at: dict[int, float] = {}
+        self._answered: set[tuple[int, Peer]] = set()
+        self._first_answered = -1
+        """The newest request that was answered."""
+        self._trips: dict[Peer, tuple[float, float]] = {}
+        """Peer -> its newest round trip, and when it was measured, s."""
         self._outbox: list[Outgoing] = []
 
     def tick(self, now: float) -> None:
@@ -35,7 +44,9 @@ class TimesyncClient:
         stamp = int(now * 1e9)
         self._sent_at[stamp] = now
         while len(self._sent_at) > MEMORY:
-            del self._sent_at[next(iter(self._sent_at))]
+            oldest = next(iter(self._sent_at))
+            del self._sent_at[oldest]
+            self._answered = {each for each in self._answered if each[0] != oldest}
         self._outbox.append(Outgoing(Timesync(tc1=0, ts1=stamp)))
 
     def receive(self, received: Received, now: float) -> None:
@@ -43,12 +54,26 @@ class TimesyncClient:
         message = received.message
         if not isinstance(message, Timesync) or message.tc1 == 0 or message.target_system not in (0, self._system):
             return
-        sent_at = self._sent_at.pop(message.ts1, None)
-        if sent_at is None:
+        sent_at = self._sent_at.get(message.ts1)
+        if sent_at is None or (message.ts1, received.peer) in self._answered:
             return
-        before, self.round_trip = self.round_trip, now - sent_at
+        self._answered.add((message.ts1, received.peer))
+        trip = now - sent_at
+        self._trips.pop(received.peer, None)
+        self._trips[received.peer] = (trip, now)
+        if len(self._trips) > TRIPS:
+            del self._trips[next(iter(self._trips))]
+        if message.ts1 <= self._first_answered:
+            return
+        self._first_answered = message.ts1
+        before, self.round_trip = self.round_trip, trip
         if before is not None:
             self.jitter = (self.jitter or 0.0) + (abs(self.round_trip - before) - (self.jitter or 0.0)) / 16
+
+    def round_trip_of(self, peer: Peer, now: float) -> float | None:
+        """Return the round trip over one path, s; None if it has not answered for MEMORY requests."""
+        trip, at = self._trips.get(peer, (0.0, -math.inf))
+        return trip if now - at <= MEMORY * self._period + trip else None
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""

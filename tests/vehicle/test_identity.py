@@ -1,7 +1,7 @@
 """Who drives, through real channels: second links, duplicates with the driver's ids, old frames, restarts and stops.
 
 A twin is another program with the driver's system and component id. "Ours" is a ground station with sessions,
-"foreign" one without.
+"foreign" one without. Each trace is run again with a second link of the driver, honest and hostile.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from dialects.axes import Axes
 from dialects.enums import Command, ControlFlag, Result
 from dialects.modes import Mode
 from link.core import Peer
-from tests.vehicle.wires import IDS, Program, SessionProgram, Wires, drive_fully
+from tests.vehicle.wires import IDS, HostileLinks, Program, SessionProgram, TwoLinks, Wires, drive_fully
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.driver import SUCCESSION_TIME
 
 AHEAD, BACK, NEUTRAL = Axes(throttle=1.0), Axes(throttle=-1.0), Axes()
-KINDS = [Program, SessionProgram]
+KINDS = [Program, SessionProgram, TwoLinks, HostileLinks]
 
 
 def driving(kind: type[Program] = Program, links: int = 1) -> tuple[Wires, Program]:

@@ -6,6 +6,7 @@ Unlike `tests/vehicle/bench.py` everything goes through bytes, so that the rules
 from __future__ import annotations
 
 import heapq
+import random
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
@@ -16,6 +17,7 @@ from dialects import messages as m
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command, Result
 from dialects.modes import Mode
+from dialects.traits import COMMANDS
 from link.protocol.channel import Channel
 from tests.vehicle.bench import BEAT, CYCLE, MESSAGE_IDS
 from vehicle.params import Params
@@ -28,7 +30,7 @@ BOOT = 100.0
 
 @dataclass
 class Wires:
-    """`now` moves only in `wait`. `links` channels lead to the rover."""
+    """`now` moves only in `wait`. `links` channels lead to the rover, and one more is for second links."""
 
     links: int = 1
     params: dict[str, float] = field(default_factory=dict)
@@ -37,7 +39,9 @@ class Wires:
         self.now = BOOT
         self.texts: list[str] = []
         self.rover = Rover(Params(self.params), now=BOOT, on_text=lambda severity, text: self.texts.append(text))
-        self.channels = [Channel(f"link {n}", n, system=1, component=1, wanted=MESSAGE_IDS) for n in range(self.links)]
+        self.channels = [
+            Channel(f"link {n}", n, system=1, component=1, wanted=MESSAGE_IDS) for n in range(self.links + 1)
+        ]
         self.sent: list[tuple[Hashable, m.Message]] = []
         """Address -> what the rover has sent there."""
         self._due: list[tuple[float, int, int, Hashable, bytes]] = []
@@ -173,8 +177,13 @@ class Program:
         return part in "".join(
             m.decode_text(message)
             for address, message in self.wires.sent
-            if address == self.address and isinstance(message, m.StatusText)
+            if address in self.addresses and isinstance(message, m.StatusText)
         )
+
+    @property
+    def addresses(self) -> tuple[Hashable, ...]:
+        """Where it is."""
+        return (self.address,)
 
 
 class SessionProgram(Program):
@@ -202,6 +211,47 @@ class SessionProgram(Program):
             self._due = self.wires.now + 0.5
             self.send(self.build(None))
         super().step(axes, rate, lost=lost)
+
+
+class TwoLinks(SessionProgram):
+    """A ground station with sessions that sends its state over a second link as well, 20 ms later."""
+
+    second_number = 30
+
+    def send(self, message: m.Message, *, lost: bool = False) -> bytes:
+        data = super().send(message, lost=lost)
+        if type(message).id not in COMMANDS:
+            for extra in self.seconds(message):
+                self.wires.put(extra, self.addresses[1], self.wires.links, self.delay + 0.02)
+        return data
+
+    @property
+    def addresses(self) -> tuple[Hashable, ...]:
+        return self.address, f"{self.address} by its second link"
+
+    def seconds(self, message: m.Message) -> list[bytes]:
+        """Return the frames of the second link."""
+        self.second_number = (self.second_number + 1) & 0xFF
+        return [codec.frame(type(message).id, codec.encode_payload(message), self.second_number, *self.ids)]
+
+
+class HostileLinks(TwoLinks):
+    """The same, and whoever holds the second link adds copies, old frames, and old demands under new numbers."""
+
+    def __init__(
+        self, wires: Wires, address: Hashable = "gcs", *, ids: tuple[int, int] = IDS, link: int = 0, number: int = 0,
+        delay: float = 0.0,
+    ) -> None:  # fmt: skip
+        super().__init__(wires, address, ids=ids, link=link, number=number, delay=delay)
+        self.chance = random.Random(number)
+        self.old: list[tuple[m.Message, bytes]] = []
+
+    def seconds(self, message: m.Message) -> list[bytes]:
+        frames = super().seconds(message)
+        self.old.append((message, frames[0]))
+        del self.old[:-200]
+        old, copy = self.chance.choice(self.old)
+        return [*frames, copy, *(super().seconds(old) if self.chance.random() < 0.5 else [])]
 
 
 def drive_fully(kind: type[Program], wires: Wires) -> Program:

@@ -253,6 +253,8 @@ class Control:
     def _reject_demand(self, received: Received, now: float) -> None:
         """Report the demand of a ground station that is not in control, once."""
         self.not_in_control_count += 1
+        if self.ownership.may_be_link(received, now):
+            return
         reason = self.ownership.denial_reason(received, now) or "no GCS is in control, arm to take it"
         key = f"demand {received.system}/{received.component} {received.peer}"
         text = f"Demand from GCS {received.system} ignored: {reason}"

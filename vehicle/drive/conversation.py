@@ -99,6 +99,8 @@ class Newcomer(msgspec.Struct):
     """It has only repeated frames of the driver, byte for byte."""
     reported_at: float = -math.inf
     """When the driver was told of it."""
+    begun_at: float = math.inf
+    """When its first frame came."""
     digests: deque[int] = msgspec.field(default_factory=lambda: deque(maxlen=FRAMES_BEFORE))
     """Its newest frames."""
 
@@ -133,7 +135,7 @@ class FrameMemory:
         """Remember a frame of the driver."""
         self._record(received.digest)
 
-    def note_newcomer(self, received: Received) -> Newcomer:
+    def note_newcomer(self, received: Received, now: float) -> Newcomer:
         """Count a frame of another conversation."""
         conversation = Conversation.of(received)
         newcomer = self._newcomers.pop(conversation, None) or Newcomer()
@@ -141,6 +143,7 @@ class FrameMemory:
         if len(self._newcomers) > NEWCOMERS_MAX:
             del self._newcomers[next(iter(self._newcomers))]
         newcomer.frames += 1
+        newcomer.begun_at = min(newcomer.begun_at, now)
         newcomer.is_copy &= self.is_repeat(received)
         newcomer.digests.append(received.digest)
         return newcomer

@@ -124,8 +124,13 @@ class RecentProofs:
             del self._newest[next(iter(self._newest))]
 
     def session_of(self, conversation: Conversation, now: float) -> DrivingSession | None:
-        """Return the session that a sender has proven within PROOF_VALID, or None."""
-        if conversation not in self._newest:
+        """Return the session that a sender has proven within PROOF_VALID, with its other links, or None."""
+        proof, at = self._newest.get(conversation, (None, -math.inf))
+        if proof is None or now - at > PROOF_VALID:
             return None
-        proof, at = self._newest[conversation]
-        return DrivingSession.begin(conversation, proof, at) if now - at <= PROOF_VALID else None
+        session = DrivingSession.begin(conversation, proof, at)
+        for other, (theirs, proven_at) in self._newest.items():
+            is_link = other != conversation and other.ids == conversation.ids and theirs.session == proof.session
+            if is_link and len(session.links) < LINKS_MAX:
+                session.add_proof(other, theirs, proven_at, good=True)
+        return session

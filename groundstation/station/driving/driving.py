@@ -14,6 +14,7 @@ from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSe
 from groundstation.station.driving.permission import Permission
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.paths.paths import SILENCE
 from groundstation.vehicles.readings.latency import SentDemand
 from link.core import Outgoing
 
@@ -30,11 +31,15 @@ class DrivingController:
         self.is_lent: Callable[[int, float], bool] = lambda system, now: False
         """Whether a verb makes the demands of this vehicle in the place of keys, while the operator holds one."""
         self._commander = commander
+        self.report: Callable[[float, str], None] = lambda now, text: None
+        """Logs what the driver must know."""
         self._ids = ids
         self._system = ids[0]
         self._ending = False
         self._demands: dict[int, list[Message]] = {}
         """Newest demand of each vehicle, with its operator presence: state, so a newer one replaces it."""
+        self._neutrals: list[Outgoing] = []
+        """Those with which demands change to another path."""
         self._changed: tuple[Message, ...] = ()
         """The newest demand that was changed, and its copies."""
         self._proven_at = -math.inf
@@ -77,6 +82,8 @@ class DrivingController:
                 continue
             chosen = contact is selected
             streaming = chosen and self._may_stream(contact, controlled=controlled)
+            if self._follow_path(contact, now) and chosen:
+                demand = self._operator.demand(now)
             axes = contact.demand_stream.next_due(demand if chosen else NEUTRAL, streaming, now)
             if axes is not None:
                 self._queue_demand(contact, axes, now)
@@ -97,7 +104,8 @@ class DrivingController:
     def messages_to_send(self) -> list[Outgoing]:
         """Return the demands to send now and clear the queue."""
         demands, self._demands = self._demands, {}
-        return [Outgoing(message) for messages in demands.values() for message in messages]
+        neutrals, self._neutrals = self._neutrals, []
+        return neutrals + [Outgoing(message) for messages in demands.values() for message in messages]
 
     def adapt(self, links: LinkStats) -> None:
         """Adapt the copies of demands to the links of their vehicles. The loss is that of the other direction."""
@@ -151,7 +159,7 @@ class DrivingController:
     @property
     def finished(self) -> bool:
         """No demand is being sent and none is left to send."""
-        return not self._demands and all(contact.demand_stream.finished for contact in self._fleet)
+        return not (self._demands or self._neutrals) and all(contact.demand_stream.finished for contact in self._fleet)
 
     def is_in_control(self, contact: Contact) -> bool:
         """Return whether we control this vehicle: by what it reports, else by its acceptance of our commands."""
@@ -212,6 +220,25 @@ class DrivingController:
             return state.driver in (None, self._system)
         follows = state.armed and state.driver == self._system and state.control.silent
         return controlled or follows
+
+    def _follow_path(self, contact: Contact, now: float) -> bool:
+        """Let the demands of a vehicle that proves nothing take another path after a silence; return whether they do.
+
+        Neutral first, on both: what waits in the silent link then ends in neutral, and keys must be pressed again.
+        """
+        paths = contact.state.paths
+        if not paths.has_several or paths.best is None or contact.state.has_rover_dialect:
+            return False
+        before = paths.carrier.path
+        if not paths.carrier.follow(paths.best, now, SILENCE) or before is None or contact.demand_stream.finished:
+            return False
+        if contact is self._fleet.selected:
+            self._operator.reset_demand(now)
+        self._demands.pop(contact.state.system, None)
+        neutral = build_manual_control(NEUTRAL, contact.state.system, contact.choose_axes(NEUTRAL))
+        self._neutrals.append(Outgoing(neutral, among=(before.peer, paths.best.peer)))
+        self.report(now, f"{contact.state.name}: its link is silent, demands take another one: release the keys first")
+        return True
 
     def _update_ours(self, contact: Contact, *, controlled: bool) -> None:
         """Note which vehicles this station has armed or drives; until the vehicle reports disarmed."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from dialects import messages as m
 from dialects.enums import Severity
@@ -10,6 +11,7 @@ from groundstation.snapshot import RecordingView
 from groundstation.station.links.ground_stations import GroundStations, IdConflict
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.station.links.link_stats import LinkStats
+from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import MessageLog
 from link.core import LinkReport, Received
 from link.protocol.link_events import LinkEvents
@@ -84,6 +86,15 @@ class LinkMonitor:
             self._log.add(now, "station", conflict, Severity.WARNING)
         self.stations.receive(received, now)
         self.params.receive(received)
+
+    def measure_paths(self, fleet: Fleet, now: float) -> None:
+        """Tell the paths of each vehicle what was measured of their links."""
+        for contact in fleet:
+            system = contact.state.system
+            contact.state.paths.observe(partial(self._loss, system), partial(self.timesync.round_trip_of, now=now), now)
+
+    def _loss(self, system: int, link: int) -> float | None:
+        return self.stats.loss(link, system)
 
     def log_events(self, reports: Sequence[LinkReport], now: float) -> None:
         """Log when a problem of a link starts and ends."""

@@ -15,6 +15,7 @@ from dialects.kinds import find_kind
 from dialects.mode_tables import HOLD
 from groundstation.geo import LocalFrame, Place, Point
 from groundstation.snapshot import OutputView, VehicleView
+from groundstation.vehicles.paths.paths import Paths
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.readings.foreign_drive import ForeignDrive
 from groundstation.vehicles.readings.key_to_motor import KeyTimings
@@ -72,11 +73,13 @@ class VehicleState:
         self.monitor = HeartbeatMonitor(LOST_AFTER)
         self.senders = Senders()
         """All that send HEARTBEATs of a vehicle with this system id."""
+        self.paths = Paths(component)
+        """On which it is heard, and what of them counts."""
         self.change_component(component)
 
     def change_component(self, component: int) -> None:
         """Begin anew as another component of the same system; what the former one has reported is not of it."""
-        self.component = component
+        self.component = self.paths.component = component
         self.key_timings = KeyTimings()
         self.latency = LatencyMeter(self.key_timings)
         self.foreign = ForeignDrive()
@@ -113,20 +116,28 @@ class VehicleState:
         self._values: dict[str, Any] = {}
         """Fields of VehicleView that are a reading without further logic."""
 
-    def receive(self, received: Received, now: float) -> None:
-        """Handle a message of this system."""
+    def receive(self, received: Received, now: float) -> bool:
+        """Handle a message of this system; return whether it counts, see Paths."""
         self.monitor.update(now)
         self.fleet_name = received.peer.name or self.fleet_name
         message = received.message
         self.senders.receive(received, now)
+        counts = self.paths.receive(received, now)
+        if type(message) is m.Heartbeat and len(self.paths.live(now)) > 1:
+            self.paths.apart = bool(self.senders.describe_duplicates(now))
+        if not counts:
+            return False
         if received.component != self.component:
-            return
+            return True
         if (boot_time := getattr(message, "time_boot_ms", None)) is not None:
-            self.boot_time, self.boot_time_at = boot_time, now
+            newest = boot_time if self.paths.apart else self.paths.boot_time
+            self.boot_time_at = now if newest != self.boot_time else self.boot_time_at
+            self.boot_time = newest
         method = _HANDLERS.get(type(message))
         if method is not None:
             method(self, message, now)
             self._times[type(message)] = now
+        return True
 
     @property
     def has_rover_dialect(self) -> bool:

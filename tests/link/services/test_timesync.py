@@ -74,3 +74,28 @@ def test_a_ping_for_all_is_echoed_to_its_sender() -> None:
     assert isinstance(ping, Ping)
     assert (ping.time_usec, ping.seq, ping.target_system, ping.target_component) == (17, 4, 255, 1)
     assert handle_request(received(Ping(17, 4, 9, 1)), 1.0, OURS) == []
+
+
+def test_each_path_has_a_round_trip_of_its_own() -> None:
+    client, near, far = TimesyncClient(255), Peer(0, "near"), Peer(1, "far")
+    for start in (10.0, 11.0, 12.0):
+        client.tick(start)
+        [question] = client.messages_to_send()
+        [echo] = handle_request(received(question.message, system=255), 5.0, OURS)
+        for peer, trip in ((near, 0.01), (far, 0.4), (near, 0.5), (far, 0.6)):
+            client.receive(received(echo.message)._replace(peer=peer), start + trip)
+    assert client.round_trip == pytest.approx(0.01)
+    assert client.round_trip_of(near, 13.0) == pytest.approx(0.01)
+    assert client.round_trip_of(far, 13.0) == pytest.approx(0.4)
+    assert client.round_trip_of(far, 17.0) is None
+    assert client.round_trip_of(Peer(2, "other"), 13.0) is None
+
+
+def test_answers_of_many_peers_fill_no_table() -> None:
+    client = TimesyncClient(255)
+    client.tick(10.0)
+    [question] = client.messages_to_send()
+    [echo] = handle_request(received(question.message, system=255), 5.0, OURS)
+    for number in range(100):
+        client.receive(received(echo.message)._replace(peer=Peer(0, number)), 10.1)
+    assert sum(client.round_trip_of(Peer(0, number), 10.2) is not None for number in range(100)) == 16

@@ -75,7 +75,7 @@ class TestMemory:
     def test_what_a_driver_said_before_it_took_control_is_known(self) -> None:
         memory = FrameMemory()
         for digest in range(1, FRAMES_BEFORE + 2):
-            memory.note_newcomer(frame(DRIVER, digest))
+            memory.note_newcomer(frame(DRIVER, digest), 1.0)
         assert not memory.is_repeat(frame(TWIN, 2))
         memory.begin(DRIVER)
         assert not memory.is_repeat(frame(TWIN, 1))
@@ -93,10 +93,10 @@ class TestNewcomer:
     def test_it_is_a_copy_until_it_says_something_else(self) -> None:
         memory = remembering(1, 2, 3)
         for digest in (1, 2, 3):
-            newcomer = memory.note_newcomer(frame(TWIN, digest))
+            newcomer = memory.note_newcomer(frame(TWIN, digest), 1.0)
         assert (newcomer.frames, newcomer.is_copy) == (3, True)
-        assert not memory.note_newcomer(frame(TWIN, 4)).is_copy
-        assert not memory.note_newcomer(frame(TWIN, 1)).is_copy
+        assert not memory.note_newcomer(frame(TWIN, 4), 1.0).is_copy
+        assert not memory.note_newcomer(frame(TWIN, 1), 1.0).is_copy
         assert memory.newcomer(TWIN) is newcomer
         assert memory.newcomer(DRIVER) is None
 
@@ -104,8 +104,8 @@ class TestNewcomer:
         memory = remembering()
         speakers = [conversation(255, numbering=number) for number in range(NEWCOMERS_MAX + 1)]
         for speaker in speakers[:NEWCOMERS_MAX]:
-            memory.note_newcomer(frame(speaker, 7))
-        memory.note_newcomer(frame(speakers[0], 7))
+            memory.note_newcomer(frame(speaker, 7), 1.0)
+        memory.note_newcomer(frame(speakers[0], 7), 1.0)
         assert all(memory.newcomer(speaker) for speaker in speakers[:NEWCOMERS_MAX])
-        memory.note_newcomer(frame(speakers[-1], 7))
+        memory.note_newcomer(frame(speakers[-1], 7), 1.0)
         assert [speaker.numbering for speaker in speakers if memory.newcomer(speaker) is None] == [1]

@@ -97,6 +97,19 @@ class TestSession:
 
 
 class TestRecentProofs:
+    def test_a_session_begins_with_all_its_links_and_no_other(self) -> None:
+        proofs = RecentProofs()
+        others = [SENDER._replace(numbering=100 + number) for number in range(SENDERS_MAX - 3)]
+        proofs.add(SENDER, PROOF, 10.0)
+        proofs.add(SENDER._replace(component=1), PROOF, 10.0)
+        proofs.add(SENDER._replace(numbering=99), PROOF._replace(session=PROOF.session + 1), 10.0)
+        for other in others:
+            proofs.add(other, PROOF, 10.5)
+        session = proofs.session_of(SENDER, 11.0)
+        assert session is not None
+        assert list(session.links) == [SENDER, *others[: LINKS_MAX - 1]]
+        assert session.is_proven(others[0], 11.5)
+
     def test_a_proof_names_the_session_for_one_second(self) -> None:
         proofs = RecentProofs()
         proofs.add(SENDER, PROOF, 10.0)

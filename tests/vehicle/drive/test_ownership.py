@@ -12,7 +12,7 @@ from tests.vehicle.bench import BEAT, NEUTRAL
 from tests.vehicle.conversations import conversation
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.operator_session import SENDERS_MAX, DrivingSession, Proof
-from vehicle.drive.ownership import CLASH_REPORT_AGAIN, REPORT_AGAIN, Ownership
+from vehicle.drive.ownership import CLASH_REPORT_AGAIN, LINK_TIME, REPORT_AGAIN, Ownership
 from vehicle.params import Params
 from vehicle.statustext import StatusTextQueue
 
@@ -61,7 +61,7 @@ class Scene:
 
 
 def test_bounds() -> None:
-    assert (REPORT_AGAIN, CLASH_REPORT_AGAIN) == (60.0, 10.0)
+    assert (REPORT_AGAIN, CLASH_REPORT_AGAIN, LINK_TIME) == (60.0, 10.0, 2.0)
 
 
 class TestQuestions:
@@ -342,7 +342,32 @@ class TestReports:
         scene.ownership.take(GCS, scene.now)
         for _ in range(3):
             scene.hear(TWIN)
+        assert not scene.told(GCS)  # it may yet prove to be another link of the session
+        scene.wait(LINK_TIME - 0.01).hear(TWIN)
+        assert not scene.told(GCS)
+        scene.wait(0.01).hear(TWIN)
         assert scene.told(GCS)
+
+    def test_another_link_of_the_session_is_told_nothing(self) -> None:
+        scene = Scene(None)
+        scene.prove(GCS)
+        scene.prove(TWIN)
+        scene.ownership.take(GCS, scene.now)
+        for _ in range(9):
+            scene.wait(0.1).hear(TWIN)
+        assert scene.ownership.is_driver(TWIN, scene.now)
+        scene.wait(LINK_TIME).hear(TWIN)
+        assert not scene.told(GCS)
+
+    def test_who_may_yet_be_a_link(self) -> None:
+        scene = Scene()
+        assert not scene.ownership.may_be_link(TWIN, scene.now)  # the driver has no session
+        scene = Scene(None)
+        assert not scene.ownership.may_be_link(TWIN, scene.now)
+        scene.prove(GCS)
+        scene.ownership.take(GCS, scene.now)
+        assert scene.ownership.may_be_link(TWIN, scene.now)
+        assert not scene.ownership.may_be_link(OTHER, scene.now)
 
     def test_a_minute_later_is_again(self) -> None:
         scene = Scene()
