@@ -137,10 +137,14 @@ def test_heartbeats_of_a_twin_do_not_keep_the_failsafe_quiet(kind: type[Program]
 # ---- 4, 5: old frames ----
 
 
-@pytest.mark.parametrize("count", [1, 5, 8, 11, 30, 90])
-@pytest.mark.parametrize("rate", [1.0, 20.0, 1000.0])
-@pytest.mark.parametrize("address", ["gcs", "elsewhere"])
-@pytest.mark.parametrize("kind", KINDS)
+OLD_FRAMES = [
+    *itertools.product((Program, SessionProgram), ("gcs", "elsewhere"), (1.0, 20.0, 1000.0), (1, 5, 8, 11, 30, 90)),
+    *itertools.product((TwoLinks, HostileLinks), ("gcs", "elsewhere"), (20.0,), (8, 90)),
+]
+"""Who drives, from where frames come again, at how many per second, and how many."""
+
+
+@pytest.mark.parametrize(("kind", "address", "rate", "count"), OLD_FRAMES)
 def test_old_frames_that_come_again_move_nothing(kind: type[Program], address: str, rate: float, count: int) -> None:
     wires, driver = driving(kind)
     driver.hold(2.0, AHEAD)
