@@ -134,9 +134,9 @@ _ROWS = (
     OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
                    SelectNextVehicle(), ("n",)),
     OperatorAction("agent.permit", "Permit agent", "Let the proposal of an agent run while this key is held", "vehicle",
-                   PermitProposal(), ("p",), confirm=True, keeps=True),
+                   PermitProposal(), ("p", "Z"), confirm=True, keeps=True),
     OperatorAction("agent.decline", "Decline", "Decline the proposal of an agent", "vehicle", DeclineProposal(),
-                   ("P",)),
+                   ("P", "K")),
     OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator()),
     *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
     OperatorAction("app.goto", "Go to", "Menu of the screens; then the digit of one", "app", keys=("ctrl+g",)),
@@ -149,6 +149,9 @@ _ROWS = (
                    keys=("left_square_bracket",)),
     OperatorAction("app.quit", "Quit", "Stop the vehicle and quit", "app", keys=("ctrl+q", "ctrl+c")),
 )  # fmt: skip
+
+AGENT_ACTIONS = ("agent.permit", "agent.decline")
+"""Those whose keys count on each screen that has no use of its own for them."""
 
 ACTIONS: dict[str, OperatorAction] = {action.id: action for action in _ROWS}
 """Every action by id, in the order of the help screen."""

@@ -24,7 +24,7 @@ from tests.agent_world import PERIOD, AgentWorld
 from vehicle.safety.states import SafetyState
 
 SEQUENCES = int(os.environ.get("MAVHELM_AGENT_SEQUENCES", "50"))
-"""Random sequences of tools; 10,000 take half an hour (docs/agents.md)."""
+"""Random sequences of tools; 10,000 take ten minutes (docs/agents.md)."""
 STOPS_WITHIN = 0.5
 LONG = {"throttle": 60, "seconds": 8, "max_meters": 50, "reason": "look around"}
 
@@ -102,6 +102,27 @@ def test_wheels_stop_within_half_a_second_of(world: AgentWorld, way: str) -> Non
         world.screen_lives, world.screen, world.holds = True, "screen on pts/1", None
         await asyncio.sleep(3.0)
         assert world.power == 0
+
+    world.run_agent(script())
+
+
+def test_the_key_counts_under_a_screen_that_shows_it(world: AgentWorld) -> None:
+    async def script() -> None:
+        await begin(world)
+        world.tell(SetKeyGate(False, "another screen is open"))
+        world.call("drive", **LONG)
+        await world.see(lambda: world.station.proposals.shown)
+        world.hold()
+        await asyncio.sleep(3.0)
+        assert world.power == 0
+        world.release()
+        await asyncio.sleep(0.5)
+        world.tell(SetKeyGate(False, "another screen is open", permits=True))
+        world.hold()
+        await world.see(lambda: world.power > 0.5)
+        world.tell(SetKeyGate(False, "this window does not have the focus"))
+        await world.see(lambda: world.power < 0.5, STOPS_WITHIN)
+        await world.see(lambda: world.power == 0, 1.0)
 
     world.run_agent(script())
 
@@ -335,6 +356,7 @@ def fitting(name: str, arguments: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in arguments.items() if key in known}
 
 
+@pytest.mark.timeout(600 + SEQUENCES)
 @pytest.mark.parametrize("armed", [False, True])
 def test_without_a_held_key_nothing_moves_arms_or_changes(coarse: AgentWorld, armed: bool) -> None:
     world = coarse
@@ -357,5 +379,12 @@ def test_without_a_held_key_nothing_moves_arms_or_changes(coarse: AgentWorld, ar
             await prepare(world, armed=armed)
             world.moved.clear()
             world.answers.clear()
+        if armed:  # the same world moves, and the other one arms, as soon as a key is held
+            await drive(world)
+            return
+        world.call("arm", reason="x")
+        await world.see(lambda: world.station.proposals.shown)
+        world.hold()
+        await world.see(lambda: is_armed(world))
 
     world.run_agent(script())

@@ -10,7 +10,7 @@ A key that permits what an agent proposes goes on to confirm with each repeat; a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import msgspec
 
@@ -95,13 +95,27 @@ class HoldToConfirm:
         self._subject = 0
 
     def handle_read(
-        self, batch: Sequence[KeyEvent], *, armed: bool, allowed: bool, now: float, subject: int = 0
+        self,
+        batch: Sequence[KeyEvent],
+        *,
+        armed: bool,
+        allowed: bool,
+        now: float,
+        subject: int = 0,
+        also: Collection[str] = (),
     ) -> HoldResult:
-        """Handle the keys of one read. `allowed`: a hold may begin or end; `subject`: the proposal that is shown."""
+        """Handle the keys of one read. `allowed`: a hold may begin or end; `subject`: the proposal that is shown.
+
+        `also`: keys of which one may begin or end where the others may not.
+        """
         text = len(batch) > MAX_EVENTS or len({press.key for press in batch}) > 1
         kept, self._subject = self._hold if self._hold is not None and self._hold.keeps else None, subject
-        passing = [press for press in batch if not self._swallow(press, armed, allowed and not text, now)]
-        if text or not allowed:
+
+        def may(key: str) -> bool:
+            return not text and (allowed or key in also)
+
+        passing = [press for press in batch if not self._swallow(press, armed, may(press.key), now)]
+        if self._hold is not None and not may(self._hold.key):
             self.cancel()
         if kept is not None and batch and (self._hold is not kept or kept.spent):
             return HoldResult(passing, EndPermission())
@@ -134,9 +148,10 @@ class HoldToConfirm:
         if action is None or not action.confirm or press.release or press.repeat:
             return None
         acts = armed and action.when_armed is not None
-        if not (acts or allowed) or (action.keeps and not self._subject):
-            return None
-        return _Hold(press.key, action, now, now, spent=acts, subject=self._subject)
+        if action.keeps:  # one that is held when a proposal comes, or when it begins to count, permits nothing
+            spent = not (allowed and self._subject)
+            return _Hold(press.key, action, now, now, spent=spent, subject=self._subject)
+        return _Hold(press.key, action, now, now, spent=acts) if acts or allowed else None
 
     def _confirm(self, now: float) -> AnyIntent | None:
         hold = self._hold

@@ -38,6 +38,8 @@ class SetKeyGate(Intent, frozen=True):
     valid_when_late = True
     open: bool
     reason: str = ""
+    permits: bool = False
+    """Closed only for another screen that shows what agents propose: the key that permits it counts there, too."""
 
 
 class RenewLease(Intent, frozen=True):

@@ -184,7 +184,7 @@ class IntentHandler:
         self._operator.renew_lease(now)
 
     def _permit(self, intent: PermitProposal, now: float) -> None:
-        self._proposals.permit(intent, self._permission.screen, now)
+        self._proposals.permit(intent, now)
 
     def _end_permission(self, intent: EndPermission, now: float) -> None:
         """Do nothing more: every input but the held key has ended it."""

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -30,7 +30,7 @@ __all__ = ["tmux"]
 pytestmark = [*IN_TMUX, pytest.mark.xdist_group("verbs through a station")]
 
 DRIVE = {"throttle": 60, "seconds": 9, "max_meters": 50}
-RELEASED = "the key was released"
+RELEASED, RELEASES = "the key was released", "a released key"
 TRIES = 6
 """Times that one way is tried: the screen of a late machine freezes, which ends what runs and takes the key."""
 TRY = 10.0
@@ -94,16 +94,30 @@ def kill_screen(terminal: Tmux) -> None:
     os.kill(int(children[0] if children else shell), signal.SIGKILL)
 
 
-WAYS: dict[str, tuple[Callable[[Tmux, Agent], object], str]] = {
-    "a released key": (lambda terminal, agent: None, RELEASED),
-    "a stop key": (lambda terminal, agent: terminal.press("Space"), "something else"),
-    "another key": (lambda terminal, agent: terminal.press("k"), "something else"),
-    "the key that declines": (lambda terminal, agent: terminal.press("P"), ""),
-    "SIGSTOP of the agent": (lambda terminal, agent: agent.process.send_signal(signal.SIGSTOP), ""),
-    "kill -9 of the agent": (lambda terminal, agent: agent.process.kill(), ""),
-    "kill -9 of the screen": (lambda terminal, agent: kill_screen(terminal), ""),
+class Way(NamedTuple):
+    """What ends a proposal that runs, and where it is permitted."""
+
+    act: Callable[[Tmux, Agent], object]
+    told: str = ""
+    """What the agent is told, if it can be."""
+    opens: str = "F1"
+    """Key of the screen."""
+    key: str = "p"
+    """The one that permits there."""
+
+
+WAYS: dict[str, Way] = {
+    "a released key": Way(lambda terminal, agent: None, RELEASED),
+    "a stop key": Way(lambda terminal, agent: terminal.press("Space"), "something else"),
+    "another key": Way(lambda terminal, agent: terminal.press("k"), "something else"),
+    "a released key on Log": Way(lambda terminal, agent: None, RELEASED, "F6"),
+    "a key of Map": Way(lambda terminal, agent: terminal.press("+"), RELEASED, "F2", "Z"),
+    "the key that declines": Way(lambda terminal, agent: terminal.press("P")),
+    "SIGSTOP of the agent": Way(lambda terminal, agent: agent.process.send_signal(signal.SIGSTOP)),
+    "kill -9 of the agent": Way(lambda terminal, agent: agent.process.kill()),
+    "kill -9 of the screen": Way(lambda terminal, agent: kill_screen(terminal)),
 }
-"""What ends a proposal that runs, and what the agent is told, if it can be. The last one ends the station, too."""
+"""The last one ends the station, too."""
 
 
 def test_wheels_turn_while_the_key_is_held_and_stop(tmux: Callable[..., Tmux], tmp_path: Path) -> None:
@@ -125,11 +139,13 @@ def test_wheels_turn_while_the_key_is_held_and_stop(tmux: Callable[..., Tmux], t
 def see_it_stop(terminal: Tmux, vehicle: Vehicle, folder: Path, agents: list[Agent], name: str) -> None:
     """Let an agent drive and end it in one way; anew where the screen of a late machine has ended it before."""
     for number in range(TRIES):
+        terminal.press("F1")
         if "ARMED" not in (screen := terminal.screen()) or "DISARMED" in screen:
             terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
-        reason = f"look behind chair {number} by {name}"
+        terminal.press(WAYS[name].opens)
+        reason, asks = f"look behind chair {number} by {name}", f"agent asks: hold {WAYS[name].key} to let it"
         agents.append(Agent(folder, ("drive", {**DRIVE, "reason": reason})))
-        terminal.until(lambda screen, reason=reason: "agent asks" in screen and reason in screen, PATIENCE)  # type: ignore[misc]
+        terminal.until(lambda screen, texts=(reason, asks): all(text in screen for text in texts), PATIENCE)  # type: ignore[misc]
         assert not vehicle.turning()
         if it_stops(terminal, vehicle, agents[-1], name):
             return
@@ -145,15 +161,15 @@ def it_stops(terminal: Tmux, vehicle: Vehicle, agent: Agent, name: str) -> bool:
 
     Returns False if something else has ended it.
     """
-    act, told = WAYS[name]
-    with held(terminal, "p") as release:
+    act, told, _, key = WAYS[name]
+    with held(terminal, key) as release:
         patience = Patience(TRY, *running_stations())
         wait_until(lambda: vehicle.at_full() or agent.answers or patience.ended, name)
         if agent.answers or not vehicle.at_full():
             return False
         waits = Waits(vehicle.process.pid, *running_stations())
         act(terminal, agent)
-        at = release() if told == RELEASED else time.monotonic()
+        at = release() if name.startswith(RELEASES) else time.monotonic()
         wait_until(vehicle.stands, f"{name}: standing")
     falls, stops = vehicle.falls_and_stops_after(at)
     assert falls <= FALLS_WITHIN + waits.total(), name

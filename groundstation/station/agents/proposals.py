@@ -149,8 +149,8 @@ class ProposalBook:
 
     # ---- the operator ----
 
-    def permit(self, intent: PermitProposal, blocked: str | None, now: float) -> None:
-        """Handle an event of the held key. `blocked`: why the screen keeps keys from driving; None: it does not."""
+    def permit(self, intent: PermitProposal, now: float) -> None:
+        """Handle an event of the held key."""
         ticket = self.shown
         if ticket is None or ticket.number != intent.number:
             return
@@ -158,7 +158,7 @@ class ProposalBook:
             if now < ticket.until:
                 ticket.until = now + PERMIT_WINDOW
             return
-        screen = self.permitting_screen()
+        screen, blocked = self.permitting_screen(), self._operator.permission_blocked_reason(now)
         if not intent.held >= HOLD_TIME or blocked is not None or screen is None or not self._is_selected(ticket):
             return
         ticket.stage, ticket.until = Stage.RUNNING, now + PERMIT_WINDOW
@@ -247,7 +247,7 @@ class ProposalBook:
         """Yield what ends a proposal that runs; None or "" for what does not hold."""
         proposal, contact = ticket.proposal, self._fleet.get(ticket.proposal.system)
         yield None if now < ticket.until else "the key was released"
-        yield self._operator.blocked_reason(now)
+        yield self._operator.permission_blocked_reason(now)
         yield NO_SCREEN if self.permitting_screen() is None else None
         yield None if self._is_selected(ticket) else "another vehicle is selected"
         yield f"the agent was silent for {AGENT_SILENCE:g} s" if now - ticket.heard_at > AGENT_SILENCE else None

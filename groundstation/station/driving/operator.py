@@ -145,11 +145,20 @@ class OperatorSession:
 
     def blocked_reason(self, now: float) -> str | None:
         """Return why the screen keeps keys from driving; None when it does not."""
+        return self._find_freeze(now) or (None if self._gate.open else self._gate_reason)
+
+    def permission_blocked_reason(self, now: float) -> str | None:
+        """Return why the screen keeps its key from permitting what agents propose; None when it does not."""
+        return self._find_freeze(now) or (None if self._gate.open or self._gate.permits else self._gate_reason)
+
+    @property
+    def _gate_reason(self) -> str:
+        return self._gate.reason or "Drive screen not in front"
+
+    def _find_freeze(self, now: float) -> str | None:
         if not self._live:
             return "screen not responding"
-        if now < self._thawed_at:
-            return "screen was frozen"
-        return None if self._gate.open else self._gate.reason or "Drive screen not in front"
+        return "screen was frozen" if now < self._thawed_at else None
 
     # ---- the keys ----
 

@@ -195,7 +195,10 @@ class ScreenNavigator:
         if isinstance(top, load_screen(ROOT)):
             return OTHER_SCREEN if self.closing else None
         text = top.takes_text if isinstance(top, (ConsoleScreen, CommandLine)) else not isinstance(top, GoToMenu)
-        return TEXT_FIELD if text else OTHER_SCREEN
+        if text:
+            return TEXT_FIELD
+        keys = top.agent_keys if isinstance(top, ConsoleScreen) and not self.closing else frozenset()
+        return GateClosure(OTHER_SCREEN.reason, OTHER_SCREEN.level, keys) if keys else OTHER_SCREEN
 
     @property
     def shown(self) -> ConsoleScreen | None:

@@ -12,6 +12,7 @@ from groundstation.ui.display.hints import hint
 from groundstation.ui.widgets.alert import HintLine
 from groundstation.ui.widgets.footer import FooterValue, KeyFooter
 from groundstation.ui.widgets.instrument import Instrument
+from groundstation.ui.widgets.proposal import ProposalBar, ProposalBarValue
 from groundstation.ui.widgets.status import StatusBar, StatusBarValue
 from groundstation.ui.widgets.tabs import TabBar, TabBarValue
 
@@ -55,5 +56,9 @@ TABS = instrument_row("tabs", "top", TabBar, TabBarValue.from_state)
 HINT = instrument_row("hint", "bottom", HintLine, hint)
 FOOTER = instrument_row("footer", "bottom", KeyFooter, FooterValue.from_state)
 
-CHROME: tuple[InstrumentRow, ...] = (STATUS, TABS, HINT, FOOTER)
-"""What every screen but the help has: two lines above its own part, two lines below."""
+PROPOSAL_ROWS = 3
+"""Of the proposal of an agent, also in the style sheet of ConsoleScreen."""
+PROPOSAL = instrument_row("proposal", "bottom", ProposalBar, ProposalBarValue.from_state)
+
+CHROME: tuple[InstrumentRow, ...] = (STATUS, TABS, PROPOSAL, HINT, FOOTER)
+"""What every screen but the help has: two lines above its own part, two below, and three while an agent proposes."""

@@ -16,11 +16,11 @@ from textual.geometry import Size
 from textual.screen import Screen
 from textual.widget import Widget
 
-from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.actions import ACTIONS, AGENT_ACTIONS, OperatorAction
 from groundstation.input.keymap import Keymap
 from groundstation.intents.union import AnyIntent
 from groundstation.screens import SCREENS, ScreenRow, find_screen
-from groundstation.ui.base.chrome import CHROME, InstrumentRow
+from groundstation.ui.base.chrome import CHROME, PROPOSAL, PROPOSAL_ROWS, InstrumentRow
 from groundstation.ui.base.question import ANSWER_WITHIN, Question
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.request_numbers import RequestNumbers
@@ -94,6 +94,8 @@ class ConsoleScreen(Screen[None]):
     DEFAULT_CSS = """
     ConsoleScreen { background: $background; }
     ConsoleScreen #status, ConsoleScreen #tabs, ConsoleScreen #hint, ConsoleScreen #footer { height: 1; }
+    ConsoleScreen #proposal { display: none; height: 3; }
+    ConsoleScreen.-proposal #proposal { display: block; }
     ConsoleScreen .panel {
         border: round $line;
         border-title-color: $primary;
@@ -220,6 +222,14 @@ class ConsoleScreen(Screen[None]):
         """Letters are text and no stop keys: in the field, and in a question that is answered by a word."""
         return (self.field.is_attached and self.field.is_open) or bool(self.question and self.question.word)
 
+    @property
+    def agent_keys(self) -> frozenset[str]:
+        """Return the keys that permit or decline a proposal here: those for which the screen has no use of its own."""
+        if PROPOSAL.id not in self._built or self.takes_text or self.question is not None:
+            return frozenset()
+        keys = (key for action in AGENT_ACTIONS for key in self.context.keymap.get_keys(action))
+        return frozenset(key for key in keys if not self.uses(key))
+
     def on_screen_suspend(self, event: events.ScreenSuspend) -> None:
         """Something else is on top now: a question is not answered there."""
         self._question = None
@@ -297,6 +307,7 @@ class ConsoleScreen(Screen[None]):
     def compose(self) -> ComposeResult:
         """Lay out the screen."""
         self._state = replace(self._state, screen=self.describe())
+        self.set_class(self._state.snapshot.proposal is not None, "-proposal")
         yield from self.build_place("top")
         yield from self.compose_body()
         yield self.field
@@ -318,9 +329,12 @@ class ConsoleScreen(Screen[None]):
 
     @property
     def room(self) -> Size:
-        """Columns and rows that the pane of a lesson leaves to the screen; without one those of the terminal."""
+        """Columns and rows that the pane of a lesson and the proposal of an agent leave to the screen."""
         size = self.app.size
-        return size if self.context.lesson is None else Size(*self.context.lesson.room(size))
+        if self.context.lesson is not None:
+            size = Size(*self.context.lesson.room(size))
+        shown = PROPOSAL in self.ROWS and self.has_class("-proposal")
+        return Size(size.width, max(1, size.height - PROPOSAL_ROWS)) if shown else size
 
     def _get_breakpoint_classes(self, dimension: int, breakpoints: list[tuple[int, str]]) -> set[str]:
         """Choose the classes of HORIZONTAL_BREAKPOINTS by the room. Overrides Textual 8.2.8; no screen has others."""
@@ -347,6 +361,9 @@ class ConsoleScreen(Screen[None]):
     def show_state(self, now: DisplayState) -> None:
         """Give every instrument its value; each redraws only the lines that changed."""
         self.keep_state(now)
+        if self.has_class("-proposal") != (now.snapshot.proposal is not None):
+            self.toggle_class("-proposal")
+            self.post_message(events.Resize(self.size, self.size))  # screens share their rows then
         with painted_at_once(self):
             self.show_rows()
             self.show_body(self._state)

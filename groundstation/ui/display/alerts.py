@@ -8,15 +8,12 @@ from enum import Enum, auto
 import msgspec
 
 from groundstation.snapshot import EmergencyProgress, VehicleView
+from groundstation.ui.display.agent_texts import hold_text, proposal_text
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
-from groundstation.ui.keys.keynames import format_key
 
 MAX_SILENCE = 99.0
 """s without a heartbeat that are still counted; after that the text is "minutes"."""
-
-BAR = 10
-"""Cells of the bar that fills while a key is held."""
 
 
 class AlertLevel(Enum):
@@ -92,29 +89,12 @@ def _reports(vehicle: VehicleView) -> str:
 
 def _hold(now: DisplayState) -> Iterator[Alert]:
     if now.hold is not None:
-        full = int(BAR * now.hold.held / now.hold.action.hold_time)
-        bar = "█" * full + "░" * (BAR - full)
-        text = f"{now.hold.action.label}: hold {format_key(now.hold.key)} {bar} {now.hold.held:.1f} s"
-        yield Alert(AlertLevel.QUESTION, text)
+        yield Alert(AlertLevel.QUESTION, hold_text(now.hold))
 
 
 def _proposal(now: DisplayState) -> Iterator[Alert]:
-    proposal = now.snapshot.proposal
-    if proposal is None or now.hold is not None:
-        return
-    permits, declines = now.key("agent.permit"), now.key("agent.decline")
-    if proposal.runs:
-        covered = f", {proposal.covered:.1f} m" if proposal.meters is not None else ""
-        text = f"the AGENT acts while {permits} is held: {proposal.ran:.1f} of {proposal.seconds:g} s{covered}"
-        yield Alert(AlertLevel.QUESTION, text)
-        return
-    if now.snapshot.lease.driver:
-        can = f"{now.snapshot.lease.driver} can permit it"
-    elif proposal.vehicle:
-        can = f"it is for {proposal.vehicle}: {now.key('vehicle.next')} selects it"
-    else:
-        can = f"hold {permits} to let it"
-    yield Alert(AlertLevel.QUESTION, f"agent asks: {can}, {declines} declines ({proposal.left:.0f} s): {proposal.text}")
+    if now.snapshot.proposal is not None and now.hold is None:
+        yield Alert(AlertLevel.QUESTION, proposal_text(now))
 
 
 def _stop_question(now: DisplayState) -> Iterator[Alert]:
@@ -204,7 +184,7 @@ def _gate(now: DisplayState) -> Iterator[Alert]:
     if lease.driver:
         request = f"asked ({lease.waits:.0f} s)" if lease.waits is not None else f"{now.key('vehicle.control')} asks"
         yield Alert(AlertLevel.WARNING, f"you watch: {lease.driver} drives; {request}, stops work")
-    elif now.closure is not None and now.closure not in (OTHER_SCREEN, TEXT_FIELD):
+    elif now.closure is not None and now.closure.reason not in _ELSEWHERE:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 

@@ -10,7 +10,7 @@ import msgspec
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.input.keymap import Keymap
 from groundstation.snapshot import Snapshot
-from groundstation.ui.keys.key_gate import GateClosure
+from groundstation.ui.keys.key_gate import GateClosure, GateLevel
 from groundstation.ui.keys.keynames import format_key, main_key
 from groundstation.ui.keys.pad_state import PadState
 
@@ -82,6 +82,13 @@ class DisplayState(msgspec.Struct, frozen=True):
     """The gamepad; None where none was asked for."""
     kept: Mapping[type, Any] = msgspec.field(default_factory=dict)
     """What screens keep while they are closed, by its class (ScreenContext.keep)."""
+
+    def agent_key(self, action: str) -> str:
+        """Return the key of an action about proposals that counts now, as it is printed; "" where none does."""
+        if self.closure is None or self.closure.level is GateLevel.COMMANDS:
+            return self.key(action)
+        keys = (key for key in self.keymap.get_keys(action) if key in self.closure.agent_keys)
+        return next((format_key(key) for key in keys), "")
 
     def key(self, action: str) -> str:
         """Return the main key of an action as it is printed, "?" where it has none."""

@@ -9,19 +9,10 @@ from groundstation.ui.display.display_state import DisplayState
 def hint(now: DisplayState) -> str:
     """Return what to do next."""
     if not now.screen.drives:
-        return _proposal_hint(now) or now.screen.hint
+        return now.screen.hint
     if now.snapshot.replay is not None:
         return _replay_hint(now, now.snapshot.replay)
     return f"{_drive_hint(now)}{_gamepad_hint(now)}"
-
-
-def _proposal_hint(now: DisplayState) -> str:
-    """Return that an agent proposes something, on the screens where no key can permit it."""
-    proposal = now.snapshot.proposal
-    if proposal is None:
-        return ""
-    drive = now.key("app.drive")
-    return f"agent asks: {proposal.text} · {drive} opens Drive, where {now.key('agent.permit')} held lets it"
 
 
 def _gamepad_hint(now: DisplayState) -> str:

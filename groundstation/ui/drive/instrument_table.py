@@ -11,7 +11,6 @@ from groundstation.ui.drive.instruments.key_to_motor import WayPanel, WayValue
 from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.drive.instruments.links import LinksPanel
 from groundstation.ui.drive.instruments.mission import MissionStrip, MissionValue
-from groundstation.ui.drive.instruments.proposal import ProposalLines
 from groundstation.ui.drive.instruments.speed import Readout, SpeedReadout
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.stops import StopsLine, StopsPanel, StopsValue
@@ -19,6 +18,7 @@ from groundstation.ui.drive.instruments.stops_model import is_near
 from groundstation.ui.drive.waiting import WaitingPage, WaitingValue
 from groundstation.ui.log.panel import LogPanel
 from groundstation.ui.widgets.alert import AlertLine, AlertValue
+from groundstation.ui.widgets.proposal import ProposalLines
 
 
 def _mission(now: DisplayState) -> MissionValue:

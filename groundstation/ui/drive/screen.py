@@ -251,7 +251,6 @@ def _conditions(now: DisplayState) -> dict[str, bool]:
         "-waiting": vehicle is None,
         "-no-legs": no_legs,
         "-alert": bool(active_alerts(now)),
-        "-proposal": now.snapshot.proposal is not None,
     }
 
 

@@ -64,5 +64,12 @@ GATE_CHECKS: tuple[GateCheck, ...] = (
 
 
 def find_closure(now: AppCondition) -> GateClosure | None:
-    """Return the first reason; None when keys may drive."""
-    return next((closure for check in GATE_CHECKS if (closure := check(now)) is not None), None)
+    """Return the first reason; None when keys may drive.
+
+    Under another screen, which comes early in the table, a key permits nothing either if there is one more reason.
+    """
+    found = (closure for check in GATE_CHECKS if (closure := check(now)) is not None)
+    first = next(found, None)
+    if first is not None and first.agent_keys and next(found, None) is not None:
+        return GateClosure(first.reason, first.level)
+    return first

@@ -25,6 +25,7 @@ import msgspec
 from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
 from groundstation.input.keymap import BURST, SPLIT, KeyEvent, Keymap
 from groundstation.input.style import Style
+from groundstation.intents.agents import DeclineProposal
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
@@ -81,6 +82,8 @@ class GateClosure(msgspec.Struct, frozen=True):
 
     reason: str
     level: GateLevel = GateLevel.COMMANDS
+    agent_keys: frozenset[str] = frozenset()
+    """Keys that permit or decline what an agent proposes all the same: those of another screen, which shows it."""
 
 
 STARTING = GateClosure("starting")
@@ -180,6 +183,7 @@ class KeyGate:
                 allowed=self._closure is None,
                 now=self._clock(),
                 subject=self._proposal,
+                also=() if self._closure is None else self._closure.agent_keys,
             )
             if self._opens_screen(batch):
                 self._opening_until = self._clock() + OPENING_TIMEOUT
@@ -293,7 +297,8 @@ class KeyGate:
         self._down.clear()
         self._hold.cancel()
         # The gate first: it makes the station record which keys are held, and the stop clears them.
-        self._client.send(SetKeyGate(open=False, reason=closure.reason), Stop(closure.reason))
+        permits = bool(closure.agent_keys)
+        self._client.send(SetKeyGate(open=False, reason=closure.reason, permits=permits), Stop(closure.reason))
 
     def handle_pong(self) -> None:
         """Note the answer to a ping."""
@@ -322,9 +327,11 @@ class KeyGate:
         return PALETTE_KEY in pressed or any(action is not None and action.id in OPENING for action in actions)
 
     def _counts(self, press: KeyEvent) -> bool:
-        """Return whether a key means anything to the station: on other screens only drive and stop keys do."""
+        """Return whether a key means anything to the station: on other screens those that drive, stop, or permit."""
         level = GateLevel.OPEN if self._closure is None else self._closure.level
         if level in (GateLevel.OPEN, GateLevel.COMMANDS):
+            return True
+        if self._closure is not None and press.key in self._closure.agent_keys:
             return True
         action = self.keymap.get_action(press.key)
         if action is None or not isinstance(action.intent, (DriveKeyDown, Stop, EmergencyStop)):
@@ -333,6 +340,7 @@ class KeyGate:
 
     def _passes(self, intent: AnyIntent) -> bool:
         """Return whether to send it. Drive keys always pass: the station must know them to ignore them later, too."""
-        if self._closure is None or isinstance(intent, (Stop, EmergencyStop, DriveKeyDown, DriveKeyUp)):
+        always = (Stop, EmergencyStop, DriveKeyDown, DriveKeyUp, DeclineProposal)
+        if self._closure is None or isinstance(intent, always):
             return True
         return self._closure.level is GateLevel.COMMANDS

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import MAX_EVENTS, MIN_REPEATS, HoldToConfirm
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
+from groundstation.intents.agents import EndPermission, PermitProposal
 from groundstation.intents.driving import ClearEmergencyStop
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, Disarm
@@ -229,6 +230,37 @@ def test_the_progress_fills_and_ends_by_itself() -> None:
     assert (begun.action, begun.key) == (ACTIONS["vehicle.arm"], "r")
     assert begun.held == pytest.approx(0.5)
     assert keyboard.hold.progress(11.2) is None
+
+
+def permits(
+    key: str, *, subject_from: float = 0.0, also_from: float | None = None, text_at: float = 9.0
+) -> list[AnyIntent]:
+    """Hold a key for 3 s; a proposal comes at `subject_from`, and the key counts from `also_from` on (None: never)."""
+    hold, made = HoldToConfirm(STANDARD), list[AnyIntent]()
+    for at in event_times(3.0):
+        batch = [KeyEvent(key)] if at < text_at else [KeyEvent(key), KeyEvent("x")]
+        also = key if also_from is not None and at >= also_from else ""
+        subject = 7 if at >= subject_from else 0
+        found = hold.handle_read(batch, armed=True, allowed=False, now=at, subject=subject, also=[also])
+        made += [] if found.confirmed is None else [found.confirmed]
+    return made
+
+
+def test_a_key_that_permits_counts_where_it_is_named() -> None:
+    made = permits("p", also_from=0.0)
+    assert {each.number for each in made if isinstance(each, PermitProposal)} == {7}
+    assert len(made) > 30
+    assert permits("p") == permits("r", also_from=0.0) == []
+
+
+def test_a_key_held_before_the_proposal_permits_nothing() -> None:
+    assert permits("p", also_from=0.0, subject_from=0.7) == []
+    assert permits("p", also_from=0.7) == []
+
+
+def test_another_key_ends_what_a_key_permits() -> None:
+    made = permits("p", also_from=0.0, text_at=2.0)
+    assert isinstance(made[-1], EndPermission)
 
 
 _keys = st.sampled_from([R, R, R, R_REPEAT, R_RELEASE, KeyEvent("e"), KeyEvent("t"), KeyEvent("paste")])

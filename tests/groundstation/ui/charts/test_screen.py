@@ -48,7 +48,8 @@ async def test_f5_opens_charts_starts_nothing_and_drives_nothing() -> None:
         await screen.press("f5")
         assert isinstance(screen.app.screen, ChartsScreen)
         assert screen.station.of(StartSimulator) == []
-        assert screen.app.gate.closure == OTHER_SCREEN
+        assert (shut := screen.app.gate.closure) is not None
+        assert shut.reason == OTHER_SCREEN.reason
         assert screen.station.of(SetKeyGate)[-1].open is False
         await screen.press("space", "exclamation_mark")
         assert screen.station.of(Stop)

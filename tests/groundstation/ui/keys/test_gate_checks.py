@@ -6,7 +6,7 @@ import pytest
 from msgspec.structs import fields, replace
 
 from groundstation.ui.keys.gate_checks import AppCondition, find_closure
-from groundstation.ui.keys.key_gate import OTHER_SCREEN, GateClosure
+from groundstation.ui.keys.key_gate import OTHER_SCREEN, GateClosure, GateLevel
 
 FINE = AppCondition(
     leaving=None, station_alive=True, outage="", other_screen=None, detached=False, focus=True, too_small=False,
@@ -50,3 +50,13 @@ def test_the_first_in_the_table_is_the_one_that_is_shown() -> None:
         closure = find_closure(both)
         assert closure is not None
         assert closure.reason == WRONG[first][1]
+
+
+def test_a_proposal_is_permitted_on_another_screen_if_all_is_well() -> None:
+    other = GateClosure(OTHER_SCREEN.reason, GateLevel.STOPS, frozenset("p"))
+    assert find_closure(replace(FINE, other_screen=other)) == other
+    for name, (value, _) in WRONG.items():
+        if name != "other_screen":
+            closure = find_closure(replace(FINE, **{"other_screen": other, name: value}))
+            assert closure is not None
+            assert not closure.agent_keys, name

@@ -7,11 +7,20 @@ from collections.abc import Iterator
 import pytest
 
 from groundstation.input.keymap import KeyEvent
+from groundstation.intents.agents import DeclineProposal, PermitProposal
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, StepLimits, Stop
 from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm, SetMode
 from groundstation.intents.vehicle_intent import HOLD_TIME
-from groundstation.ui.keys.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, SHOW_PERIOD, TEXT_FIELD, GateClosure, KeyGate
+from groundstation.ui.keys.key_gate import (
+    OPENING_TIMEOUT,
+    OTHER_SCREEN,
+    SHOW_PERIOD,
+    TEXT_FIELD,
+    GateClosure,
+    GateLevel,
+    KeyGate,
+)
 from groundstation.ui.terminal.key_parser import KeyEventParser
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.examples import Recorder
@@ -315,3 +324,27 @@ def test_a_text_field_is_told_to_the_parser(gate: KeyGate) -> None:
     assert not gate.takes_text()
     gate.set_closure(TEXT_FIELD)
     assert gate.takes_text()
+
+
+LOG = GateClosure(OTHER_SCREEN.reason, GateLevel.STOPS, frozenset(("p", "P")))
+"""Under a screen that has no use for these keys, and shows what agents propose."""
+
+
+@pytest.mark.parametrize(("shut", "counts"), [(LOG, True), (OTHER_SCREEN, False), (TEXT_FIELD, False), (SMALL, False)])
+def test_the_key_of_a_proposal_counts_where_the_gate_says_so(
+    station: Recorder, shut: GateClosure, counts: bool
+) -> None:
+    now = [0.0]
+    gate = KeyGate(station, STANDARD, lambda: now[0])
+    gate.update(armed=False, driving=False, proposal=3)
+    gate.set_closure(shut)
+    assert station.of(SetKeyGate)[-1].permits == counts
+    for key in ("r", "Z", "p"):
+        for at in event_times(2.0):
+            gate.handle_keys([press(key)])
+            now[0] += 0.033 if at else 0.4
+        now[0] += 2.0
+    assert {each.number for each in station.of(PermitProposal)} == ({3} if counts else set())
+    assert not station.of(Arm)
+    gate.handle_keys([press("P")])
+    assert bool(station.of(DeclineProposal)) == (counts or shut is SMALL)

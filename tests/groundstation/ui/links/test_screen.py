@@ -261,7 +261,8 @@ async def test_only_stops_and_control_actions_reach_the_station() -> None:
 
 async def assert_allowed(screen: Console, action: OperatorAction, key: str) -> None:
     """Press a key of an action on this screen; check what reaches the station."""
-    assert screen.app.gate.closure == OTHER_SCREEN, action.id
+    assert (shut := screen.app.gate.closure) is not None
+    assert shut.reason == OTHER_SCREEN.reason, action.id
     assert screen.station.of(SetKeyGate)[-1].open is False, action.id
     before = len(screen.station.intents)
     await screen.press(key)

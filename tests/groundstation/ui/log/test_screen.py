@@ -140,7 +140,8 @@ async def test_typing_filters_enter_keeps_text_and_escape_clears_it() -> None:
 async def test_a_letter_in_the_text_is_no_stop_and_stops_still_work() -> None:
     async with console() as screen:
         await open_log(screen)
-        assert screen.app.gate.closure == OTHER_SCREEN
+        assert (shut := screen.app.gate.closure) is not None
+        assert shut.reason == OTHER_SCREEN.reason
         await screen.press("slash")
         await until(lambda: screen.app.gate.closure == TEXT_FIELD)
         before = len(screen.station.of(Stop))

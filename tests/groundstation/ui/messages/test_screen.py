@@ -162,7 +162,8 @@ async def test_no_key_drives_there_and_each_stop_stops() -> None:
             if not screen.is_clean(MessagesScreen):
                 await screen.go_home()
                 await open_messages(screen)
-            assert screen.app.gate.closure == OTHER_SCREEN, key
+            assert (shut := screen.app.gate.closure) is not None
+            assert shut.reason == OTHER_SCREEN.reason, key
             assert screen.station.of(SetKeyGate)[-1].open is False, key
             before = len(screen.station.intents)
             await screen.press(key)

@@ -206,7 +206,8 @@ async def test_changes_of_one_vehicle_do_not_go_to_another() -> None:
 async def test_keys_do_not_drive_here() -> None:
     async with console() as screen:
         await open_params(screen)
-        assert screen.app.gate.closure == OTHER_SCREEN
+        assert (shut := screen.app.gate.closure) is not None
+        assert shut.reason == OTHER_SCREEN.reason
         assert not screen.station.of(SetKeyGate)[-1].open
         await screen.press("slash")
         await until(lambda: screen.app.gate.closure == TEXT_FIELD)
