@@ -290,15 +290,16 @@ class KeyGate:
     def _set_closure(self, closure: GateClosure | None) -> None:
         if closure == self._closure:
             return
-        self._closure = closure
+        before, self._closure = self._closure, closure
         if closure is None:
             self._client.send(SetKeyGate(open=True))
             return
         self._down.clear()
         self._hold.cancel()
         # The gate first: it makes the station record which keys are held, and the stop clears them.
-        permits = bool(closure.agent_keys)
-        self._client.send(SetKeyGate(open=False, reason=closure.reason, permits=permits), Stop(closure.reason))
+        self._client.send(SetKeyGate(open=False, reason=closure.reason, permits=bool(closure.agent_keys)))
+        if before is None or before.reason != closure.reason:
+            self._client.send(Stop(closure.reason))
 
     def handle_pong(self) -> None:
         """Note the answer to a ping."""

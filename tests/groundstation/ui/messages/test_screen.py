@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 
 from groundstation.actions import ACTIONS
+from groundstation.intents.agents import DeclineProposal
 from groundstation.intents.charts import PinSeries
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.services import RequestMessage, SetMessageRate
@@ -172,7 +173,10 @@ async def test_no_key_drives_there_and_each_stop_stops() -> None:
             if action.group == "stop" and not action.confirm:
                 assert kinds & {Stop, EmergencyStop}, (action.id, key)
             elif action.group != "app":
-                assert kinds <= {DriveKeyDown, Stop}, (action.id, key)  # held keys reach it behind a closed gate
+                assert kinds <= {DriveKeyDown, Stop, DeclineProposal}, (
+                    action.id,
+                    key,
+                )  # held keys reach it behind a closed gate
                 assert screen.station.of(SetKeyGate)[-1].open is False, (action.id, key)
 
 
