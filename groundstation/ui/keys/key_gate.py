@@ -332,9 +332,9 @@ class KeyGate:
         level = GateLevel.OPEN if self._closure is None else self._closure.level
         if level in (GateLevel.OPEN, GateLevel.COMMANDS):
             return True
-        if self._closure is not None and press.key in self._closure.agent_keys:
-            return True
         action = self.keymap.get_action(press.key)
+        if action is not None and isinstance(action.intent, DeclineProposal):
+            return self._closure is not None and press.key in self._closure.agent_keys
         if action is None or not isinstance(action.intent, (DriveKeyDown, Stop, EmergencyStop)):
             return False
         return not (level is GateLevel.TEXT and isinstance(action.intent, Stop) and is_character(press.key))

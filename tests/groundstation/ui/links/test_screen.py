@@ -33,8 +33,10 @@ from tests.groundstation.ui.link_examples import CONTROL, FLEET, LINKS, OURS, SI
 from tests.groundstation.ui.pilots import Console, console
 from tests.waits import until
 
-STOPS: dict[str, set[type[Intent]]] = {"drive.stop": {Stop}, "stop.emergency": {EmergencyStop, Stop}}
-"""Action -> which stops its keys send."""
+STOPS: dict[str, set[type[Intent]]] = {
+    "drive.stop": {Stop}, "stop.emergency": {EmergencyStop, Stop}, "agent.decline": {Stop},
+}  # fmt: skip
+"""Action -> which stops its keys send while the vehicle is driven."""
 
 VEHICLE_INTENTS = (Arm, Disarm, SetMode, RequestControl, ReleaseControl, SelectVehicle, SelectNextVehicle)
 
