@@ -111,7 +111,7 @@ WAYS: dict[str, Way] = {
     "a stop key": Way(lambda terminal, agent: terminal.press("Space"), "something else"),
     "another key": Way(lambda terminal, agent: terminal.press("k"), "something else"),
     "a released key on Log": Way(lambda terminal, agent: None, RELEASED, "F6"),
-    "a key of Map": Way(lambda terminal, agent: terminal.press("+"), RELEASED, "F2", "Z"),
+    "a key of Map": Way(lambda terminal, agent: terminal.press("+"), "", "F2", "Z"),
     "the key that declines": Way(lambda terminal, agent: terminal.press("P")),
     "SIGSTOP of the agent": Way(lambda terminal, agent: agent.process.send_signal(signal.SIGSTOP)),
     "kill -9 of the agent": Way(lambda terminal, agent: agent.process.kill()),
