@@ -12,6 +12,7 @@ from link.core import LinkReport, Outgoing, Peer, Received
 from link.protocol.rate import SenderLimit
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.autonomy.navigator import Navigator
+from vehicle.camera.camera import Camera
 from vehicle.commands.access import CommandAccess
 from vehicle.commands.command_table import CommandTable
 from vehicle.commands.context import COMPONENT, Context, Reporting
@@ -73,17 +74,20 @@ class Rover:
         host: HostInfo | None = None,
         on_text: Callable[[Severity, str], None] = lambda severity, text: None,
         rack: AccessorySet | None = None,
+        camera: Camera | None = None,
     ) -> None:
         """`now` is the monotonic time of boot.
 
         `param_store` saves parameters and `plan_store` plans; without them both end with the program. `recording`
         writes logs. `pairing` keeps keys. `arming_note` is said at each arming. `host` describes the computer.
         `on_text` is called with every STATUSTEXT. `rack` holds relays and servos.
+        `camera` says who watches it.
         """
         self._params = params
         self._boot = now
         self._host = host or HostInfo()
         self._rack = rack or AccessorySet()
+        self._camera = camera
         self._readings = NO_READINGS
         self._activity = Activity(now)
         self._cycles = Pace(self._activity)
@@ -114,6 +118,7 @@ class Rover:
             self._actuator_test.update_liveness,
             self._telemetry.observe,
             self._dispatcher.signing.observe,
+            *((self._dispatcher.camera.observe,) if camera is not None else ()),
         )
 
     @property
@@ -276,7 +281,7 @@ class Rover:
             file_pacer=self._bandwidth.file_pacer,
             arming_note=arming_note,
         )
-        reporting = Reporting(self._telemetry, self._links, self._build_view)
+        reporting = Reporting(self._telemetry, self._links, self._build_view, self._camera)
         return Dispatcher(context, reporting, stores, self._rack)
 
     def _motion_inputs(self) -> tuple[Demand | None, SafetyState, int]:

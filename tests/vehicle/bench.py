@@ -15,6 +15,7 @@ from link.core import Peer, Received
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.simulated import SimulatedAccessory
+from vehicle.camera.camera import Camera
 from vehicle.commands.signing import Pairing
 from vehicle.params import Params
 from vehicle.readings import ComputerReadings, Readings
@@ -59,6 +60,9 @@ class Bench:
     pairing: Pairing | None = None
     """What keeps its keys."""
 
+    camera: Camera | None = None
+    """Its camera."""
+
     outputs: Sequence[AccessorySpec] = ()
     """Its relays and servos."""
 
@@ -75,6 +79,7 @@ class Bench:
             recording=self.recording,
             pairing=self.pairing,
             rack=self.rack,
+            camera=self.camera,
             on_text=lambda severity, text: self.logged.append(text),
         )
         self.readings = Readings()

@@ -23,6 +23,7 @@ from vehicle.cli.options import (
 
 if TYPE_CHECKING:
     from link.transport.faults.settings import FaultSettings
+    from vehicle.camera.settings import CameraSettings
     from vehicle.config.config import Config
     from vehicle.config.run_settings import RunSettings
 
@@ -125,6 +126,7 @@ def _build_settings(options: argparse.Namespace, config: Config, parser: Command
         config=Path(options.config) if options.config else None,
         sensors=config.sensors,
         simulation=simulation if options.sim else None,
+        camera=_choose_camera(options, config),
         pinned=pinned,
         params={**(SIMULATION_PARAMS if options.sim else {}), **dict(options.param)},
         motor_log=options.motor_log or config.log.motors,
@@ -133,6 +135,15 @@ def _build_settings(options: argparse.Namespace, config: Config, parser: Command
         signing=config.signing,
         announce=options.announce or config.announce,
     )
+
+
+def _choose_camera(options: argparse.Namespace, config: Config) -> CameraSettings:
+    """Return the camera of the file; of a simulation the drawn one, if --camera asks for it."""
+    from vehicle.camera.settings import SIMULATED_CAMERA, CameraSettings
+
+    if options.sim:
+        return SIMULATED_CAMERA if options.camera else CameraSettings()
+    return config.camera
 
 
 def _build_faults(options: argparse.Namespace, config: Config, parser: CommandLineParser) -> FaultSettings | None:

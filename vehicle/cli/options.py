@@ -35,6 +35,7 @@ examples:
   mavhelm vehicle --sim --param SPEED_MAX=3 --param DRIVE_TYPE=2   ... a faster one that steers like a car
   mavhelm vehicle --sim --loss 20 --delay 200 --jitter 50 --cut 3  ... over a bad network: docs/simulator.md
   mavhelm vehicle --sim --param DRIVE_TYPE=4       ... one with mecanum wheels (3: omni), that also moves sideways
+  mavhelm vehicle --sim --camera                   ... with a camera that sees a drawn world: docs/camera.md
   mavhelm vehicle init                             write rover.toml, with every setting and its description
   mavhelm vehicle check                            check rover.toml and the hardware; nothing moves
   mavhelm vehicle doctor                           the same with permissions, ports, power, clock, disk and service
@@ -199,6 +200,8 @@ SIMULATION_OPTIONS: dict[str, dict[str, Any]] = {
                     "help": "append its true position and speed: CLOCK_MONOTONIC ns, m, m, rad, m/s; with --walls "
                     "also the m to the nearest one, 0 in contact"},
     "--walls": {"metavar": "FILE", "help": "walls around it (GeoJSON), and a sensor that sees them"},
+    "--camera": {"action": "store_true", "default": None,
+                 "help": "stream what it would see, as a camera does, while a ground station watches; needs ffmpeg"},
     "--loss": {"metavar": "PERCENT", "type": _between(0, 100, "a loss in percent"),
                "help": "lose so many of the frames of its links, each way"},
     "--delay": {"metavar": "MS", "type": _between(0, 60_000, "a delay in ms"), "help": "deliver frames late, each way"},

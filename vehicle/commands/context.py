@@ -8,6 +8,7 @@ import msgspec
 
 from link.services.pacing import BulkPacer
 from vehicle.autonomy.navigator import Navigator
+from vehicle.camera.camera import Camera
 from vehicle.commands.access import CommandAccess
 from vehicle.drive.control import Control
 from vehicle.drive.mixer import Mixer
@@ -55,3 +56,5 @@ class Reporting(msgspec.Struct, frozen=True):
     links: LinkStatusReporter
     build_view: Callable[[float], TelemetryView]
     """Returns the vehicle at a time."""
+    camera: Camera | None = None
+    """None: there is none."""

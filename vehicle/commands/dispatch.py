@@ -14,6 +14,7 @@ from vehicle.commands.accessories import AccessoryCommands
 from vehicle.commands.actuator_test import ActuatorTest
 from vehicle.commands.arming import ArmingCommands
 from vehicle.commands.calibration import CalibrationCommand
+from vehicle.commands.camera import CameraCommands
 from vehicle.commands.command_table import CommandTable, build_handlers, do_items
 from vehicle.commands.context import COMPONENT, Context, Reporting
 from vehicle.commands.demands import DemandMessages
@@ -64,7 +65,9 @@ class Dispatcher:
         go_to = GoToItems(context, guided.drive_to)
         self._mission = MissionService(context, do_items(do_tables), go_to.handle, stores.plans)
         self._files = FileServices(context, self.logbook, self._mission.folder())
-        requests = MessageRequestHandler(reporting, self._files.message_builders())
+        self.camera = CameraCommands(context, reporting)
+        builders = {**self._files.message_builders(), **self.camera.message_builders()}
+        requests = MessageRequestHandler(reporting, builders)
         storage = PreflightStorage(context, self._params, self._mission)
 
         self.commands: CommandTable = (
@@ -77,6 +80,7 @@ class Dispatcher:
             *CalibrationCommand(context).commands(),
             *self._preflight.commands(),
             *requests.commands(),
+            *self.camera.commands(),
         )
         self._specs = {row.command: row for row in self.commands}
         self._server = CommandServer(

@@ -17,6 +17,8 @@ from link.toml.errors import explain_errors, suggest
 from link.toml.file import TomlError, find_unsupported, parse_toml, read_toml
 from vehicle.accessories import settings as accessory_settings
 from vehicle.accessories.settings import Accessories
+from vehicle.camera.settings import CameraSettings
+from vehicle.camera.settings import find_problems as find_camera_problems
 from vehicle.config.conflicts import find_conflicts
 from vehicle.config.signing import SigningSettings
 from vehicle.config.signing import find_problems as find_signing_problems
@@ -72,6 +74,7 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     motors: dict[str, Any] = {}
     accessories: Accessories = Accessories()
     sensors: SensorSettings = SensorSettings()
+    camera: CameraSettings = CameraSettings()
     params: dict[str, float] = {}
     log: LogSettings = LogSettings()
 
@@ -175,6 +178,10 @@ def _signing_problems(table: Mapping[str, Any]) -> list[str]:
     return find_signing_problems(msgspec.convert(table, SigningSettings))
 
 
+def _camera_problems(table: Mapping[str, Any]) -> list[str]:
+    return find_camera_problems(msgspec.convert(table, CameraSettings))
+
+
 def _accessory_problems(table: Mapping[str, Any]) -> list[str]:
     return accessory_settings.find_problems(msgspec.convert(table, Accessories))
 
@@ -184,6 +191,7 @@ _CHECKS: dict[str, Callable[[Any], list[str]]] = {
     "signing": _signing_problems,
     "motors": _motor_problems,
     "accessories": _accessory_problems,
+    "camera": _camera_problems,
     "params": _param_problems,
 }
 """Section -> checks beyond its types."""

@@ -10,6 +10,7 @@ import msgspec
 
 from link.transport.faults.settings import FaultSettings
 from vehicle.accessories.settings import Accessories
+from vehicle.camera.settings import CameraSettings
 from vehicle.config.signing import SigningSettings
 from vehicle.sensors.suite import SensorSettings
 from vehicle.sim.body import SimulatedHome
@@ -47,6 +48,7 @@ class RunSettings(msgspec.Struct, frozen=True):
     sensors: SensorSettings | None = None
     """None for a rover without sensors; ignored in a simulation."""
     simulation: Simulation | None = None
+    camera: CameraSettings = CameraSettings()
     pinned: Mapping[str, float] = msgspec.field(default_factory=dict)
     """Parameters set in the configuration file, which ground stations cannot change."""
     params: Mapping[str, float] = msgspec.field(default_factory=dict)

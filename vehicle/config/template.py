@@ -14,6 +14,7 @@ from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.drivers import FIRST_NUMBER, Kind
 from vehicle.accessories.settings import COMMON, Accessories
 from vehicle.accessories.settings import settings_type as settings_type_of
+from vehicle.camera.settings import CameraSettings
 from vehicle.config.config import Config
 from vehicle.config.signing import SigningSettings
 from vehicle.motors.drivers import DRIVERS, DriverEntry, settings_type
@@ -83,6 +84,7 @@ def build_template() -> str:
             for name, entry in drivers.items()
             if name != "simulated"
         ),
+        f"\n[camera]\n{_comment(first_paragraph(CameraSettings.__doc__))}" + _body(config.camera, "camera"),
         "\n[params]\n# Ground stations can read a parameter that is set here, but cannot change it.\n",
         *(_parameter(parameter) for parameter in TABLE),
         "\n[log]\n" + _body(config.log, "log"),

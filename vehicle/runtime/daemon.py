@@ -11,7 +11,7 @@ import asyncio
 import contextlib
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from dialects.enums import Severity
 from link.endpoint import SERIAL, EndpointError, Side, parse_endpoint
@@ -25,6 +25,7 @@ from link.signing.key_file import FILE, KeyFileError
 from link.signing.memory_file import FILE as MEMORY_FILE
 from link.signing.memory_file import MemoryFileError
 from link.transport.transport import Link, LinkError
+from vehicle.camera.scene import Pose
 from vehicle.commands.context import COMPONENT
 from vehicle.commands.signing import Pairing
 from vehicle.config.run_settings import RunSettings, SettingsError
@@ -35,10 +36,12 @@ from vehicle.rover import Rover
 from vehicle.runtime.announcement import announce
 from vehicle.runtime.factory import (
     build_accessories,
+    build_camera,
     build_control_loop,
     build_faults,
     build_params,
     build_recorder,
+    start_camera,
 )
 from vehicle.runtime.host_info import HostMonitor, read_uid
 from vehicle.runtime.link_guards import LinkGuards
@@ -155,6 +158,7 @@ async def _serve(settings: RunSettings) -> int:
         system = int(params["MAV_SYSID"])
         recorder = build_recorder(settings, system, opened)
         rack = build_accessories(settings, params)
+        camera = build_camera(settings)
         rover = Rover(
             params,
             now=now,
@@ -166,11 +170,17 @@ async def _serve(settings: RunSettings) -> int:
             host=host,
             on_text=_log_status_text,
             rack=rack,
+            camera=camera,
         )
         host_monitor = HostMonitor(host, lambda: loop.idle_time, time.time, now)
         faults = build_faults(settings)
         cycles = CycleObserver(rover, notifier, host_monitor, vehicle_keys, guards, faults)
-        control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
+
+        def begin_camera(pose: Callable[[], Pose]) -> None:
+            if camera is not None:
+                cycles.camera = start_camera(settings, camera, pose, opened)
+
+        control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack, begin_camera)
         log_tap = recorder.log_tap if recorder else None
         try:
             links = open_links(

@@ -16,6 +16,8 @@ from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.settings import build_specs
 from vehicle.accessories.simulated import SimulatedAccessory
+from vehicle.camera.camera import Camera
+from vehicle.camera.scene import Pose
 from vehicle.commands.context import COMPONENT
 from vehicle.config.conflicts import find_conflicts, find_motor_conflicts
 from vehicle.config.merge import merge_params
@@ -29,6 +31,7 @@ from vehicle.motors.simulated import SimulatedMotors
 from vehicle.navigation.geo import Origin
 from vehicle.params import Params
 from vehicle.rover import Rover
+from vehicle.runtime.camera_link import CameraLink
 from vehicle.runtime.lock import MotorLock
 from vehicle.runtime.walls_file import read_walls
 from vehicle.sensors import NoSensors, Sensors
@@ -37,7 +40,7 @@ from vehicle.sim.battery import Battery
 from vehicle.sim.body import SimulatedBody
 from vehicle.sim.chassis import CHASSIS, ChassisDimensions
 from vehicle.sim.truth import RecordedBody
-from vehicle.sim.walls import Surroundings, Walls
+from vehicle.sim.walls import Segment, Surroundings, Walls
 from vehicle.storage.motor_copy import settings_copy
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.recorder import VehicleRecorder
@@ -104,16 +107,20 @@ def build_control_loop(
     opened: contextlib.ExitStack,
     completed: Callable[[float], None],
     rack: AccessorySet,
+    start_camera: Callable[[Callable[[], Pose]], None] = lambda pose: None,
 ) -> ControlLoop:
     """Return the rover with motors, sensors and opened accessories. Raises MotorError, SettingsError.
 
-    `opened` closes what must be closed after the motors.
+    `opened` closes what must be closed after the motors. `start_camera` gets what tells where the rover is.
     """
     if settings.simulation is None:
         motors, sensors = _open_hardware(settings, opened)
+        pose: Callable[[], Pose] = Pose
     else:
-        motors, sensors = _build_simulation(settings.simulation, params)
+        motors, body = _build_simulation(settings.simulation, params)
+        sensors, pose = _with_truth_log(body, settings.simulation.truth), _find_pose(body)
     try:
+        start_camera(pose)
         logged = _with_motor_log(motors, settings.motor_log)
         prove = arming_check(motors)
         control_loop = ControlLoop(
@@ -145,7 +152,29 @@ def _open_hardware(settings: RunSettings, opened: contextlib.ExitStack) -> tuple
         raise
 
 
-def _build_simulation(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:
+def _find_pose(body: SimulatedBody) -> Callable[[], Pose]:
+    return lambda: Pose(round(body.motion.north, 4), round(body.motion.east, 4), round(body.motion.yaw, 5))
+
+
+def build_camera(settings: RunSettings) -> Camera | None:
+    """Return the camera as the core sees it, None without one."""
+    return None if settings.camera.kind == "none" else Camera(settings.camera)
+
+
+def start_camera(
+    settings: RunSettings, camera: Camera, pose: Callable[[], Pose], opened: contextlib.ExitStack
+) -> CameraLink | None:
+    """Start the process of the camera, which `opened` ends. The rover drives without one, too."""
+    try:
+        link = CameraLink(camera, pose, _read_walls(settings.simulation))
+    except OSError as error:
+        log.warning("camera: its process did not start: %s", error.strerror)
+        return None
+    opened.callback(link.close)
+    return link
+
+
+def _build_simulation(simulation: Simulation, params: Params) -> tuple[Motors, SimulatedBody]:
     kind = DriveType(int(params["DRIVE_TYPE"]))
     motors = SimulatedMotors(len(MIXERS[kind].motors))
     frame = ChassisDimensions(
@@ -159,14 +188,20 @@ def _build_simulation(simulation: Simulation, params: Params) -> tuple[Motors, S
         seed=simulation.seed,
         surroundings=_build_surroundings(simulation, params),
     )
-    return motors, _with_truth_log(body, simulation.truth)
+    return motors, body
 
 
 def _build_surroundings(simulation: Simulation, params: Params) -> Surroundings | None:
     if simulation.walls is None:
         return None
-    walls = Walls(read_walls(simulation.walls, Origin(simulation.home.latitude, simulation.home.longitude)))
+    walls = Walls(_read_walls(simulation))
     return Surroundings(walls, simulation.seed, length=params["BODY_LENGTH"], width=params["BODY_WIDTH"])
+
+
+def _read_walls(simulation: Simulation | None) -> list[Segment]:
+    if simulation is None or simulation.walls is None:
+        return []
+    return read_walls(simulation.walls, Origin(simulation.home.latitude, simulation.home.longitude))
 
 
 def _with_truth_log(body: SimulatedBody, path: str | None) -> Sensors:

@@ -13,6 +13,7 @@ from vehicle.commands.reboot import RebootRequest
 from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError
 from vehicle.rover import Rover
+from vehicle.runtime.camera_link import CameraLink
 from vehicle.runtime.host_info import HostMonitor
 from vehicle.runtime.link_guards import LinkGuards
 from vehicle.runtime.systemd import Notifier
@@ -74,7 +75,7 @@ class Shutdown:
 
 
 class CycleObserver:
-    """The daemon's work after a control cycle: watchdog, host info, keys, faults of the links, a reboot request."""
+    """The daemon's work after a control cycle: watchdog, host info, keys, camera, link faults, a reboot request."""
 
     def __init__(
         self,
@@ -86,6 +87,7 @@ class CycleObserver:
         faults: LinkFaults | None = None,
     ) -> None:
         self.shutdown: Shutdown | None = None
+        self.camera: CameraLink | None = None
         self._rover = rover
         self._notifier = notifier
         self._host_monitor = host_monitor
@@ -94,13 +96,15 @@ class CycleObserver:
         self._faults = faults
 
     def handle_cycle(self, now: float) -> None:
-        """Feed the watchdog, update host info, keys and faults of the links, and handle a reboot request."""
+        """Feed the watchdog, update host info, keys, camera and faults of the links, and handle a reboot request."""
         self._notifier.alive(now)
         self._host_monitor.update(now)
         if self._keys is not None:
             self._keys.poll(now)
         if self._guards is not None:
             self._guards.poll(now)
+        if self.camera is not None:
+            self.camera.update(now)
         if self._faults is not None:
             self._faults.update(any(self._rover.outputs.throttles), now)
         leave = self._rover.reboot_request(now)

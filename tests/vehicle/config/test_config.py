@@ -69,7 +69,7 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         (
             "zebra = 1",
             "zebra: unknown key; there are endpoints, announce, state, identity, signing, motors, accessories, "
-            "sensors, params, log",
+            "sensors, camera, params, log",
         ),
         ("a =", "Invalid value (at end of document)"),
         ("[params]\n\n[params]", "[params] exists already, and again at line 3; move its lines below the first one"),

@@ -1,0 +1,81 @@
+"""The daemon's end of the camera: starts its process, and tells it whom to send to. Never waits for it."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import subprocess
+from collections.abc import Callable, Sequence
+
+import msgspec
+
+from link.runtime.child_process import end_process, start_module
+from link.runtime.local_socket import open_pair
+from vehicle.camera.camera import Camera, CameraReport
+from vehicle.camera.orders import Orders, Setup
+from vehicle.camera.scene import Place, Pose
+
+MODULE = "vehicle.camera.process"
+PERIOD = 0.04
+"""s between two orders while somebody watches: a simulated picture shows where the rover is."""
+END_TIMEOUT = 0.5
+"""s for the process to end with the daemon, after which it is killed."""
+REPORT_MAX = 4096
+
+log = logging.getLogger(__name__)
+
+
+class CameraLink:
+    """One process of a camera. It is started once: one that is killed needs a restart of the daemon."""
+
+    def __init__(self, camera: Camera, pose: Callable[[], Pose] = Pose, walls: Sequence[tuple[Place, Place]] = ()):
+        """`pose` returns where the simulated rover is. Raises OSError."""
+        self.camera = camera
+        self._pose = pose
+        self._sent: Orders | None = None
+        self._due = 0.0
+        self._problem = ""
+        self._pipe, theirs = open_pair()
+        self._pipe.setblocking(False)
+        setup = msgspec.json.encode(Setup(camera.settings, tuple(walls))).decode()
+        with theirs:
+            options = [f"--fd={theirs.fileno()}", f"--setup={setup}"]
+            self._process: subprocess.Popen[bytes] = start_module(
+                MODULE, options, pass_fds=[theirs.fileno()], new_session=True, ends_with_us=True
+            )
+
+    @property
+    def pid(self) -> int:
+        """Process id of the camera."""
+        return self._process.pid
+
+    def update(self, now: float) -> None:
+        """Send orders that are due, and take reports; after each cycle."""
+        if now < self._due:
+            return
+        self._due = now + PERIOD
+        targets = self.camera.targets(now)
+        orders = Orders(targets, self._pose() if targets else Pose())
+        if orders != self._sent:
+            with contextlib.suppress(OSError):  # it stands still or has ended: the next orders replace these
+                self._pipe.send(msgspec.json.encode(orders))
+                self._sent = orders
+        self._take_reports(now)
+
+    def close(self) -> None:
+        """End the process: it ends with its end of the socket."""
+        self._pipe.close()
+        end_process(self._process, END_TIMEOUT)
+
+    def _take_reports(self, now: float) -> None:
+        try:
+            data = self._pipe.recv(REPORT_MAX)
+        except OSError:
+            return
+        if not data:
+            return
+        report = msgspec.json.decode(data, type=CameraReport)
+        self.camera.note_report(report, now)
+        if report.problem and report.problem != self._problem:
+            log.warning("camera: %s", report.problem)
+        self._problem = report.problem
