@@ -103,6 +103,8 @@ _ROWS = (
     _speed("steering_faster", "Turn +", "Raise the turn limit by 10 points", 0.0, FASTER),
     _speed("steering_slower", "Turn -", "Lower the turn limit by 10 points", 0.0, SLOWER),
     OperatorAction("view.pane", "View", "Next pane of the Drive screen", "view", keys=("v",), steady=True),
+    OperatorAction("view.picture", "Picture", "Drive by the camera: it fills Drive, and keys drive while it is fresh",
+                   "view", keys=("f",), steady=True),
     OperatorAction("view.closer", "Closer", "Zoom in on the pane", "view", keys=("pageup",), steady=True),
     OperatorAction("view.wider", "Wider", "Zoom out of the pane", "view", keys=("pagedown",), steady=True),
     OperatorAction("view.lesson", "Lesson", "Next page of the lesson, then hide it, then show it (mavhelm learn)",

@@ -66,6 +66,8 @@ def _run(options: argparse.Namespace, names: Sequence[str], process: HostProcess
     settings = effective.settings
     if settings.style != Style.HOLD and (why := style_refusal(settings.style, find_proxy() or _find_proxy_in_tmux())):
         raise UsageError(f"--style {why}")
+    if options.camera and not options.sitl:
+        raise UsageError("--camera is for --sitl; the camera of a rover is in its rover.toml: docs/camera.md")
     endpoints = _endpoints(options, effective, names)
 
     def start(log_file: Path | None) -> StationClient:
@@ -75,6 +77,7 @@ def _run(options: argparse.Namespace, names: Sequence[str], process: HostProcess
             style=settings.style,
             speed=settings.speed,
             sitl=options.sitl,
+            simulators=[("--camera",)] if options.camera else [],
             log_file=log_file,
             dialect=settings.dialect_path,
             sign_key=settings.sign_key,

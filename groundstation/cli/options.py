@@ -18,6 +18,7 @@ from link.runtime.command_line import CommandLineParser
 _EPILOG = """\
 examples:
   mavhelm --sitl                     start a simulated rover and drive it
+  mavhelm --sitl --camera            ... one with a camera; the key f drives by its picture
   mavhelm                            choose what to connect to: vehicles heard, recent endpoints, serial ports
   mavhelm udpin:0.0.0.0:14550        wait for vehicles, from any machine of the network
   mavhelm udpout:192.168.1.20:14550  send first, to a vehicle that listens
@@ -107,6 +108,8 @@ def build_parser() -> tuple[CommandLineParser, list[str]]:
         add("endpoints", nargs="*", metavar="ENDPOINT|NAME",
             help=f"where vehicles are, or a name of the config file (default: {DEFAULT_ENDPOINT})"),
         add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station"),
+        add("--camera", action="store_true",
+            help="with --sitl: a rover with a camera, for the key f on Drive; needs ffmpeg"),
         add("--plain", action="store_true",
             help="print lines in place of a screen: what changes, and the vehicle's texts, beside a station that verbs "
             "in other shells go through; takes the options of `mavhelm status --watch`"),

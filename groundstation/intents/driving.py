@@ -63,6 +63,17 @@ class ReleasePad(Intent, frozen=True):
     valid_when_late = True
 
 
+class DriveByPicture(Intent, frozen=True):
+    """The driver sees no more than the picture of a camera, or does again; sent with each new picture."""
+
+    is_input = False
+    valid_when_late = True
+    drives: bool
+    """By the picture: keys drive only while it is fresh."""
+    taken_at: float = 0.0
+    """When the newest picture was taken, CLOCK_MONOTONIC of this machine, s; 0: there is none."""
+
+
 class Stop(Intent, frozen=True):
     """Neutral at once; also ends latched driving. A stop key puts a vehicle in an autonomous mode into HOLD as well."""
 

@@ -41,11 +41,18 @@ class PictureAge:
 
     def __init__(self) -> None:
         self._newest: Picture | None = None
+        self._stamp: float | None = None
         self._new_at = self._came_at = 0.0
 
-    def note(self, picture: Picture, now: float) -> bool:
-        """Note a picture that has come. Returns whether it differs from the one before."""
-        new = picture != self._newest
+    @property
+    def new_at(self) -> float:
+        """When the newest picture came."""
+        return self._new_at
+
+    def note(self, picture: Picture, now: float, stamp: float | None = None) -> bool:
+        """Note a picture that has come. Returns whether it differs from the one before, by its stamp if it has one."""
+        new = picture != self._newest if stamp is None else stamp != self._stamp
+        self._stamp = stamp
         if new:
             self._newest, self._new_at = picture, now
         self._came_at = now

@@ -17,6 +17,7 @@ from groundstation.intents.agents import DeclineProposal, EndPermission, PermitP
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import (
     STOP_KEY,
+    DriveByPicture,
     DriveKeyDown,
     DriveKeyUp,
     DrivePad,
@@ -183,6 +184,9 @@ class IntentHandler:
     def _renew_lease(self, intent: RenewLease, now: float) -> None:
         self._operator.renew_lease(now)
 
+    def _watch_picture(self, intent: DriveByPicture, now: float) -> None:
+        self._operator.watch_picture(intent, now)
+
     def _permit(self, intent: PermitProposal, now: float) -> None:
         self._proposals.permit(intent, now)
 
@@ -248,6 +252,7 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     ReportKeyReleases: IntentHandler._set_reports_releases,
     SetKeyGate: IntentHandler._set_gate,
     RenewLease: IntentHandler._renew_lease,
+    DriveByPicture: IntentHandler._watch_picture,
     PermitProposal: IntentHandler._permit,
     EndPermission: IntentHandler._end_permission,
     DeclineProposal: IntentHandler._decline,

@@ -17,6 +17,7 @@ from groundstation.station.intent_handler import Rows
 from groundstation.station.messages.message_detail import MessageInspector
 from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.station.notes.station_notes import StationNotes
+from groundstation.station.services.camera_watch import CameraWatch
 from groundstation.station.views.param_texts import ParamTexts
 from groundstation.station.views.sources import build_view_feed
 from groundstation.vehicles.fleet import Contact
@@ -33,10 +34,11 @@ class ScreenFeed(DoctorFeed):
         self._traffic = MessageTraffic(*parts.ids)
         self._detail = MessageInspector(self._traffic)
         self._charts = ChartRecorder(fleet, self._traffic, links.stats, links.timesync)
+        self._camera = CameraWatch(fleet, parts.commander, links.timesync)
         self.notes = StationNotes(parts.operator, fleet)
         parts.log.listener = self.notes.add_line
         parts.proposals.take_note = lambda now, text: self.notes.add(now, Kind.REQUEST, text)
-        shown = (self._charts, self._detail, self.doctor, self._display)
+        shown = (self._charts, self._detail, self.doctor, self._display, self._camera)
         self.views = build_view_feed(parts, texts.files, *(each.sources for each in shown))
 
     @property
@@ -65,11 +67,17 @@ class ScreenFeed(DoctorFeed):
         autopilot = contact is not None and contact.state.component == received.component
         self._traffic.count(received.message, received.system, received.component, now, known=autopilot)
 
+    def receive(self, contact: Contact, received: Received, now: float) -> None:
+        """Handle a message of a vehicle for its display and its camera."""
+        super().receive(contact, received, now)
+        self._camera.receive(contact, received)
+
     def end_tick(self, now: float) -> None:
         """Count and record what is shown, and examine the chain."""
         self._traffic.tick(now)
         self._charts.tick(now)
         self._detail.tick(now)
+        self._camera.tick(now)
         super().end_tick(now)
 
     def begin_intent(self, intent: AnyIntent, permission: Permission, now: float) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 from groundstation.pictures.freshness import PictureAge, PictureState
 from groundstation.pictures.picture import Picture
 from groundstation.video.decoder import Decoder, DecoderEndedError, Program, running_decoder
-from groundstation.video.ffmpeg_command import Shape
+from groundstation.video.ffmpeg_command import Shape, split_picture
 from groundstation.video.source import SourceError, VideoSource
 from link.transport.backoff import Backoff
 
@@ -38,6 +38,8 @@ class Feed:
         """A recording is at its end."""
         self.starts = 0
         """How often a decoder was started."""
+        self.stamp: float | None = None
+        """s in the newest picture, if the shape says that it has a stamp."""
         self.decoder: Decoder | None = None
         """The one that runs."""
         self._program, self._on_picture, self._still_after = program, on_picture, still_after
@@ -47,6 +49,11 @@ class Feed:
     def state(self) -> PictureState:
         """Return what the newest picture is worth now."""
         return self._age.judge(time.monotonic())
+
+    @property
+    def new_at(self) -> float:
+        """When the newest picture came, by the monotonic clock."""
+        return self._age.new_at
 
     async def run(self, shape: Shape) -> None:
         """Bring pictures of this shape until it is cancelled, or a recording has ended."""
@@ -73,11 +80,11 @@ class Feed:
             while True:
                 async with asyncio.timeout(self._still_after):
                     rgb = await decoder.read()
-                self._take(Picture(shape.width, shape.height, rgb))
+                self._take(*split_picture(shape, rgb))
 
-    def _take(self, picture: Picture) -> None:
-        self.problem = ""
-        if self._age.note(picture, time.monotonic()):
+    def _take(self, picture: Picture, stamp: float | None) -> None:
+        self.problem, self.stamp = "", stamp
+        if self._age.note(picture, time.monotonic(), stamp):
             self._on_picture(picture)
 
 

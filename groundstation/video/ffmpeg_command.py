@@ -10,10 +10,15 @@ from base64 import b64encode
 
 import msgspec
 
+from groundstation.pictures.picture import Picture
 from groundstation.video.source import Kind, VideoSource
+from link.services.video_stamp import FIELDS, ROWS, read_stamp
 
 MAX_PIXELS = 4096 * 2304
 """Pixels of a picture of the source; 8K has four times as many."""
+STAMP_ROWS = 2
+"""Rows of pixels that the stamp has below the picture: half of its fields in each, 2 pixels each at least."""
+MIN_STAMPED_WIDTH = FIELDS // STAMP_ROWS * 2
 PAYLOAD_TYPE = 96
 """Of H.264 in RTP, as rpicam, GStreamer and ffmpeg send it."""
 RTP_WAIT = 50_000
@@ -33,26 +38,54 @@ class Shape(msgspec.Struct, frozen=True):
     height: int
     rate: float
     """Pictures a second at most."""
+    stamped: bool = False
+    """The top rows of the source are a time (link/services/video_stamp.py): STAMP_ROWS below the picture have it."""
 
     @property
     def size(self) -> int:
         """Return the bytes of a picture."""
-        return 3 * self.width * self.height
+        return 3 * self.width * (self.height + (STAMP_ROWS if self.stamped else 0))
 
 
 def build_ffmpeg_command(program: str, source: VideoSource, shape: Shape, *, old: bool = False) -> list[str]:
     """Return the words of the command. `old`: a version before 5.1, which knows -fps_mode as -vsync."""
-    size = f"{shape.width}:{shape.height}"
-    filters = (
-        f"select='isnan(prev_selected_t)+gte(t-prev_selected_t,{0.9 / shape.rate:.4f})',"
-        f"scale={size}:force_original_aspect_ratio=decrease:flags=area,pad={size}:-1:-1,setsar=1"
-    )
+    chosen = f"select='isnan(prev_selected_t)+gte(t-prev_selected_t,{0.9 / shape.rate:.4f})'"
+    filters = f"{chosen},{_split_stamp(shape) if shape.stamped else _scale(shape)}"
     return [
         program, "-nostdin", "-hide_banner", "-loglevel", "error", "-threads", "2",
         "-max_pixels", str(MAX_PIXELS), *_INPUTS[source.kind](source),
         "-map", "0:v:0", "-an", "-sn", "-dn", "-vf", filters, "-vsync" if old else "-fps_mode", "passthrough",
         "-pix_fmt", "rgb24", "-f", "rawvideo", "-flush_packets", "1", "pipe:1",
     ]  # fmt: skip
+
+
+def _scale(shape: Shape) -> str:
+    size = f"{shape.width}:{shape.height}"
+    return f"scale={size}:force_original_aspect_ratio=decrease:flags=area,pad={size}:-1:-1,setsar=1"
+
+
+def _split_stamp(shape: Shape) -> str:
+    """Return the filters that scale the picture and each half of its stamp apart: a narrow row has not all fields."""
+    half = f"format=rgb24,scale={shape.width}:1:flags=area,setsar=1"
+    return (
+        f"split=3[a][b][c];[a]crop=iw:ih-{ROWS}:0:{ROWS},{_scale(shape)},format=rgb24[p];"
+        f"[b]crop=iw/2:{ROWS}:0:0,{half}[l];[c]crop=iw/2:{ROWS}:iw/2:0,{half}[r];"
+        f"[p][l][r]vstack=inputs={1 + STAMP_ROWS}"
+    )
+
+
+def split_picture(shape: Shape, rgb: bytes) -> tuple[Picture, float | None]:
+    """Return the picture in what the decoder wrote, and the s of its stamp; None without one."""
+    picture = Picture(shape.width, shape.height, rgb[: 3 * shape.width * shape.height])
+    if not shape.stamped:
+        return picture, None
+    fields = []
+    for row in range(STAMP_ROWS):
+        start = (shape.height + row) * shape.width
+        for index in range(FIELDS // STAMP_ROWS):
+            x = (2 * index + 1) * STAMP_ROWS * shape.width // (2 * FIELDS)
+            fields.append(rgb[3 * (start + x) + 1])
+    return picture, read_stamp(fields)
 
 
 _AT_ONCE = ("-fflags", "nobuffer", "-flags", "low_delay", "-probesize", "65536", "-analyzeduration", "500000")

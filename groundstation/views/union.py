@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from groundstation.views import (  # noqa: F401 - defines the classes
+    camera,
     charts,
     connect,
     doctor,

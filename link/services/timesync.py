@@ -7,10 +7,15 @@ https://mavlink.io/en/services/timesync.html.
 from __future__ import annotations
 
 import math
+from collections import deque
 
 from dialects.messages import Ping, Timesync
 from link.core import Outgoing, Peer, Received
 
+OFFSETS = 16
+"""Replies of which the quickest tells the clock: two quartz clocks part by 1 ms in that time."""
+RESTARTED = 0.05
+"""s of a change of the clock beyond what both replies allow: it is another clock."""
 MEMORY = 4
 """Requests that may still be answered: at one a second an older reply says nothing about the present."""
 TRIPS = 16
@@ -25,6 +30,11 @@ class TimesyncClient:
         """Newest round trip, s; of several paths that of the first answer to the newest request."""
         self.jitter: float | None = None
         """Smoothed difference between one round trip and the next, s (weights of RFC 3550)."""
+        self.offset: float | None = None
+        """s by which the clock of the vehicle is ahead of ours, by the quickest of the newest replies."""
+        self.offset_error = 0.0
+        """s by which that may be wrong: half of that round trip."""
+        self._offsets: deque[tuple[float, float]] = deque(maxlen=OFFSETS)
         self._system = system
         self._period = period
         self._due = 0.0
@@ -59,6 +69,7 @@ class TimesyncClient:
             return
         self._answered.add((message.ts1, received.peer))
         trip = now - sent_at
+        self._note_offset(message.tc1 / 1e9 - (sent_at + now) / 2, trip / 2)
         self._trips.pop(received.peer, None)
         self._trips[received.peer] = (trip, now)
         if len(self._trips) > TRIPS:
@@ -74,6 +85,12 @@ class TimesyncClient:
         """Return the round trip over one path, s; None if it has not answered for MEMORY requests."""
         trip, at = self._trips.get(peer, (0.0, -math.inf))
         return trip if now - at <= MEMORY * self._period + trip else None
+
+    def _note_offset(self, offset: float, error: float) -> None:
+        if self.offset is not None and abs(offset - self.offset) > error + self.offset_error + RESTARTED:
+            self._offsets.clear()  # another vehicle, or one that has restarted
+        self._offsets.append((error, offset))
+        self.offset_error, self.offset = min(self._offsets)
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""

@@ -29,6 +29,7 @@ VALUES: dict[str, Any] = {
     "request": 5, "motor": 1, "endpoint": "udpin:127.0.0.1:14550", "link": 2, "path": "/logs/1.bin",
     "folder": "/tmp", "name": "1.bin", "screen": "map", "text": "mode HOLD", "file": "/tmp/1.bin", "log": 3,
     "seconds": -1.0, "read_at": 2.0, "messages": 5, "number": 7, "changes": (("FS_ACTION", 2.0),),
+    "drives": True,
 }  # fmt: skip
 """Field -> a value for fields without a default."""
 
@@ -66,6 +67,7 @@ def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
     }
     assert late == stops | {
         "ReleasePad",
+        "DriveByPicture",
         "SetKeyGate",
         "ReportKeyReleases",
         "ReportScreen",
@@ -78,7 +80,7 @@ def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
 def test_what_the_screen_sends_on_its_own_is_no_input() -> None:
     own = {kind.__name__ for kind in KINDS if not kind.is_input}
     names = {"RenewLease", "SetKeyGate", "ReportKeyReleases", "ReportScreen", "Watch", "Quit", "Detach", "PinSeries"}
-    assert own == names
+    assert own == names | {"DriveByPicture"}
 
 
 def test_no_key_has_two_actions_and_drive_keys_differ() -> None:

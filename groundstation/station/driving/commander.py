@@ -22,7 +22,12 @@ from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
 
-QUERY_COMMANDS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
+QUERY_COMMANDS = (
+    Command.REQUEST_MESSAGE,
+    Command.SET_MESSAGE_INTERVAL,
+    Command.VIDEO_START_STREAMING,
+    Command.VIDEO_STOP_STREAMING,
+)
 """Commands that the station sends on its own: their results are not logged."""
 
 STOP_TIMEOUT = 6.0
@@ -181,6 +186,10 @@ class Commander:
     def set_message_interval(self, vehicle: VehicleState, message_id: int, rate: float, now: float) -> None:
         """Request a message at `rate` Hz; the result is not logged."""
         self._send(vehicle, now, Command.SET_MESSAGE_INTERVAL, message_id, round(1e6 / rate))
+
+    def stream_video(self, vehicle: VehicleState, now: float, *, on: bool) -> None:
+        """Start or stop all video streams to us; the result is not logged."""
+        self._send(vehicle, now, Command.VIDEO_START_STREAMING if on else Command.VIDEO_STOP_STREAMING, 0)
 
     def pop_query_outcomes(self) -> list[CommandOutcome]:
         """Return the results of the station's own queries since the last call."""

@@ -17,9 +17,10 @@ from dialects.enums import OperatorFlag as Flag
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence, boot_ms
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents.driving import DriveKeyDown, DrivePad
+from groundstation.intents.driving import DriveByPicture, DriveKeyDown, DrivePad
 from groundstation.intents.session import LEASE_TIMEOUT, QUITTING, REST_LEASE_TIMEOUT, SUSPENDED, SetKeyGate
 from groundstation.snapshot import OperatorView
+from groundstation.station.driving.picture_lock import PictureLock
 from groundstation.station.driving.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor
 from link.protocol.rate import RateMeter
@@ -93,6 +94,7 @@ class OperatorSession:
         self._renewed_at = -math.inf
         self._thawed_at = 0.0
         self._gate = SetKeyGate(open=False, reason="starting")
+        self._picture = PictureLock()
         self._driving_allowed = False
         self._allowed_at = -math.inf
         self._last_input_at: float | None = None
@@ -128,7 +130,7 @@ class OperatorSession:
     def change_screen(self, gate: SetKeyGate, now: float, *, reports_releases: bool) -> None:
         """Take the keys from one screen and give them to another, or to none. Nothing drives before it renews."""
         self._live = False
-        self._gate = gate
+        self._gate, self._picture = gate, PictureLock()
         self.sticks.change_keyboard(now, reports_releases=reports_releases)
 
     @property
@@ -143,13 +145,19 @@ class OperatorSession:
             self.sticks.block(now)
             self.sticks.require_quiet()
 
+    def watch_picture(self, intent: DriveByPicture, now: float) -> None:
+        """Note whether the driver drives by the picture, and when the newest one was taken."""
+        self._picture.handle(intent, now)
+
     def blocked_reason(self, now: float) -> str | None:
         """Return why the screen keeps keys from driving; None when it does not."""
-        return self._find_freeze(now) or (None if self._gate.open else self._gate_reason)
+        shut = None if self._gate.open else self._gate_reason
+        return self._find_freeze(now) or shut or self._picture.refusal(now)
 
     def permission_blocked_reason(self, now: float) -> str | None:
         """Return why the screen keeps its key from permitting what agents propose; None when it does not."""
-        return self._find_freeze(now) or (None if self._gate.open or self._gate.permits else self._gate_reason)
+        shut = None if self._gate.open or self._gate.permits else self._gate_reason
+        return self._find_freeze(now) or shut or self._picture.refusal(now)
 
     @property
     def _gate_reason(self) -> str:
@@ -229,6 +237,7 @@ class OperatorSession:
             self._allowed_at + NEUTRAL_LEAD + LATER,
             self._thawed_at + LATER,
             self._lease_end(now) + LATER,
+            self._picture.ends_at,
         )
         return min((at for at in ends if at is not None and at > now), default=None)
 

@@ -11,7 +11,9 @@ from textual.containers import Vertical
 
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.display.wrap import plain
-from groundstation.ui.drive.panes import PANES, Pane, PaneInput
+from groundstation.ui.drive.camera_feed import CameraFeed
+from groundstation.ui.drive.instruments.camera import CameraPicture
+from groundstation.ui.drive.panes import CAMERA, PANES, Pane, PaneInput
 from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.views.base import View, ViewRequest
@@ -26,11 +28,19 @@ EARLY = 0.02
 class PaneFrame(Vertical, can_focus=False):
     """Shows the pane of one index. The zoom of each pane is kept while another one is shown."""
 
-    def __init__(self, index: int, now: DisplayState, plans: PlanCopies, *, id: str) -> None:  # noqa: A002
+    def __init__(
+        self,
+        index: int,
+        now: DisplayState,
+        plans: PlanCopies,
+        camera: CameraFeed,
+        *,
+        id: str,  # noqa: A002
+    ) -> None:
         super().__init__(id=id)
         self._index = index
         self._plans = plans
-        self._given = PaneInput(now, plans=plans)
+        self._given = PaneInput(now, plans=plans, camera=camera)
         self._zooms = dict.fromkeys((pane.id for pane in PANES), 0)
         self._built: dict[str, Instrument[Any]] = {}
         self._due = 0.0
@@ -54,6 +64,21 @@ class PaneFrame(Vertical, can_focus=False):
     def requests(self) -> tuple[ViewRequest, ...]:
         """Views that it needs."""
         return (*self.pane.requests, *(self._plans.requests if self.pane.wants_plans else ()))
+
+    @property
+    def index(self) -> int:
+        """Which of PANES is shown."""
+        return self._index
+
+    @property
+    def camera_pixels(self) -> tuple[int, int] | None:
+        """Size of the camera's picture; None while another pane is shown."""
+        shown = self._built.get(PANES[CAMERA].id)
+        return shown.pixels if self._index == CAMERA and isinstance(shown, CameraPicture) else None
+
+    def redraw(self) -> None:
+        """Draw what has changed at once."""
+        self._draw()
 
     def turn_on(self) -> None:
         """Show the pane after this one."""

@@ -14,6 +14,8 @@ import msgspec
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.drive.camera_feed import CameraFeed, CameraValue
+from groundstation.ui.drive.instruments.camera import CameraPicture
 from groundstation.ui.drive.instruments.rates import RatesPanel
 from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
 from groundstation.ui.log.panel import LogPanel
@@ -23,8 +25,9 @@ from groundstation.ui.map.draw.plan_map_value import PlanMapValue
 from groundstation.ui.map.pane import build_pane
 from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.ui.widgets.chart import SPAN, Chart, ChartValue, Series
-from groundstation.ui.widgets.instrument import Instrument
+from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 from groundstation.views.base import View, ViewRequest
+from groundstation.views.camera import CameraRequest
 from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, TrackView
 from groundstation.views.messages import MessagesPage, MessagesRequest
 
@@ -47,6 +50,8 @@ class PaneInput(msgspec.Struct, frozen=True):
     zoom: int = 0
     plans: PlanCopies | None = None
     """Plans of the vehicle, for a pane that wants them."""
+    camera: CameraFeed | None = None
+    """Its camera, for the pane that shows it."""
 
     def view(self, kind: type[Kind]) -> Kind | None:
         """Return the newest view of a kind."""
@@ -106,6 +111,12 @@ def speed_samples(given: PaneInput) -> ChartValue:
     return ChartValue(samples, SPAN * 0.5**given.zoom)
 
 
+def _camera(given: PaneInput) -> CameraValue:
+    vehicle = given.now.snapshot.vehicle
+    age = None if vehicle is None else finite_or_none(vehicle.command_age)
+    return CameraValue() if given.camera is None else given.camera.value(ascii=given.now.ascii, command_age=age)
+
+
 def _log(given: PaneInput) -> tuple[LogLine, ...]:
     return given.now.snapshot.texts
 
@@ -120,8 +131,10 @@ PANES: tuple[Pane, ...] = (
     _pane("charts", SPEED_CHART, speed_samples, SpeedRequest(), zooms=(0, 3)),
     _pane("messages", RatesPanel, lambda given: given.view(MessagesPage), MessagesRequest(count=ROWS)),
     _pane("log", LogPanel, _log),
+    _pane("camera", CameraPicture, _camera, CameraRequest(), period=FAST),
 )
 """In the order in which the key shows them; the first one is shown at the start."""
 
+CAMERA = next(index for index, pane in enumerate(PANES) if pane.id == "camera")
 SECOND = next(index for index, pane in enumerate(PANES) if pane.id == "messages")
 """The second pane at the start, in terminals that have room for two: the speed chart is there anyway."""

@@ -11,11 +11,13 @@ from textual.containers import Horizontal, Vertical
 from textual.css.scalar import Scalar
 from textual.widgets import Static
 
+from groundstation.intents.driving import DriveByPicture
 from groundstation.intents.session import StartSimulator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState
+from groundstation.ui.drive.camera_feed import CameraFeed
 from groundstation.ui.drive.instrument_table import INSTRUMENTS
 from groundstation.ui.drive.instruments.stops import StopsPanel
 from groundstation.ui.drive.instruments.strip import DrivingStrip, StripValue
@@ -29,11 +31,12 @@ from groundstation.ui.drive.layout import (
     layout_classes,
 )
 from groundstation.ui.drive.pane import CLOSER, WIDER, PaneFrame
-from groundstation.ui.drive.panes import SECOND, SPEED_CHART, PaneInput, speed_samples
+from groundstation.ui.drive.panes import CAMERA, SECOND, SPEED_CHART, PaneInput, speed_samples
 from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.chart import ChartValue
 from groundstation.views.base import View, ViewRequest
+from groundstation.views.camera import CameraView
 from groundstation.views.drive import SpeedRequest, SpeedView
 
 BORDERS = 2
@@ -55,12 +58,17 @@ class DriveScreen(ConsoleScreen):
         self._too_small_text = ""
         self._strip = DrivingStrip(StripValue.from_state(self._state), id="strip")
         self._plans = PlanCopies()
+        self._camera = CameraFeed(self._show_picture)
+        self._pane_before: int | None = None
+        """The pane that the full picture replaces; None while it is not shown."""
         self._panes = (
-            PaneFrame(0, self._state, self._plans, id="pane"),
-            PaneFrame(SECOND, self._state, self._plans, id="pane2"),
+            PaneFrame(0, self._state, self._plans, self._camera, id="pane"),
+            PaneFrame(SECOND, self._state, self._plans, self._camera, id="pane2"),
         )
         self._chart = SPEED_CHART(ChartValue(), id="speeds")
         self._views: dict[type[View], View] = {}
+        self._reported = False
+        """The station was told that the driver drives by the picture."""
         # Before the first style update, which would have to be made again.
         self.add_class(*(name for name, applies in _conditions(self._state).items() if applies), update=False)
 
@@ -158,6 +166,7 @@ class DriveScreen(ConsoleScreen):
         """Id of an action -> what it does."""
         return {
             "view.pane": self._show_next_pane,
+            "view.picture": self._switch_picture,
             "view.closer": lambda: self._panes[0].zoom(CLOSER),
             "view.wider": lambda: self._panes[0].zoom(WIDER),
         }
@@ -183,9 +192,48 @@ class DriveScreen(ConsoleScreen):
 
     @property
     def _shown_panes(self) -> tuple[PaneFrame, ...]:
-        return self._panes if self.has_class("-large") else self._panes[:1]
+        both = self.has_class("-large") and self._pane_before is None
+        return self._panes if both else self._panes[:1]
+
+    def _switch_picture(self) -> None:
+        """Drive by the picture of the camera, or by eye again."""
+        before, self._pane_before = self._pane_before, self._panes[0].index if self._pane_before is None else None
+        self._panes[0].turn_to(CAMERA if before is None else before)
+        self.update_classes({"-picture": self._pane_before is not None})
+        self._report_picture()
+        self._show_panes()
+
+    def _report_picture(self) -> None:
+        """Tell the station what the driver sees: it decides whether keys drive."""
+        drives = self._pane_before is not None
+        if drives or self._reported:
+            self._reported = drives
+            self.context.send(DriveByPicture(drives, self._camera.taken_at))
+
+    def _show_picture(self) -> None:
+        """Show a new picture."""
+        if self._pane_before is not None:
+            self._report_picture()
+        shown = [(pane, size) for pane in self._shown_panes if (size := pane.camera_pixels) is not None]
+        if shown and self._camera.is_draw_due(sum(width * height // 2 for _, (width, height) in shown)):
+            for pane, _ in shown:
+                pane.redraw()
+
+    def _follow_camera(self) -> None:
+        """Let the decoder run while a pane shows the camera."""
+        sizes = [] if self._small else [size for pane in self._shown_panes if (size := pane.camera_pixels) is not None]
+        view, vehicle = self._views.get(CameraView), self.snapshot.vehicle
+        known = isinstance(view, CameraView) and vehicle is not None and view.system == vehicle.system
+        self._camera.update(view if known and sizes else None, sizes[0] if sizes else (0, 0))  # type: ignore[arg-type]
+
+    def leave(self) -> None:
+        """End the decoder: another screen is on top."""
+        self._camera.stop()
 
     def _show_next_pane(self) -> None:
+        if self._pane_before is not None:
+            self._switch_picture()
+            return
         for pane in self._panes:
             pane.turn_on()
         self._show_panes()
@@ -208,6 +256,9 @@ class DriveScreen(ConsoleScreen):
             self._fit_stops()
         if self.snapshot.vehicle is not None and not self._small:
             self._show_panes()
+        self._follow_camera()
+        if self._pane_before is not None:
+            self._report_picture()
 
     def _fit_stops(self) -> None:
         """Give the panel of the stop bounds no more rows than it has lines."""

@@ -8,12 +8,13 @@ import pytest
 
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
-from groundstation.intents.driving import DriveKeyDown, Stop
+from groundstation.intents.driving import DriveByPicture, DriveKeyDown, Stop
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.watch import Watch
 from groundstation.ui.drive.pane import PaneFrame
 from groundstation.ui.drive.panes import PANES, PaneInput
 from groundstation.views.base import ViewRequest
+from groundstation.views.camera import CameraRequest, CameraView
 from groundstation.views.drive import SpeedRequest, TrackRequest
 from groundstation.views.messages import MessagesRequest
 from groundstation.views.plan import PlanRequest
@@ -44,7 +45,7 @@ async def test_the_key_shows_the_next_pane_and_each_requests_its_needs() -> None
             await until(partial(requests_are, screen, expected))
             shown.append(frame.pane.id)
             await screen.press("v")
-        assert shown == ["track", "map", "charts", "messages", "log", "track"]
+        assert shown == ["track", "map", "charts", "messages", "log", "camera", "track"]
 
 
 async def test_a_pane_draws_the_view_that_arrives() -> None:
@@ -71,6 +72,32 @@ async def test_the_keys_of_the_pane_neither_stop_nor_close_the_gate(key: str) ->
         assert screen.station.of(Stop), "another key does stop"
 
 
+async def test_the_picture_fills_drive_and_the_station_is_told() -> None:
+    async with console((120, 40)) as screen:
+        screen.app.gate.update(armed=True, driving=True)
+        await screen.press("i", "f")
+        assert screen.station.of(DriveByPicture) == [DriveByPicture(drives=True)] * len(
+            screen.station.of(DriveByPicture)
+        )
+        assert screen.station.of(SetKeyGate)[-1].open, "the station decides"
+        assert not screen.station.of(Stop)
+        await screen.show(snapshot())
+        await until(lambda: CameraRequest() in watched(screen))
+        assert "NO PICTURE YET" in screen.text
+        assert "motion" not in screen.text
+        screen.station.offer_view(CameraView(1, problem="the vehicle announces no camera"))
+        await screen.show(snapshot())
+        await screen.show(snapshot())
+        await screen.press("f")
+        assert screen.station.of(DriveByPicture)[-1] == DriveByPicture(drives=False)
+        await screen.show(snapshot())
+        assert "motion" in screen.text
+        count = len(screen.station.of(DriveByPicture))
+        await screen.press("v")
+        await screen.show(snapshot())
+        assert len(screen.station.of(DriveByPicture)) == count
+
+
 @pytest.mark.parametrize("keymap", KEYMAPS)
 def test_only_keys_of_speed_view_and_mute_stop_nothing(keymap: str) -> None:
     keys = Keymap(keymap, KEYMAPS[keymap])
@@ -95,7 +122,7 @@ async def test_zoom_is_kept_for_each_pane() -> None:
         assert "15 s" in screen.text
         await screen.press("pageup", "pageup", "pageup")
         assert "7.5 s" in screen.text, "closer it does not go"
-        await screen.press("v", "v", "v", "pagedown")
+        await screen.press("v", "v", "v", "v", "pagedown")
         assert screen.text == whole
 
 

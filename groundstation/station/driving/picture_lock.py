@@ -1,0 +1,38 @@
+"""The picture lock: a driver who drives by the picture of a camera drives only while that picture is fresh.
+
+The screen says when the newest picture was taken, on the clock that both processes have. So a screen, a decoder, a
+network or a camera that stands still ends in the same way: nothing newer is said.
+"""
+
+from __future__ import annotations
+
+from groundstation.intents.driving import DriveByPicture
+
+OLDEST = 0.5
+"""s: an older picture shows where the vehicle was; as long as MAN_TIMEOUT of our vehicle."""
+AHEAD = 0.2
+"""s by which a time may be ahead of us: the error of both clocks. One that is farther ahead is no time."""
+REASON = "the picture is old"
+
+
+class PictureLock:
+    """Whether the picture keeps keys from driving."""
+
+    def __init__(self) -> None:
+        self._drives = False
+        self._until = 0.0
+
+    def handle(self, intent: DriveByPicture, now: float) -> None:
+        """Note what the screen says of its newest picture."""
+        self._drives = intent.drives
+        plausible = intent.taken_at <= now + AHEAD
+        self._until = min(intent.taken_at, now) + OLDEST if plausible else 0.0
+
+    def refusal(self, now: float) -> str | None:
+        """Return why keys do not drive, or None."""
+        return REASON if self._drives and not now < self._until else None
+
+    @property
+    def ends_at(self) -> float | None:
+        """When keys stop driving unless a newer picture follows; None: they do not."""
+        return self._until if self._drives else None
