@@ -158,10 +158,8 @@ def test_ci_types_the_lines_of_the_readme_and_runs_the_rest() -> None:
     assert README_COMMAND in (ROOT / "README.md").read_text()
     lines = (ROOT / ".ci/run").read_text().splitlines()
     assert any(line.startswith("python3 -m tests.stranger --no-skips ") for line in lines)
-    [command] = [line for line in lines if ".venv/bin/pytest" in line]
-    rest, again, failed = command.split(" || ")
-    assert rest == ".venv/bin/pytest -n 8 --dist loadgroup --suite rest"
-    assert (again, failed) == (".venv/bin/python .ci/again", "code=1")
+    assert ".venv/bin/pytest -n 6 --dist loadgroup --suite rest || rest=1" in lines
+    assert "((rest == 0)) || .venv/bin/python .ci/again || code=1" in lines
 
 
 def test_make_runs_the_test_command_of_the_readme() -> None:
