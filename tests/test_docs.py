@@ -171,7 +171,7 @@ def test_make_runs_the_test_command_of_the_readme() -> None:
 
 def test_every_recipe_of_contributing_is_followed_by_a_test() -> None:
     tests = "".join(path.read_text() for path in (ROOT / "tests/recipes").glob("test_*.py"))
-    assert len(documented_counts()) == 12
+    assert len(documented_counts()) == 13
     assert [name for name in documented_counts() if f'check_recipe("{name}")' not in tests] == []
 
 

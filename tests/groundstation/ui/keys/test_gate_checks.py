@@ -52,7 +52,7 @@ def test_the_first_in_the_table_is_the_one_that_is_shown() -> None:
         assert closure.reason == WRONG[first][1]
 
 
-def test_a_proposal_is_permitted_on_another_screen_if_all_is_well() -> None:
+def test_a_proposal_is_permitted_on_another_screen() -> None:
     other = GateClosure(OTHER_SCREEN.reason, GateLevel.STOPS, frozenset("p"))
     assert find_closure(replace(FINE, other_screen=other)) == other
     for name, (value, _) in WRONG.items():
