@@ -53,7 +53,7 @@ assert sent == [(2.0, 1.0)], sent
 def test_a_verb(tree: Tree) -> None:
     tree.write("groundstation/verbs/control/horn.py", MODULE)
     table = "groundstation/verbs/control/table.py"
-    tree.replace(table, "import arm, control, drive, mode,", "import arm, control, drive, horn, mode,")
+    tree.replace(table, "import arm, control, drive, flight, mode,", "import arm, control, drive, flight, horn, mode,")
     tree.insert_after(table, 'drive = LazyModule("control.drive")', '    horn = LazyModule("control.horn")')
     tree.insert_before(table, '    "motor": Verb(', ROW)
     tree.check_recipe("a verb of the command line")

@@ -40,8 +40,8 @@ class PathRouting:
             return outgoing
         paths = contact.state.paths
         live = paths.live(now)
-        if len(live) < 2 or paths.apart:
-            return outgoing
+        if len(live) < 2 or paths.apart or contact.state.senders.differ(now):
+            return outgoing  # two vehicles, or perhaps two: each must get it
         return Outgoing(message, paths.questions.choose(live, now).peer)
 
     @staticmethod

@@ -198,8 +198,8 @@ def _where(received: Received) -> str:
     return f"{where} (numbering {received.numbering})" if received.clash else where
 
 
-def _state(sender: ReportingSender) -> tuple[bool, int]:
-    return sender.armed, sender.custom_mode
+def _state(sender: ReportingSender) -> tuple[bool, int, bool]:
+    return sender.armed, sender.custom_mode, sender.locked
 
 
 def _is_same(sender: ReportingSender, other: ReportingSender) -> bool:

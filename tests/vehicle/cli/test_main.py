@@ -161,7 +161,7 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         ("--sim --log-file /no/such/folder/log", "log file /no/such/folder/log: No such file or directory"),
         ("--simm", "unknown option --simm; did you mean --sim?"),
         ("--sim --parm SPEED_MAX=3", "unknown option --parm; did you mean --param?"),
-        ("--sim --zebra=3", "unknown option --zebra ("),
+        ("--sim --xyzzy=3", "unknown option --xyzzy ("),
         ("--sim --home", "expected one argument"),
     ],
 )
