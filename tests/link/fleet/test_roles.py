@@ -22,8 +22,16 @@ MORE = {
     rover.MAV_CMD_DO_FLIGHTTERMINATION: SigningRole.DRIVE,  # ours is open to anyone: what does not stop does nothing
     rover.MAV_CMD_SET_MESSAGE_INTERVAL: SigningRole.DRIVE,  # of the HEARTBEAT; ours changes it for the sender alone
     rover.MAV_CMD_DO_FENCE_ENABLE: SigningRole.SET_UP,  # off; the row of ours names what on needs
-}
-"""Commands of our vehicle that need more here for a value of parameter 1, because of other autopilots."""
+    **dict.fromkeys(
+        (
+            rover.MAV_CMD_VIDEO_START_STREAMING, rover.MAV_CMD_VIDEO_STOP_STREAMING,
+            rover.MAV_CMD_REQUEST_CAMERA_INFORMATION, rover.MAV_CMD_REQUEST_VIDEO_STREAM_INFORMATION,
+            rover.MAV_CMD_REQUEST_VIDEO_STREAM_STATUS,
+        ),
+        SigningRole.DRIVE,  # a camera of another make has one stream for all; ours sends one to each address
+    ),
+}  # fmt: skip
+"""Commands of our vehicle that need more here, some for a value of parameter 1, because of other autopilots."""
 
 
 def read(message: Message) -> Frame:

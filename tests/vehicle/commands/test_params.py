@@ -77,7 +77,7 @@ def test_on_a_slow_link_the_list_leaves_room() -> None:
     bench.wait(0.5)
     size = len(bench.all(m.ParamValue)) * 37
     assert 0.2 * 5760 * 0.5 < size < 0.3 * 5760 * 0.5 + 300
-    bench.wait(2.0)
+    bench.wait(len(NAMES) * 37 / (0.2 * 5760))
     assert [value.param_id for value in bench.all(m.ParamValue)] == NAMES
 
 

@@ -197,10 +197,10 @@ def test_a_key_without_a_release_brings_the_timers_back(gate: KeyGate, station: 
 
 
 def test_what_is_driven_decides_whether_a_strange_key_stops(gate: KeyGate, station: Recorder) -> None:
-    gate.handle_keys([press("b")])
+    gate.handle_keys([press("e")])
     assert station.intents == []
     gate.update(armed=True, driving=True)
-    gate.handle_keys([press("b")])
+    gate.handle_keys([press("e")])
     assert station.intents == [Stop()]
 
 
