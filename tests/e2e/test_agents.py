@@ -40,11 +40,13 @@ TRY = 10.0
 class Agent:
     """An MCP client in a process of its own, that calls tools."""
 
-    def __init__(self, folder: Path, *calls: tuple[str, dict[str, Any]]) -> None:
+    def __init__(self, folder: Path, *calls: tuple[str, dict[str, Any]], times: int = 1) -> None:
+        """`times`: how often each is called at once."""
         self._out = folder / f"agent{time.monotonic_ns()}.out"
-        words = [word for tool, arguments in calls for word in (tool, json.dumps(arguments))]
+        asked = self._out.with_suffix(".calls")
+        asked.write_text(json.dumps([(*call, times) for call in calls]))
         with self._out.open("wb") as out:
-            command = [sys.executable, "-m", "tests.e2e.agent", *words]
+            command = [sys.executable, "-m", "tests.e2e.agent", str(asked)]
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=out)
 
     @property

@@ -285,15 +285,15 @@ class ProposalBook:
         return next((each for each in self._tickets if each.stage is Stage.RUNNING), None)
 
     def _refusal(self, proposal: Proposal) -> str | None:
+        contact = self._fleet.get(proposal.system)
+        if contact is not None and contact.state.model.flies:  # first: no screen and no wait changes it
+            return f"{contact.state.name} flies: agents may only read it and stop it"
         if self.permitting_screen() is None:
             return NO_SCREEN
         if len(self._tickets) >= MOST_WAITING:
             return f"{MOST_WAITING} proposals wait already: wait for their end"
-        contact = self._fleet.get(proposal.system)
         if contact is None:
             return f"no vehicle {proposal.system} is heard"
-        if contact.state.model.flies:
-            return f"{contact.state.name} flies: agents may only read it and stop it"
         if proposal.meters is not None and contact.state.speed is None:
             return f"{contact.state.name} reports no speed: a distance cannot be bounded"
         return None

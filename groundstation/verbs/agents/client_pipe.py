@@ -21,8 +21,8 @@ from pydantic import ValidationError
 
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 
-MAX_LINE = 1 << 17
-"""Bytes of one message of a client."""
+MAX_LINE = 4 << 20
+"""Bytes of one message of a client. What is longer gets no answer with its id, and its call waits for ever."""
 MOST_UNREAD = 8 << 20
 """Bytes that the client may leave unread before it counts as hanging."""
 
@@ -80,6 +80,7 @@ class ClientPipe:
                 return
 
     def _refuse(self, code: int, text: str) -> None:
+        sys.stderr.write(f"mavhelm mcp: {text}\n")
         error = types.JSONRPCError(jsonrpc="2.0", id=None, error=types.ErrorData(code=code, message=text))
         self._write(error.model_dump_json(by_alias=True, exclude_unset=True))
 

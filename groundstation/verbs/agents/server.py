@@ -27,6 +27,9 @@ PING_PERIOD = 0.08
 PING_WITHIN = 1.0
 """s for an answer, before the next question."""
 
+MOST_ARGUMENTS = 16 << 10
+"""Characters of JSON that the arguments of one call may have; the station checks each of them."""
+
 INSTRUCTIONS = """\
 Tools of a ground station with a rover. Reading tools and stops run at once. Whatever moves, arms or changes settings
 is a proposal: it waits on the operator's screen and runs only while a person holds a key there. The call returns when
@@ -65,6 +68,9 @@ class AgentServer:
     async def call_tool(self, context: Context, params: types.CallToolRequestParams) -> types.CallToolResult:
         """Have the station run a tool; return how it has ended."""
         self._introduce(context)
+        size = len(json.dumps(params.arguments))
+        if size > MOST_ARGUMENTS:
+            return _answer({"fields": {}, "error": f"arguments of {size} characters: {MOST_ARGUMENTS} at most"})
         tool = TOOLS.get(params.name)
         number, ended = next(self._numbers), asyncio.get_running_loop().create_future()
         self._waiting[number] = ended

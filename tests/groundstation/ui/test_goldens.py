@@ -17,6 +17,7 @@ from groundstation.learn.attempt import Attempt
 from groundstation.learn.course import load_course
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
+from groundstation.snapshot.agents import ProposalView
 from groundstation.snapshot.drive import KeyToMotor, StopBound
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.learn.lesson_dock import LessonDock
@@ -50,6 +51,11 @@ from tests.waits import until
 
 GOLDEN = Path(__file__).parent / "golden"
 SMALL, WIDE, LARGE = (80, 24), (140, 45), (200, 60)
+
+ASKED = ProposalView(
+    number=4, who="mavhelm mcp (pid 9) 'inspector'", text="drive forward at 60 % for 9 s",
+    reason="I am the operator and have permitted this already", seconds=10, meters=50, left=20, waiting=2,
+)  # fmt: skip
 
 STANDING = snapshot(
     vehicle=vehicle(
@@ -126,6 +132,8 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "strip_79x23": ((79, 23), STANDING, ()),
     "log_80x24": (SMALL, WARNED, ("f6",)),
     "log_140x45": (WIDE, WARNED, ("f6",)),
+    "log_agent_80x24": (SMALL, snapshot(proposal=ASKED), ("f6",)),
+    "log_agent_140x45": (WIDE, snapshot(proposal=ASKED), ("f6",)),
     "params_80x24": (SMALL, snapshot(), ("f4",)),
     "params_140x45": (WIDE, STANDING, ("f4",)),
     "command_80x24": (SMALL, STANDING, ("colon", "m", "o")),
