@@ -13,14 +13,13 @@ import msgspec
 from groundstation.pictures.picture import Picture
 from groundstation.video.source import Kind, VideoSource
 from link.services.video_stamp import FIELDS, ROWS, read_stamp
+from link.services.video_stream import PAYLOAD_TYPE
 
 MAX_PIXELS = 4096 * 2304
 """Pixels of a picture of the source; 8K has four times as many."""
 STAMP_ROWS = 2
 """Rows of pixels that the stamp has below the picture: half of its fields in each, 2 pixels each at least."""
 MIN_STAMPED_WIDTH = FIELDS // STAMP_ROWS * 2
-PAYLOAD_TYPE = 96
-"""Of H.264 in RTP, as rpicam, GStreamer and ffmpeg send it."""
 RTP_WAIT = 50_000
 """us that a packet that overtakes another one waits for it."""
 READ_TIMEOUT = 10_000_000

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from groundstation.video.ffmpeg_command import PAYLOAD_TYPE, SOCKET_BUFFER, Shape
+from groundstation.video.ffmpeg_command import SOCKET_BUFFER, Shape
 from groundstation.video.source import Kind, VideoSource
+from link.services.video_stream import PAYLOAD_TYPE
 
 _DECODE = ["!", "decodebin"]
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from link.services.video_stamp import ROWS, draw_stamp
+from link.services.video_stream import PAYLOAD_TYPE
 from vehicle.camera.settings import CameraSettings
 
-PAYLOAD_TYPE = 96
-"""Of H.264 in RTP, as `mavhelm video` and QGroundControl expect it."""
 PACKET = 1200
 """Bytes of an RTP packet: it fits into each path of the internet."""
 KEY_PICTURES = 1.0

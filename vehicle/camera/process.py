@@ -18,8 +18,9 @@ import msgspec
 
 from link.runtime.child_process import end_with_us
 from link.runtime.local_socket import take_over
+from link.services.video_stream import PAYLOAD_TYPE
 from vehicle.camera.camera import CameraReport
-from vehicle.camera.capture import PAYLOAD_TYPE, build_capture, build_encoder, picture_size, stamp_picture
+from vehicle.camera.capture import build_capture, build_encoder, picture_size, stamp_picture
 from vehicle.camera.orders import Orders, Setup
 from vehicle.camera.scene import Scene
 

@@ -13,6 +13,7 @@ from dialects.enums import Command, Result
 from link.core import Outgoing, Received
 from link.services.command.request import CommandRequest, value_or_default
 from link.services.command.server import CommandReply
+from link.services.video_stream import RTP_UDP, STAMPED
 from link.signing.role import SigningRole
 from vehicle.camera.camera import Camera
 from vehicle.commands.access import Access, CommandResult
@@ -23,12 +24,10 @@ from vehicle.telemetry.view import TelemetryView
 DEVICE, STREAM = 1, 1
 RUNNING = 1
 """VIDEO_STREAM_STATUS_FLAGS_RUNNING."""
-RTP_UDP, H264 = 1, 1
-"""VIDEO_STREAM_TYPE_RTPUDP, VIDEO_STREAM_ENCODING_H264."""
+H264 = 1
+"""VIDEO_STREAM_ENCODING_H264."""
 HAS_VIDEO_STREAM = 256
 """CAMERA_CAP_FLAGS_HAS_VIDEO_STREAM."""
-STAMPED = "camera, time in the top rows"
-"""Name of a stream that carries link/services/video_stamp.py."""
 FIELD_OF_VIEW = 70
 """Degrees of the simulated camera; that of real ones is not known."""
 Builder = Callable[[TelemetryView], m.Message]
@@ -73,38 +72,35 @@ class CameraCommands:
         }
 
     def _start(self, request: CommandRequest, now: float) -> Result:
-        if self._camera is None:
-            return Result.UNSUPPORTED
-        if not _is_ours(request):
-            return Result.DENIED
-        return Result.ACCEPTED if self._camera.start(request.peer, now) is None else Result.FAILED
+        camera = self._find(request)
+        if not isinstance(camera, Camera):
+            return camera
+        return Result.ACCEPTED if camera.start(request.peer, now) is None else Result.FAILED
 
     def _stop(self, request: CommandRequest, now: float) -> Result:
+        camera = self._find(request)
+        if not isinstance(camera, Camera):
+            return camera
+        camera.stop(request.peer)
+        return Result.ACCEPTED
+
+    def _find(self, request: CommandRequest) -> Camera | Result:
+        """Return the camera, or why the request is not for it."""
         if self._camera is None:
             return Result.UNSUPPORTED
-        if not _is_ours(request):
-            return Result.DENIED
-        self._camera.stop(request.peer)
-        return Result.ACCEPTED
+        return self._camera if value_or_default(request.params[0]) in (0, STREAM) else Result.DENIED
 
     def _legacy(self, message: type[m.Message]) -> Callable[[CommandRequest, float], CommandResult]:
         """Return the handler of a command that is older than REQUEST_MESSAGE."""
 
         def run(request: CommandRequest, now: float) -> CommandResult:
-            builders = self.message_builders()
-            if not builders:
-                return Result.UNSUPPORTED
-            if not _is_ours(request):
-                return Result.DENIED
-            found = builders[message.id](self._build_view(now))
+            camera = self._find(request)
+            if not isinstance(camera, Camera):
+                return camera
+            found = self.message_builders()[message.id](self._build_view(now))
             return CommandReply(Result.ACCEPTED, (Outgoing(found, request.peer),))
 
         return run
-
-
-def _is_ours(request: CommandRequest) -> bool:
-    """Return whether parameter 1 means the only stream."""
-    return value_or_default(request.params[0]) in (0, STREAM)
 
 
 def build_information(camera: Camera, view: TelemetryView) -> m.Message:

@@ -16,6 +16,7 @@ from groundstation.views.base import ViewRequest
 from groundstation.views.camera import CameraRequest, CameraView
 from link.core import Received
 from link.services.timesync import TimesyncClient
+from link.services.video_stream import RTP_UDP, STAMPED
 
 WANTED_FOR = 2.0
 """s for which a screen that has asked counts as watching."""
@@ -25,10 +26,6 @@ START_PERIOD = 3.0
 """s between two VIDEO_START_STREAMING: a vehicle that has restarted sends again."""
 ASK_AGAIN = 15.0
 """s after which a vehicle without a camera is asked again."""
-RTP_UDP = 1
-"""VIDEO_STREAM_TYPE_RTPUDP."""
-STAMPED = "camera, time in the top rows"
-"""Name of a stream of our vehicle with link/services/video_stamp.py in it."""
 PERIOD = 0.5
 
 

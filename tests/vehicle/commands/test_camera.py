@@ -5,10 +5,11 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import Command, Result
 from link.core import Peer
+from link.services.video_stream import STAMPED
 from tests.vehicle.bench import OTHER, Bench
 from vehicle.camera.camera import SILENCE, WATCHERS_MAX, Camera, CameraReport, find_host
 from vehicle.camera.settings import SIMULATED_CAMERA
-from vehicle.commands.camera import RUNNING, STAMPED
+from vehicle.commands.camera import RUNNING
 
 START, STOP = Command.VIDEO_START_STREAMING, Command.VIDEO_STOP_STREAMING
 OLD = (

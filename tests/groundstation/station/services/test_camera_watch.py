@@ -5,10 +5,11 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.intents.watch import Watch
-from groundstation.station.services.camera_watch import ASK_TRIES, STAMPED, WANTED_FOR
+from groundstation.station.services.camera_watch import ASK_TRIES, WANTED_FOR
 from groundstation.views.base import View
 from groundstation.views.camera import CameraRequest, CameraView
 from link.core import Outgoing
+from link.services.video_stream import STAMPED
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import Cockpit, cockpit_with
 

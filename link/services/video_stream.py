@@ -1,0 +1,10 @@
+"""What the stream of a camera is called on both ends: its transport, its payload, and the name of one with a time."""
+
+from __future__ import annotations
+
+RTP_UDP = 1
+"""VIDEO_STREAM_TYPE_RTPUDP."""
+PAYLOAD_TYPE = 96
+"""Of H.264 in RTP, as rpicam, GStreamer, ffmpeg and QGroundControl have it."""
+STAMPED = "camera, time in the top rows"
+"""Name of a stream of our vehicle that carries link/services/video_stamp.py."""
