@@ -34,7 +34,7 @@ from vehicle.sensors.encoders import Encoders
 from vehicle.sensors.gps import GpsdClient
 from vehicle.sensors.pi_health import PiHealth
 from vehicle.sensors.power import PowerMonitor
-from vehicle.sensors.ranging.sources import RangeSource, open_lidar, open_rangefinder
+from vehicle.sensors.ranging.sources import RangeSensor, open_lidar, open_rangefinder
 from vehicle.storage.dir_check import write_problem
 from vehicle.storage.recorder import LOGS
 
@@ -247,7 +247,7 @@ def _encoders(config: Config) -> str:
     return f"{len(config.sensors.encoders.wheels)} wheels; turn one by hand while the vehicle runs to see it count"
 
 
-def _range(source: RangeSource) -> str:
+def _range(source: RangeSensor) -> str:
     """Wait for a measurement."""
     try:
         end = time.monotonic() + RANGE_WAIT

@@ -22,7 +22,7 @@ from vehicle.sensors.power import MAX_AGE as POWER_AGE
 from vehicle.sensors.power import PERIOD as POWER_PERIOD
 from vehicle.sensors.power import PowerMonitor, PowerReading, PowerSettings
 from vehicle.sensors.ranging.settings import Lidar, Rangefinder
-from vehicle.sensors.ranging.sources import RangeSource, open_lidar, open_rangefinder
+from vehicle.sensors.ranging.sources import RangeSensor, open_lidar, open_rangefinder
 from vehicle.sensors.sampler import Sampler
 
 
@@ -51,7 +51,7 @@ class SensorSources:
     gps: SensorSource[GpsReading] | None = None
     encoders: SensorSource[tuple[float, ...]] | None = None
     computer: SensorSource[ComputerReadings] | None = None
-    ranges: tuple[RangeSource, ...] = ()
+    ranges: tuple[RangeSensor, ...] = ()
 
     def present(self) -> dict[str, SensorSource[Any]]:
         """Return the installed sensors by the name that the operator reads."""

@@ -10,6 +10,7 @@ import math
 import struct
 
 from vehicle.readings import Cone, Scan
+from vehicle.sensors.ranging.frames import split_frames
 
 BAUD = 230_400
 HEAD, LENGTH, POINTS = b"\x54\x2c", 47, 12
@@ -54,14 +55,10 @@ class Ld06Parser:
 
     def feed(self, data: bytes) -> Scan | None:
         """Return the newest whole turn, None before its end."""
-        buffer, newest = self._buffer + data, None
-        while (at := buffer.find(HEAD)) >= 0 and len(buffer) >= at + LENGTH:
-            packet = buffer[at : at + LENGTH]
-            if crc8(packet[:-1]) == packet[-1]:
-                newest, buffer = self._add(packet) or newest, buffer[at + LENGTH :]
-            else:
-                buffer = buffer[at + 1 :]
-        self._buffer = buffer[-LENGTH:]
+        packets, self._buffer = split_frames(self._buffer + data, HEAD, LENGTH, _is_valid)
+        newest: Scan | None = None
+        for packet in packets:
+            newest = self._add(packet) or newest
         return newest
 
     def _add(self, packet: bytes) -> Scan | None:
@@ -84,6 +81,10 @@ class Ld06Parser:
             Cone(sector * STEP, STEP / 2, None if blind else _measured(nearest.get(sector)), FAR, central=True)
             for sector in range(SECTORS)
         )
+
+
+def _is_valid(packet: bytes) -> bool:
+    return crc8(packet[:-1]) == packet[-1]
 
 
 def _measured(distance: float | None) -> float | None:

@@ -24,7 +24,7 @@ Opened = tuple[Scan, SensorSource[TimedScan]]
 """Where a sensor looks, and its source."""
 
 
-class RangeSource:
+class RangeSensor:
     """One sensor. It always has a reading, so that a sensor that never measures is missed."""
 
     def __init__(self, name: str, mount: int, opened: Opened) -> None:
@@ -57,15 +57,15 @@ class RangeSource:
         self._source.close()
 
 
-def open_rangefinder(settings: Rangefinder) -> RangeSource:
+def open_rangefinder(settings: Rangefinder) -> RangeSensor:
     """Open one of the rangefinders. Raises MotorError if there are no pins."""
-    return RangeSource(f"RNGFND{settings.number}", settings.number, OPENERS[type(settings)](settings))
+    return RangeSensor(f"RNGFND{settings.number}", settings.number, OPENERS[type(settings)](settings))
 
 
-def open_lidar(settings: Lidar) -> RangeSource:
+def open_lidar(settings: Lidar) -> RangeSensor:
     """Open the lidar."""
     ranger = SerialRanger(settings.port, ld06.BAUD, ld06.Ld06Parser())
-    return RangeSource("PRX1", 0, (ld06.UNMEASURED, _sampled(ranger.sample)))
+    return RangeSensor("PRX1", 0, (ld06.UNMEASURED, _sampled(ranger.sample)))
 
 
 def _open_ultrasonic(settings: Ultrasonic) -> Opened:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from vehicle.readings import Scan
+from vehicle.sensors.ranging.frames import split_frames
 from vehicle.sensors.ranging.settings import Beam
 
 BAUD = 115_200
@@ -31,15 +32,12 @@ class TfminiParser:
 
     def feed(self, data: bytes) -> Scan | None:
         """Return the newest measurement, None before a whole frame."""
-        buffer, newest = self._buffer + data, None
-        while (at := buffer.find(HEAD)) >= 0 and len(buffer) >= at + LENGTH:
-            frame = buffer[at : at + LENGTH]
-            if sum(frame[:-1]) & 0xFF == frame[-1]:
-                newest, buffer = parse_frame(frame), buffer[at + LENGTH :]
-            else:
-                buffer = buffer[at + 1 :]
-        self._buffer = buffer[-LENGTH:]
-        return newest
+        frames, self._buffer = split_frames(self._buffer + data, HEAD, LENGTH, _is_valid)
+        return parse_frame(frames[-1]) if frames else None
+
+
+def _is_valid(frame: bytes) -> bool:
+    return sum(frame[:-1]) & 0xFF == frame[-1]
 
 
 def parse_frame(frame: bytes) -> Scan:
