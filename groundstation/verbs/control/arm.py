@@ -115,6 +115,19 @@ async def arm(session: VerbSession, wait: float, output: Output, *, flown: bool 
     return report
 
 
+async def arm_first(
+    session: VerbSession, options: argparse.Namespace, output: Output, remedy: str
+) -> RequestReport | None:
+    """Arm a vehicle that is disarmed for a verb that drives it next, if its --arm says so.
+
+    Returns the report of an arming that failed, else None. Raises VerbError, with the `remedy`, without --arm.
+    """
+    if not options.arm:
+        raise VerbError(ExitCode.REFUSED, f"{session.vehicle.name} is disarmed: {remedy}")
+    report = await arm(session, options.wait, output, flown=True)
+    return None if report.state is RequestState.ACCEPTED else report
+
+
 async def _arm_when_possible(session: VerbSession, until: float) -> RequestReport:
     """Arm; again while a vehicle refuses for the moment.
 

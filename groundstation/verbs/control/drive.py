@@ -26,7 +26,7 @@ from groundstation.verbs.common.arguments import LONGEST_HOLD, finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.local_file import read_text
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.control.arm import arm
+from groundstation.verbs.control.arm import arm_first
 from groundstation.verbs.control.driving import (
     DISARM_WITHIN,
     begin_driving,
@@ -113,11 +113,9 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     need_driven(state)
     need_control(session)
     if not state.armed:
-        if not options.arm:
-            raise VerbError(ExitCode.REFUSED, f"{state.name} is disarmed: `drive --arm` arms it, and disarms it again")
-        armed = await arm(session, options.wait, output, flown=True)
-        if armed.state is not RequestState.ACCEPTED:
-            return finish(session, armed, output)
+        failed = await arm_first(session, options, output, "`drive --arm` arms it, and disarms it again")
+        if failed is not None:
+            return finish(session, failed, output)
         armed_here = not options.stay_armed
     try:
         driven = await _drive(session, msgspec.convert(options.given, GivenCourse).build())

@@ -9,14 +9,14 @@ from dialects import messages as m
 from dialects.enums import Command
 from groundstation.vehicles.demand.repeated_stop import StopTimes, mode_stop
 from groundstation.vehicles.demand.take_off import HIGHEST, LOWEST, find_refusal, take_off_params
-from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.arguments import finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.control.arm import arm
+from groundstation.verbs.control.arm import arm_first
 from groundstation.verbs.control.driving import begin_driving, leave, need_accepted, need_control
 from groundstation.verbs.control.stop_jobs import StopJob
 from groundstation.verbs.control.stops import REPEAT_FOR, run_job
+from groundstation.verbs.session.rates import request_interval
 from groundstation.verbs.session.reports import finish, need_driven
 from groundstation.verbs.session.session import VerbSession
 
@@ -46,12 +46,8 @@ async def take_off(session: VerbSession, options: argparse.Namespace, output: Ou
     state = session.vehicle
     _need_flight(session)
     need_control(session)
-    if not state.armed:
-        if not options.arm:
-            raise VerbError(ExitCode.REFUSED, f"{state.name} is disarmed: `takeoff --arm` arms it")
-        armed = await arm(session, options.wait, output, flown=True)
-        if armed.state is not RequestState.ACCEPTED:
-            return finish(session, armed, output)
+    if not state.armed and (failed := await arm_first(session, options, output, "`takeoff --arm` arms it")):
+        return finish(session, failed, output)
     try:
         await _take_off(session, options.altitude)
     finally:
@@ -83,12 +79,7 @@ def _need_flight(session: VerbSession) -> None:
 
 async def _take_off(session: VerbSession, height: float) -> None:
     state, commands = session.vehicle, session.services.commands
-    params = (float(m.ExtendedSysState.id), 1e6 / REPORTS)
-    await session.request(
-        lambda number, now: commands.send(
-            number, Command.SET_MESSAGE_INTERVAL, params, "rate of EXTENDED_SYS_STATE", now
-        )
-    )
+    await request_interval(session, m.ExtendedSysState, 1e6 / REPORTS)
     await begin_driving(session)
     await session.wait_for(lambda: not find_refusal(state, "", session.now), LANDED_WITHIN)
     if why := find_refusal(state, "", session.now):

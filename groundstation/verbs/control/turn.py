@@ -8,11 +8,11 @@ import math
 
 from dialects import messages as m
 from dialects.axes import NEUTRAL, Axes
-from dialects.enums import Command
 from groundstation.verbs.common.arguments import LONGEST_HOLD, finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.control.driving import begin_driving, check_driving, leave, need_control
+from groundstation.verbs.session.rates import request_interval
 from groundstation.verbs.session.reports import need_driven
 from groundstation.verbs.session.session import VerbSession
 
@@ -94,7 +94,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
 
 async def _turn(session: VerbSession, turn: Turn) -> None:
     """Turn. Raises VerbError when the vehicle takes no demands any more, or does not turn."""
-    await _request_headings(session)
+    await request_interval(session, m.Attitude, 1e6 / HEADINGS)
     await begin_driving(session)
     operator = session.contact.operator
 
@@ -113,15 +113,6 @@ async def _turn(session: VerbSession, turn: Turn) -> None:
         if over > LONGEST_HOLD:
             text = f"{session.vehicle.name} has turned by {turn.turned:.0f} degrees in {over:.0f} s; neutral"
             raise VerbError(ExitCode.NO_ANSWER, text)
-
-
-async def _request_headings(session: VerbSession) -> None:
-    """Ask for the heading more often; a vehicle that refuses sends it as often as it does anyway."""
-    commands = session.services.commands
-    params = (float(m.Attitude.id), 1e6 / HEADINGS)
-    await session.request(
-        lambda number, now: commands.send(number, Command.SET_MESSAGE_INTERVAL, params, "rate of ATTITUDE", now)
-    )
 
 
 def _heading(session: VerbSession) -> float:

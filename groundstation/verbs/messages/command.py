@@ -15,6 +15,7 @@ from groundstation.verbs.common.nearest import describe_nearest
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.messages.message_values import find_message
 from groundstation.verbs.messages.messages import print_message
+from groundstation.verbs.session.rates import request_interval
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
 from link.core import Received
@@ -116,12 +117,8 @@ async def request(session: VerbSession, options: argparse.Namespace, output: Out
 
 async def rate(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
     """Set how often a message comes on this link, and read back what the vehicle made of it."""
-    commands, name, kind = session.services.commands, options.kind.msgname, options.kind
-    interval = STOP if options.rate == 0 else round(1e6 / options.rate)
-    params = (float(kind.id), float(interval))
-    report = await session.request(
-        lambda number, now: commands.send(number, Command.SET_MESSAGE_INTERVAL, params, f"rate of {name}", now)
-    )
+    name, kind = options.kind.msgname, options.kind
+    report = await request_interval(session, kind, STOP if options.rate == 0 else round(1e6 / options.rate))
     if report.state is not RequestState.ACCEPTED:
         return finish(session, report, output)
     set_to = await _read_interval(session, kind.id)

@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.enums import Command
 from groundstation.ros.vehicle import RosVehicle, Values
 from groundstation.verbs.common.arguments import Argument, rate
+from groundstation.verbs.session.rates import request_interval
 from groundstation.verbs.session.session import VerbSession
 from link.core import Received
 
@@ -25,14 +25,8 @@ REQUESTED: dict[type[m.Message], float] = {
 
 async def request_rates(session: VerbSession, hertz: float) -> None:
     """Request the messages that are published; a vehicle that refuses sends what it sends anyway."""
-    commands = session.services.commands
     for kind, share in REQUESTED.items():
-        params = (float(kind.id), round(1e6 / (hertz * share)))
-        await session.request(
-            lambda number, now, p=params, k=kind: commands.send(  # type: ignore[misc]
-                number, Command.SET_MESSAGE_INTERVAL, p, f"rate of {k.msgname}", now
-            )
-        )
+        await request_interval(session, kind, round(1e6 / (hertz * share)))
 
 
 def publish_telemetry(session: VerbSession, publish: Callable[[str, str, Values], None]) -> None:
