@@ -63,6 +63,12 @@ class ReleasePad(Intent, frozen=True):
     valid_when_late = True
 
 
+OLDEST_PICTURE = 0.5
+"""s: an older picture shows where the vehicle was; as long as MAN_TIMEOUT of our vehicle."""
+CLOCK_ERROR = 0.2
+"""s by which the time of a picture may be ahead of us: the error of both clocks. Farther ahead it is no time."""
+
+
 class DriveByPicture(Intent, frozen=True):
     """The driver sees no more than the picture of a camera, or does again; sent with each new picture."""
 

@@ -6,12 +6,8 @@ network or a camera that stands still ends in the same way: nothing newer is sai
 
 from __future__ import annotations
 
-from groundstation.intents.driving import DriveByPicture
+from groundstation.intents.driving import CLOCK_ERROR, OLDEST_PICTURE, DriveByPicture
 
-OLDEST = 0.5
-"""s: an older picture shows where the vehicle was; as long as MAN_TIMEOUT of our vehicle."""
-AHEAD = 0.2
-"""s by which a time may be ahead of us: the error of both clocks. One that is farther ahead is no time."""
 REASON = "the picture is old"
 
 
@@ -25,8 +21,8 @@ class PictureLock:
     def handle(self, intent: DriveByPicture, now: float) -> None:
         """Note what the screen says of its newest picture."""
         self._drives = intent.drives
-        plausible = intent.taken_at <= now + AHEAD
-        self._until = min(intent.taken_at, now) + OLDEST if plausible else 0.0
+        plausible = intent.taken_at <= now + CLOCK_ERROR
+        self._until = min(intent.taken_at, now) + OLDEST_PICTURE if plausible else 0.0
 
     def refusal(self, now: float) -> str | None:
         """Return why keys do not drive, or None."""

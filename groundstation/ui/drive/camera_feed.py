@@ -10,8 +10,9 @@ from pathlib import Path
 
 import msgspec
 
+from groundstation.intents.driving import CLOCK_ERROR, OLDEST_PICTURE
 from groundstation.pictures.budget import LOCAL_BYTES, REMOTE_BYTES
-from groundstation.pictures.freshness import OLD_AFTER, Freshness, PictureState
+from groundstation.pictures.freshness import Freshness, PictureState
 from groundstation.pictures.picture import Picture
 from groundstation.video.decoder import find_program
 from groundstation.video.feed import Feed
@@ -27,8 +28,6 @@ CELL_BYTES = 25
 """Bytes of a cell of a picture, all of whose cells have changed."""
 WRAP = 2**32 / 1000
 """s after which a stamp begins again at 0."""
-CLOCKS = 0.2
-"""s by which a picture may be ahead of us: the error of both clocks."""
 
 
 class CameraValue(msgspec.Struct, frozen=True):
@@ -106,14 +105,14 @@ class CameraFeed:
         age = (now + self._view.offset - self._feed.stamp) % WRAP
         if age > WRAP / 2:
             age -= WRAP
-        return now - age if age >= -CLOCKS else 0.0
+        return now - age if age >= -CLOCK_ERROR else 0.0
 
     def state(self) -> PictureState:
         """Return what the newest picture is worth."""
         if self._feed is None or self._picture is None:
             return PictureState(Freshness.NONE)
         came, age = self._feed.state(), max(0.0, time.monotonic() - self.taken_at)
-        if age <= OLD_AFTER and came.fresh:
+        if age <= OLDEST_PICTURE and came.fresh:
             return PictureState(Freshness.FRESH, age)
         return PictureState(Freshness.LATE if came.fresh else came.freshness, age)
 

@@ -197,8 +197,13 @@ class DriveScreen(ConsoleScreen):
 
     def _switch_picture(self) -> None:
         """Drive by the picture of the camera, or by eye again."""
-        before, self._pane_before = self._pane_before, self._panes[0].index if self._pane_before is None else None
-        self._panes[0].turn_to(CAMERA if before is None else before)
+        pane = self._panes[0]
+        if self._pane_before is None:
+            self._pane_before = pane.index
+            pane.turn_to(CAMERA)
+        else:
+            pane.turn_to(self._pane_before)
+            self._pane_before = None
         self.update_classes({"-picture": self._pane_before is not None})
         self._report_picture()
         self._show_panes()

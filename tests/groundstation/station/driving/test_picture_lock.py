@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from groundstation.intents.driving import DriveByPicture, DriveKeyUp, EmergencyStop
+from groundstation.intents.driving import CLOCK_ERROR, OLDEST_PICTURE, DriveByPicture, DriveKeyUp, EmergencyStop
 from groundstation.intents.session import SetKeyGate
-from groundstation.station.driving.picture_lock import AHEAD, OLDEST, REASON, PictureLock
+from groundstation.station.driving.picture_lock import REASON, PictureLock
 from tests.groundstation.cockpits import FORWARD, Cockpit, driving_cockpit
 
 
@@ -37,7 +37,7 @@ def test_keys_do_not_drive_by_an_old_picture() -> None:
     cockpit.run(0.05)
     assert cockpit.station.operator.sent_demand.neutral
     assert cockpit.operator.gate_reason == REASON
-    assert next(at for at, x, _ in cockpit.demands(began + 0.3) if x == 0) - began < OLDEST + 0.05
+    assert next(at for at, x, _ in cockpit.demands(began + 0.3) if x == 0) - began < OLDEST_PICTURE + 0.05
     assert cockpit.demands()[-1][1] == 0
 
 
@@ -79,7 +79,7 @@ def test_who_drives_by_eye_needs_no_picture() -> None:
 
 def test_a_late_picture_of_a_slow_network_locks_as_well() -> None:
     cockpit = seeing_cockpit()
-    watch(cockpit, 1.0, delay=OLDEST + 0.01)
+    watch(cockpit, 1.0, delay=OLDEST_PICTURE + 0.01)
     assert cockpit.operator.throttle == 0.0
 
 
@@ -97,6 +97,6 @@ def test_clocks_may_differ_a_little() -> None:
     lock = PictureLock()
     assert lock.refusal(5.0) is None
     assert lock.ends_at is None
-    lock.handle(DriveByPicture(drives=True, taken_at=5.0 + AHEAD / 2), 5.0)
-    assert lock.refusal(5.0 + OLDEST - 0.01) is None
-    assert lock.refusal(5.0 + OLDEST + 0.01) == REASON
+    lock.handle(DriveByPicture(drives=True, taken_at=5.0 + CLOCK_ERROR / 2), 5.0)
+    assert lock.refusal(5.0 + OLDEST_PICTURE - 0.01) is None
+    assert lock.refusal(5.0 + OLDEST_PICTURE + 0.01) == REASON

@@ -11,9 +11,9 @@ import time
 import pytest
 from msgspec.structs import replace
 
-from groundstation.intents.driving import DriveByPicture
+from groundstation.intents.driving import OLDEST_PICTURE, DriveByPicture
 from groundstation.pictures.freshness import Freshness
-from groundstation.station.driving.picture_lock import OLDEST, PictureLock
+from groundstation.station.driving.picture_lock import PictureLock
 from groundstation.ui.drive.camera_feed import CameraFeed
 from groundstation.views.camera import CameraView
 from link.core import Peer
@@ -81,7 +81,7 @@ async def stand_still(drive: Drive, pid: int) -> None:
     os.kill(pid, signal.SIGSTOP)
     began = time.monotonic()
     await until(drive.locked)
-    assert time.monotonic() - began < OLDEST + LATE
+    assert time.monotonic() - began < OLDEST_PICTURE + LATE
     await until(lambda: drive.locked() and drive.feed.state().freshness is not Freshness.FRESH)
     assert drive.feed.value(ascii=False, command_age=0.1).grey
     with contextlib.suppress(ProcessLookupError):  # it was replaced
