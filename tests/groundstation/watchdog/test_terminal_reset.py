@@ -41,9 +41,9 @@ def test_a_terminal_full_of_output_is_reset_once_it_has_room() -> None:
 def test_a_terminal_that_is_gone_is_done() -> None:
     master, slave = pty.openpty()
     reset = TerminalReset(os.ttyname(slave))
+    threading.Event().wait(CLOCK_STEP)  # a test beside this one may get the number at once, and is not written to
     os.close(slave)
     os.close(master)
-    threading.Event().wait(CLOCK_STEP)  # a test beside this one may get the number, and is not to be written to
     assert reset.run()
 
 
@@ -51,9 +51,9 @@ def test_the_next_terminal_of_its_number_is_left_alone() -> None:
     for _ in range(100):  # another process may take the number
         master, slave = pty.openpty()
         path, reset = os.ttyname(slave), TerminalReset(os.ttyname(slave))
+        threading.Event().wait(CLOCK_STEP)  # whoever gets the number at once is told apart
         os.close(slave)
         os.close(master)
-        threading.Event().wait(CLOCK_STEP)
         master, slave = pty.openpty()
         same = os.ttyname(slave) == path
         assert reset.run()
