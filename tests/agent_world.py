@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from groundstation.intents.agents import PermitProposal
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.union import AnyIntent
-from groundstation.station.agents.proposals import Stage
+from groundstation.station.agents.proposals import ProposalStage
 from groundstation.verbs.agents.agent_calls import AgentCalls
 from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.session.core import VerbCore
@@ -151,7 +151,7 @@ class AgentWorld(Drive):
     def runs(self) -> bool:
         """Whether a proposal runs."""
         shown = self.station.proposals.shown
-        return shown is not None and shown.stage is Stage.RUNNING
+        return shown is not None and shown.stage is ProposalStage.RUNNING
 
     def _each(self, now: float) -> None:
         super()._each(now)

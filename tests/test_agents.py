@@ -18,7 +18,7 @@ from groundstation.intents.session import SetKeyGate
 from groundstation.intents.vehicle import Arm, Disarm, SetMode
 from groundstation.station.agents.proposals import LONGEST_WAIT, MOST_WAITING, NO_SCREEN
 from groundstation.verbs.agents.agent_calls import MOST_CALLS
-from groundstation.verbs.agents.tools import TOOLS, Effect
+from groundstation.verbs.agents.tools import TOOLS, ToolEffect
 from groundstation.verbs.main import build_parser, choose_action
 from tests.agent_world import PERIOD, AgentWorld
 from vehicle.safety.states import SafetyState
@@ -272,14 +272,14 @@ def test_bad_input_is_one_clear_error(world: AgentWorld) -> None:
 def test_reading_tools_and_stops_use_verbs_that_change_nothing() -> None:
     known = {"seconds": 1.0, "message": "ATTITUDE", "pattern": "FS_*"}
     for name, tool in TOOLS.items():
-        if tool.effect is Effect.PROPOSE or not (words := tool.words(known)):
+        if tool.effect is ToolEffect.PROPOSE or not (words := tool.words(known)):
             continue
         action = choose_action(words[0], build_parser(words[0]).parse_args(words[1:]))
-        assert action.watches if tool.effect is Effect.READ else action.stops, name
+        assert action.watches if tool.effect is ToolEffect.READ else action.stops, name
         assert action.companion is None, name
 
 
-STOPS = [name for name, tool in TOOLS.items() if tool.effect is Effect.STOP]
+STOPS = [name for name, tool in TOOLS.items() if tool.effect is ToolEffect.STOP]
 OTHERS = [*(name for name in TOOLS if name not in STOPS), "estop", "send"]
 
 

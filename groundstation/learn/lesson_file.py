@@ -64,11 +64,11 @@ def parse_lesson(text: str, name: str) -> Lesson:
     return lesson
 
 
-Place = Sequence[tuple[str, int]]
+TextPlace = Sequence[tuple[str, int]]
 """Keys from the top of the file on, each with its index in a list; 0 outside of one."""
 
 
-def _place_of_error(error: msgspec.ValidationError) -> Place:
+def _place_of_error(error: msgspec.ValidationError) -> TextPlace:
     """Return where a mistake is, of msgspec's path: `$.steps[0].hints[1].value`."""
     what, _, path = str(error).partition(" - at `$")
     steps = [(name, int(index or 0)) for name, index in _STEP.findall(path)]
@@ -76,7 +76,7 @@ def _place_of_error(error: msgspec.ValidationError) -> Place:
     return [*steps, *([(named[1], 0)] if named else [])]
 
 
-def _find_mistakes(lesson: Lesson) -> Iterator[tuple[Place, str]]:
+def _find_mistakes(lesson: Lesson) -> Iterator[tuple[TextPlace, str]]:
     """Yield what types cannot say: names that do not exist, texts that are too long."""
     yield from _check_top(lesson)
     for number, step in enumerate(lesson.steps):
@@ -88,7 +88,7 @@ def _find_mistakes(lesson: Lesson) -> Iterator[tuple[Place, str]]:
             yield from _check_condition((*at, ("hints", index)), hint)
 
 
-def _check_top(lesson: Lesson) -> Iterator[tuple[Place, str]]:
+def _check_top(lesson: Lesson) -> Iterator[tuple[TextPlace, str]]:
     words = len(lesson.text.split())
     if not 0 < words <= MOST_WORDS:
         yield (("text", 0),), f"has {words} words; write 1 to {MOST_WORDS}"
@@ -107,7 +107,7 @@ def _check_top(lesson: Lesson) -> Iterator[tuple[Place, str]]:
     yield from (((("text", 0),), each) for each in _unknown_keys(lesson.text))
 
 
-def _check_words(at: Place, key: str, text: str) -> Iterator[tuple[Place, str]]:
+def _check_words(at: TextPlace, key: str, text: str) -> Iterator[tuple[TextPlace, str]]:
     if not text.strip():
         yield (*at, (key, 0)), "is empty; say what to do"
     if len(text.split()) > MOST_TASK_WORDS:
@@ -121,7 +121,7 @@ def _unknown_keys(text: str) -> Iterator[str]:
             yield f"there is no action `{key}`; {suggest(key, ACTIONS)}"
 
 
-def _check_condition(at: Place, asked: Checked) -> Iterator[tuple[Place, str]]:
+def _check_condition(at: TextPlace, asked: Checked) -> Iterator[tuple[TextPlace, str]]:
     row = CONDITIONS.get(asked.check)
     if row is None:
         yield (*at, ("check", 0)), f"there is no check {asked.check!r}; {suggest(asked.check, CONDITIONS)}"
@@ -139,11 +139,11 @@ def _check_condition(at: Place, asked: Checked) -> Iterator[tuple[Place, str]]:
         yield (*at, ("name", 0)), f"there is no screen {asked.name!r}; {suggest(asked.name, screens)}"
 
 
-def _join(place: Place) -> str:
+def _join(place: TextPlace) -> str:
     return ".".join(f"{name}[{index}]" if name in TABLES else name for name, index in place)
 
 
-def _find_line(text: str, place: Place) -> int:
+def _find_line(text: str, place: TextPlace) -> int:
     """Return the line of a key, from 1; that of the table around it where it has none."""
     tables = [step for step in place if step[0] in TABLES]
     key = next((name for name, _ in place if name not in TABLES), "")

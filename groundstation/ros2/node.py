@@ -11,7 +11,7 @@ import msgspec
 
 from groundstation.ros.freshness import MAX_LATENESS, LatenessCheck
 from groundstation.ros.rmw.attachment import Attachment, gid_of
-from groundstation.ros.rmw.names import BEST_EFFORT_5, RELIABLE_10, Kind, RmwEndpoint, RmwNode
+from groundstation.ros.rmw.names import BEST_EFFORT_5, RELIABLE_10, EntityKind, RmwEndpoint, RmwNode
 from groundstation.ros.types import BadMessageError, RosTypes
 from groundstation.ros.vehicle import Values
 from groundstation.ros2.router import RosRouter
@@ -38,7 +38,7 @@ class NodeNames(msgspec.Struct, frozen=True):
 class _Plan(msgspec.Struct):
     """An endpoint before the session is open."""
 
-    kind: Kind
+    kind: EntityKind
     name: str
     type: str
     qos: str
@@ -78,16 +78,16 @@ class Ros2Node(msgspec.Struct):
 
     def add_publisher(self, topic: str, kind: str) -> None:
         """Publish a topic; `publish` sends its messages."""
-        self._plans.append(_Plan(Kind.PUBLISHER, topic, kind, RELIABLE_10))
+        self._plans.append(_Plan(EntityKind.PUBLISHER, topic, kind, RELIABLE_10))
 
     def add_subscription(self, topic: str, kind: str, take: Take) -> None:
         """Handle the messages of a topic."""
-        self._plans.append(_Plan(Kind.SUBSCRIPTION, topic, kind, BEST_EFFORT_5))
+        self._plans.append(_Plan(EntityKind.SUBSCRIPTION, topic, kind, BEST_EFFORT_5))
         self._takes[len(self._plans)] = take
 
     def add_service(self, name: str, kind: str, serve: Serve) -> None:
         """Serve requests."""
-        self._plans.append(_Plan(Kind.SERVICE, name, kind, RELIABLE_10))
+        self._plans.append(_Plan(EntityKind.SERVICE, name, kind, RELIABLE_10))
         self._serves[len(self._plans)] = serve
 
     def start(self) -> None:
@@ -121,7 +121,7 @@ class Ros2Node(msgspec.Struct):
             whole = node.resolve(plan.name)
             endpoint = RmwEndpoint(node, number, plan.kind, whole, plan.type, self.types.hash(plan.type), plan.qos)
             endpoints.append(endpoint)
-            if plan.kind is Kind.PUBLISHER:
+            if plan.kind is EntityKind.PUBLISHER:
                 self._topics[plan.name] = _Topic(endpoint, gid_of(endpoint.token))
         assert self._wire is not None
         self._wire.declare(node.domain, [node.token, *(each.token for each in endpoints)], endpoints)

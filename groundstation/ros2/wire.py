@@ -17,7 +17,7 @@ import msgspec
 import zenoh
 
 from groundstation.ros.rmw.attachment import Attachment, decode, gid_of
-from groundstation.ros.rmw.names import Kind, RmwEndpoint, publisher_tokens
+from groundstation.ros.rmw.names import EntityKind, RmwEndpoint, publisher_tokens
 from groundstation.ros2.router import RosRouter
 from link.fleet.router_session import RouterSession, direct
 
@@ -81,9 +81,9 @@ class RosWire:
             return
         with self._router.quiet("declare"):
             for each in endpoints:
-                if each.kind is Kind.SUBSCRIPTION:
+                if each.kind is EntityKind.SUBSCRIPTION:
                     self._subscribe(session, domain, each)
-                elif each.kind is Kind.SERVICE:
+                elif each.kind is EntityKind.SERVICE:
                     take = self._query_taker(each)
                     self._held.append(session.declare_queryable(each.key, direct(take), complete=True))
             self._held += [session.liveliness().declare_token(token) for token in tokens]

@@ -26,7 +26,7 @@ from groundstation.rover.protocol import (
     CurrentState,
     Ended,
     Ready,
-    VehicleText,
+    TextEvent,
     Waiting,
     decode_answer,
     encode,
@@ -91,7 +91,7 @@ class ApiConnection:
         """How many have arrived; a state comes ten times a second."""
         self.state: State | None = None
         """The newest one."""
-        self.texts: deque[VehicleText] = deque(maxlen=TEXTS_KEPT)
+        self.texts: deque[TextEvent] = deque(maxlen=TEXTS_KEPT)
         """The newest STATUSTEXT messages of the vehicle."""
         self.waits: Callable[[], bool] = lambda: True
         """Whether the program waits for the call that drives."""
@@ -246,7 +246,7 @@ class ApiConnection:
             case CurrentState():
                 self.state = answer.state
                 self._tell_changed()
-            case VehicleText():
+            case TextEvent():
                 self.texts.append(answer)
             case CallRecord() if answer.id in self._running:
                 self._running[answer.id].records.put_nowait(answer.fields)

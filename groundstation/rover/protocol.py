@@ -52,7 +52,7 @@ class CurrentState(msgspec.Struct, frozen=True, tag="state"):
     state: State
 
 
-class VehicleText(msgspec.Struct, frozen=True, tag="text"):
+class TextEvent(msgspec.Struct, frozen=True, tag="text"):
     """A STATUSTEXT of the vehicle."""
 
     severity: int
@@ -84,7 +84,7 @@ class Ended(msgspec.Struct, frozen=True, tag="ended"):
 
 
 FromProgram = Call | Cancel | Waiting
-ToProgram = Ready | CurrentState | VehicleText | CallRecord | CallNote | Ended
+ToProgram = Ready | CurrentState | TextEvent | CallRecord | CallNote | Ended
 
 encode = msgspec.json.Encoder().encode
 decode_call = msgspec.json.Decoder(FromProgram).decode

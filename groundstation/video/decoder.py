@@ -42,7 +42,7 @@ class DecoderEndedError(Exception):
     """The program has ended; the text says how, in one line."""
 
 
-class Program(msgspec.Struct, frozen=True):
+class DecoderProgram(msgspec.Struct, frozen=True):
     """A program that decodes."""
 
     path: str
@@ -50,12 +50,12 @@ class Program(msgspec.Struct, frozen=True):
 
 
 @cache
-def find_program() -> Program:
+def find_program() -> DecoderProgram:
     """Return the program of this machine. Raises SourceError."""
     if path := shutil.which("ffmpeg"):
-        return Program(path, _build_old if _is_old(path) else build_ffmpeg_command)
+        return DecoderProgram(path, _build_old if _is_old(path) else build_ffmpeg_command)
     if path := shutil.which("gst-launch-1.0"):
-        return Program(path, build_gst_command)
+        return DecoderProgram(path, build_gst_command)
     raise SourceError(NOTHING_INSTALLED)
 
 

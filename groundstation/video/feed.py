@@ -9,7 +9,7 @@ from typing import Any
 
 from groundstation.pictures.freshness import PictureAge, PictureState
 from groundstation.pictures.picture import Picture
-from groundstation.video.decoder import Decoder, DecoderEndedError, Program, running_decoder
+from groundstation.video.decoder import Decoder, DecoderEndedError, DecoderProgram, running_decoder
 from groundstation.video.ffmpeg_command import Shape, split_picture
 from groundstation.video.source import SourceError, VideoSource
 from link.transport.backoff import Backoff
@@ -26,7 +26,7 @@ class Feed:
     def __init__(
         self,
         source: VideoSource,
-        program: Program,
+        program: DecoderProgram,
         on_picture: Callable[[Picture], None] = lambda _: None,
         *,
         still_after: float = STILL_AFTER,
@@ -88,7 +88,7 @@ class Feed:
             self._on_picture(picture)
 
 
-async def take_snapshot(source: VideoSource, program: Program, shape: Shape, within: float) -> Picture:
+async def take_snapshot(source: VideoSource, program: DecoderProgram, shape: Shape, within: float) -> Picture:
     """Return the first picture of a source. Raises SourceError after `within` s."""
     found: asyncio.Future[Picture] = asyncio.get_running_loop().create_future()
     feed = Feed(source, program, lambda picture: None if found.done() else found.set_result(picture))

@@ -11,7 +11,7 @@ from base64 import b64encode
 import msgspec
 
 from groundstation.pictures.picture import Picture
-from groundstation.video.source import Kind, VideoSource
+from groundstation.video.source import SourceKind, VideoSource
 from link.services.video_stamp import FIELDS, ROWS, read_stamp
 from link.services.video_stream import PAYLOAD_TYPE
 
@@ -137,11 +137,11 @@ def _file(source: VideoSource) -> list[str]:
 
 
 _INPUTS = {
-    Kind.RTP: _rtp,
-    Kind.UDP: _udp,
-    Kind.RTSP: _rtsp,
-    Kind.HTTP: _http,
-    Kind.V4L2: _v4l2,
-    Kind.FILE: _file,
+    SourceKind.RTP: _rtp,
+    SourceKind.UDP: _udp,
+    SourceKind.RTSP: _rtsp,
+    SourceKind.HTTP: _http,
+    SourceKind.V4L2: _v4l2,
+    SourceKind.FILE: _file,
 }
 """Kind -> what returns the options of the input."""

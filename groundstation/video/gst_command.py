@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from groundstation.video.ffmpeg_command import SOCKET_BUFFER, Shape
-from groundstation.video.source import Kind, VideoSource
+from groundstation.video.source import SourceKind, VideoSource
 from link.services.video_stream import PAYLOAD_TYPE
 
 _DECODE = ["!", "decodebin"]
@@ -65,12 +65,12 @@ def _quoted(source: VideoSource) -> str:
     return f'"{text}"'
 
 
-_INPUTS: dict[Kind, Callable[[VideoSource], list[str]]] = {
-    Kind.RTP: _rtp,
-    Kind.UDP: _udp,
-    Kind.RTSP: _rtsp,
-    Kind.HTTP: _http,
-    Kind.V4L2: _v4l2,
-    Kind.FILE: _file,
+_INPUTS: dict[SourceKind, Callable[[VideoSource], list[str]]] = {
+    SourceKind.RTP: _rtp,
+    SourceKind.UDP: _udp,
+    SourceKind.RTSP: _rtsp,
+    SourceKind.HTTP: _http,
+    SourceKind.V4L2: _v4l2,
+    SourceKind.FILE: _file,
 }
 """Kind -> what returns the elements of the input."""

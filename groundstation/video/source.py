@@ -20,7 +20,7 @@ class SourceError(Exception):
     """A source that cannot be opened; the text is one line for the user."""
 
 
-class Kind(StrEnum):
+class SourceKind(StrEnum):
     """How the video comes."""
 
     RTP = "rtp"
@@ -34,7 +34,7 @@ class Kind(StrEnum):
 class VideoSource(msgspec.Struct, frozen=True):
     """A checked source."""
 
-    kind: Kind
+    kind: SourceKind
     where: str
     """A URL, an absolute path, or the address to listen on."""
     port: int = 0
@@ -45,7 +45,7 @@ class VideoSource(msgspec.Struct, frozen=True):
     @property
     def ends(self) -> bool:
         """Return whether it is a recording, whose end is no fault."""
-        return self.kind is Kind.FILE
+        return self.kind is SourceKind.FILE
 
 
 MAX_LENGTH = 2000
@@ -67,7 +67,7 @@ def parse_source(text: str, folder: Path) -> VideoSource:
     return _parse_file(text, text, folder)
 
 
-def _parse_port(kind: Kind) -> Callable[[str, str], VideoSource]:
+def _parse_port(kind: SourceKind) -> Callable[[str, str], VideoSource]:
     """Return what reads PORT or ADDRESS:PORT of this machine."""
 
     def parse(text: str, rest: str) -> VideoSource:
@@ -86,7 +86,7 @@ def _parse_port(kind: Kind) -> Callable[[str, str], VideoSource]:
     return parse
 
 
-def _parse_url(kind: Kind) -> Callable[[str, str], VideoSource]:
+def _parse_url(kind: SourceKind) -> Callable[[str, str], VideoSource]:
     """Return what reads a URL."""
 
     def parse(text: str, rest: str) -> VideoSource:
@@ -108,7 +108,7 @@ def _parse_device(text: str, rest: str) -> VideoSource:
         raise SourceError(f"{_shown(text)}: give a camera of this machine, e.g. v4l2:/dev/video0")
     if not Path(rest).exists():
         raise SourceError(f"{rest} does not exist: connect the camera; `ls /dev/video*` shows those there are")
-    return VideoSource(Kind.V4L2, rest, name=text)
+    return VideoSource(SourceKind.V4L2, rest, name=text)
 
 
 def _parse_file(text: str, name: str, folder: Path) -> VideoSource:
@@ -119,16 +119,16 @@ def _parse_file(text: str, name: str, folder: Path) -> VideoSource:
             raise SourceError(f"{_shown(text)} {why}: give {SHAPES}")
     except OSError as error:
         raise SourceError(f"{_shown(text)}: {error.strerror}") from error
-    return VideoSource(Kind.FILE, str(path), name=name)
+    return VideoSource(SourceKind.FILE, str(path), name=name)
 
 
 KINDS: dict[str, Callable[[str, str], VideoSource]] = {
-    "rtp": _parse_port(Kind.RTP),
-    "udp": _parse_port(Kind.UDP),
-    "rtsp": _parse_url(Kind.RTSP),
-    "rtsps": _parse_url(Kind.RTSP),
-    "http": _parse_url(Kind.HTTP),
-    "https": _parse_url(Kind.HTTP),
+    "rtp": _parse_port(SourceKind.RTP),
+    "udp": _parse_port(SourceKind.UDP),
+    "rtsp": _parse_url(SourceKind.RTSP),
+    "rtsps": _parse_url(SourceKind.RTSP),
+    "http": _parse_url(SourceKind.HTTP),
+    "https": _parse_url(SourceKind.HTTP),
     "v4l2": _parse_device,
     "file": lambda text, rest: _parse_file(text, rest.removeprefix("//"), Path("/")),
 }

@@ -52,7 +52,7 @@ def describe_process(process: Path) -> str:
     return f"{program_name(process)} (pid {process.name})"
 
 
-Kind = Literal["udp", "tcp"]
+SocketKind = Literal["udp", "tcp"]
 LISTEN = "0A"
 """State of a TCP socket that listens (include/net/tcp_states.h)."""
 LOCAL, STATE, INODE = 1, 3, 9
@@ -61,7 +61,7 @@ HIDDEN = "a program of another user"
 """The kernel shows that a port is taken, and not by whom: only root sees the files of others."""
 
 
-def find_socket_holders(kind: Kind, port: int, proc: Path = PROC) -> list[str]:
+def find_socket_holders(kind: SocketKind, port: int, proc: Path = PROC) -> list[str]:
     """Return the programs that have this port of any local address, e.g. ["vehicle (pid 412)"]; empty if it is free."""
     if not proc.is_dir():
         return _ask_for_holders(kind, port)
@@ -72,7 +72,7 @@ def find_socket_holders(kind: Kind, port: int, proc: Path = PROC) -> list[str]:
     return [describe_process(each) for each in found] or [HIDDEN]
 
 
-def _inodes(kind: Kind, port: int, proc: Path) -> Iterator[str]:
+def _inodes(kind: SocketKind, port: int, proc: Path) -> Iterator[str]:
     """Yield the sockets bound to this port; of TCP those that listen."""
     for name in (kind, f"{kind}6"):
         with contextlib.suppress(OSError):
@@ -119,7 +119,7 @@ def ask_lsof(*selection: str) -> list[OpenFile]:
     return found
 
 
-def _ask_for_holders(kind: Kind, port: int) -> list[str]:
+def _ask_for_holders(kind: SocketKind, port: int) -> list[str]:
     """Return the programs that have a port, by lsof; HIDDEN if it is taken and lsof names none."""
     state = ("-sTCP:LISTEN",) if kind == "tcp" else ()
     files = ask_lsof(f"-i{kind.upper()}:{port}", *state)
@@ -127,7 +127,7 @@ def _ask_for_holders(kind: Kind, port: int) -> list[str]:
     return list(dict.fromkeys(found)) or ([HIDDEN] if _is_taken(kind, port) else [])
 
 
-def _is_taken(kind: Kind, port: int) -> bool:
+def _is_taken(kind: SocketKind, port: int) -> bool:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM if kind == "udp" else socket.SOCK_STREAM) as probe:
         if kind == "tcp":
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a connection that has ended is none

@@ -6,9 +6,9 @@ from typing import Literal
 
 from vehicle.motors.drivers import DriverEntry
 
-Kind = Literal["relay", "servo"]
+AccessoryKind = Literal["relay", "servo"]
 
-DRIVERS: dict[Kind, dict[str, DriverEntry]] = {
+DRIVERS: dict[AccessoryKind, dict[str, DriverEntry]] = {
     "relay": {
         "simulated": DriverEntry("vehicle.accessories.simulated:SimulatedAccessory", "no hardware"),
         "gpio": DriverEntry(
@@ -26,5 +26,5 @@ DRIVERS: dict[Kind, dict[str, DriverEntry]] = {
 }
 """Kind -> name of a driver -> all that the vehicle, `mavhelm vehicle init` and `mavhelm vehicle schema` need of it."""
 
-FIRST_NUMBER: dict[Kind, int] = {"relay": 0, "servo": 9}
+FIRST_NUMBER: dict[AccessoryKind, int] = {"relay": 0, "servo": 9}
 """Kind -> the number in the example of a driver that gives none; SERVO_OUTPUT_RAW has the motors from 1."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from vehicle.accessories.drivers import Kind
+from vehicle.accessories.drivers import AccessoryKind
 from vehicle.accessories.settings import COMMON, build_spec
 from vehicle.hardware.error_text import format_error
 
@@ -26,7 +26,7 @@ def _tables_of(tables: Any, name: str) -> list[Any]:
     return found if isinstance(found, list) else []
 
 
-def _make_safe(kind: Kind, table: Any) -> str:
+def _make_safe(kind: AccessoryKind, table: Any) -> str:
     spec = build_spec(kind, table)
     accessory = spec.make(spec.safe)
     accessory.set(spec.safe)  # a driver from outside may ignore its start value

@@ -9,7 +9,7 @@ import msgspec
 
 from link.toml.errors import explain_errors
 from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, OFF, Accessory
-from vehicle.accessories.drivers import DRIVERS, Kind
+from vehicle.accessories.drivers import DRIVERS, AccessoryKind
 from vehicle.accessories.output import AccessorySpec, PulseRange, Until
 from vehicle.motors import MotorError, MotorSettingsError, UnknownDriverError
 from vehicle.motors.drivers import load_driver_class
@@ -66,10 +66,13 @@ class Accessories(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     servos: tuple[dict[str, Any], ...] = ()
 
 
-COMMON: dict[Kind, type[RelaySettings] | type[ServoSettings]] = {"relay": RelaySettings, "servo": ServoSettings}
+COMMON: dict[AccessoryKind, type[RelaySettings] | type[ServoSettings]] = {
+    "relay": RelaySettings,
+    "servo": ServoSettings,
+}
 
 
-def iter_tables(accessories: Accessories) -> Iterator[tuple[Kind, str, dict[str, Any]]]:
+def iter_tables(accessories: Accessories) -> Iterator[tuple[AccessoryKind, str, dict[str, Any]]]:
     """Yield kind, name in the file and table of each accessory."""
     for index, table in enumerate(accessories.relays):
         yield "relay", f"accessories.relays[{index}]", table
@@ -82,7 +85,7 @@ def build_specs(accessories: Accessories) -> list[AccessorySpec]:
     return [build_spec(kind, table) for kind, _, table in iter_tables(accessories)]
 
 
-def build_spec(kind: Kind, table: Mapping[str, Any]) -> AccessorySpec:
+def build_spec(kind: AccessoryKind, table: Mapping[str, Any]) -> AccessorySpec:
     """Return the specification of one accessory. Raises UnknownDriverError, MotorSettingsError."""
     name = table.get("driver")
     if not isinstance(name, str):
@@ -115,7 +118,7 @@ def find_problems(accessories: Accessories) -> list[str]:
     return problems
 
 
-def _problems(kind: Kind, at: str, table: Mapping[str, Any]) -> list[str]:
+def _problems(kind: AccessoryKind, at: str, table: Mapping[str, Any]) -> list[str]:
     if not isinstance(table.get("driver"), str):
         return [f"{at}.driver: missing; add it, one of {', '.join(DRIVERS[kind])}, or your own as module:Class"]
     try:
@@ -135,17 +138,17 @@ def _problems(kind: Kind, at: str, table: Mapping[str, Any]) -> list[str]:
     return []
 
 
-def settings_type(kind: Kind, name: str) -> type | None:
+def settings_type(kind: AccessoryKind, name: str) -> type | None:
     """Return the msgspec.Struct of a driver's own settings, None without any. Raises UnknownDriverError."""
     return _load_driver(kind, name)[1]
 
 
-def _load_driver(kind: Kind, name: str) -> tuple[Any, type | None]:
+def _load_driver(kind: AccessoryKind, name: str) -> tuple[Any, type | None]:
     driver = load_driver_class(name, DRIVERS[kind], f"{kind} driver")
     return driver, getattr(driver, "Settings", None)
 
 
-def _split(kind: Kind, table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+def _split(kind: AccessoryKind, table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     keys = COMMON[kind].__struct_fields__
     common = {key: value for key, value in table.items() if key in keys}
     return common, {key: value for key, value in table.items() if key not in keys and key != "driver"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from vehicle.camera.scene import Place, Pose
+from vehicle.camera.scene import Pose, ScenePoint
 from vehicle.camera.settings import CameraSettings
 
 
@@ -12,7 +12,7 @@ class Setup(msgspec.Struct, frozen=True):
     """For the process, as an argument."""
 
     settings: CameraSettings
-    walls: tuple[tuple[Place, Place], ...] = ()
+    walls: tuple[tuple[ScenePoint, ScenePoint], ...] = ()
 
 
 class Orders(msgspec.Struct, frozen=True):
@@ -22,4 +22,4 @@ class Orders(msgspec.Struct, frozen=True):
     """Where pictures go; none: stop the camera."""
     pose: Pose = Pose()
     """Of the simulated rover."""
-    waypoints: tuple[Place, ...] = ()
+    waypoints: tuple[ScenePoint, ...] = ()

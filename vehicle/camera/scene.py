@@ -48,7 +48,7 @@ def _table(channel: int) -> bytes:
 
 _RED, _GREEN, _BLUE = (_table(channel) for channel in range(3))
 
-Place = tuple[float, float]
+ScenePoint = tuple[float, float]
 """m north and east."""
 
 
@@ -64,21 +64,27 @@ class Pose(NamedTuple):
 class Scene:
     """Draws pictures of one size."""
 
-    def __init__(self, width: int, height: int, walls: Sequence[tuple[Place, Place]] = (), home: Place | None = (0, 0)):
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        walls: Sequence[tuple[ScenePoint, ScenePoint]] = (),
+        home: ScenePoint | None = (0, 0),
+    ):
         self._width, self._height = width, height
         self._focus = width / 2 / math.tan(FIELD_OF_VIEW / 2)
         self._horizon = height * (0.5 - PITCH)
         self._walls, self._home = tuple(walls), home
         self._empty = self._draw_empty()
 
-    def draw(self, pose: Pose, waypoints: Iterable[Place] = ()) -> bytes:
+    def draw(self, pose: Pose, waypoints: Iterable[ScenePoint] = ()) -> bytes:
         """Return the planes of green, blue and red, as the pixel format gbrp has them."""
         pixels = bytearray(self._empty)
         self._draw_grid(pixels, pose)
         posts = [(WAYPOINT, place, 0.8) for place in waypoints]
         if self._home is not None:
             posts.append((HOME, self._home, 1.2))
-        spans: list[tuple[int, Place, Place, float]] = [
+        spans: list[tuple[int, ScenePoint, ScenePoint, float]] = [
             (WALL, self._turn(first, pose), self._turn(second, pose), WALL_HEIGHT) for first, second in self._walls
         ]
         for colour, place, height in posts:
@@ -100,7 +106,7 @@ class Scene:
         return b"".join(rows)
 
     @staticmethod
-    def _turn(place: Place, pose: Pose) -> Place:
+    def _turn(place: ScenePoint, pose: Pose) -> ScenePoint:
         """Return the m ahead and to the right of the camera."""
         north, east = place[0] - pose.north, place[1] - pose.east
         cosine, sine = math.cos(pose.yaw), math.sin(pose.yaw)
@@ -117,7 +123,7 @@ class Scene:
                 if clipped is not None:
                     self._draw_line(pixels, *clipped)
 
-    def _draw_line(self, pixels: bytearray, start: Place, end: Place) -> None:
+    def _draw_line(self, pixels: bytearray, start: ScenePoint, end: ScenePoint) -> None:
         """Draw a line on the ground."""
         focus, width, height, horizon = self._focus, self._width, self._height, self._horizon
         x1, y1 = width / 2 + focus * start[1] / start[0], horizon + focus * HEIGHT / start[0]
@@ -133,7 +139,7 @@ class Scene:
             x, y = int(x1 + step * dx), int(y1 + step * dy)
             pixels[y * width + x] = LINE + _shade(near / max(1.0, y - horizon))
 
-    def _draw_spans(self, pixels: bytearray, spans: Iterable[tuple[int, Place, Place, float]]) -> None:
+    def _draw_spans(self, pixels: bytearray, spans: Iterable[tuple[int, ScenePoint, ScenePoint, float]]) -> None:
         """Draw upright rectangles between two places; the nearest one of a column is in front."""
         columns: list[list[tuple[float, int, float]]] = [[] for _ in range(self._width)]
         middle, focus = self._width / 2, self._focus
@@ -167,7 +173,7 @@ def _shade(distance: float) -> int:
     return min(SHADES - 1, int(distance / 20 * SHADES))
 
 
-def _clip(start: Place, end: Place) -> tuple[Place, Place] | None:
+def _clip(start: ScenePoint, end: ScenePoint) -> tuple[ScenePoint, ScenePoint] | None:
     """Return the part of a segment that is ahead of the camera; None without one."""
     if start[0] < NEAR and end[0] < NEAR:
         return None
@@ -176,7 +182,7 @@ def _clip(start: Place, end: Place) -> tuple[Place, Place] | None:
     return (start, _cut(start, end)) if end[0] < NEAR else (start, end)
 
 
-def _cut(front: Place, behind: Place) -> Place:
+def _cut(front: ScenePoint, behind: ScenePoint) -> ScenePoint:
     share = (front[0] - NEAR) / (front[0] - behind[0])
     return NEAR, front[1] + share * (behind[1] - front[1])
 

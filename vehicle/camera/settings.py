@@ -6,14 +6,14 @@ from typing import Annotated, Literal
 
 import msgspec
 
-Kind = Literal["none", "rpicam", "v4l2", "command", "simulated"]
+CameraKind = Literal["none", "rpicam", "v4l2", "command", "simulated"]
 Encoder = Literal["libx264", "h264_v4l2m2m"]
 
 
 class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The camera, which streams H.264 in RTP to ground stations while one of them watches. It needs ffmpeg."""
 
-    kind: Kind = "none"
+    kind: CameraKind = "none"
     """none; rpicam (rpicam-vid of Raspberry Pi OS); v4l2 (a USB camera); command (see below). docs/camera.md"""
     device: str = "/dev/video0"
     """Camera of v4l2."""

@@ -11,7 +11,7 @@ import msgspec
 
 from link.runtime.docstrings import field_docs, first_paragraph
 from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
-from vehicle.accessories.drivers import FIRST_NUMBER, Kind
+from vehicle.accessories.drivers import FIRST_NUMBER, AccessoryKind
 from vehicle.accessories.settings import COMMON, Accessories
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.camera.settings import CameraSettings
@@ -103,7 +103,7 @@ def _driver(name: str, entry: DriverEntry) -> str:
     return f'{heading}#driver = "{name}"\n{_body(settings, "motors")}'
 
 
-def _accessory(kind: Kind, name: str, entry: DriverEntry) -> str:
+def _accessory(kind: AccessoryKind, name: str, entry: DriverEntry) -> str:
     """Return the commented table of one accessory driver, with every key."""
     structs = (COMMON[kind], settings_type_of(kind, name) or NoSettings)
     known = f"{name}: {entry.title}. One of {', '.join(ACCESSORY_DRIVERS[kind])}; or your own as module:Class."

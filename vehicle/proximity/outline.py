@@ -22,11 +22,11 @@ class Motion(NamedTuple):
     turn: float
 
 
-Place = tuple[float, float]
+ObstaclePoint = tuple[float, float]
 """x and y of a point of an obstacle. A plain tuple: hundreds of them are made in each cycle."""
 
 
-def carry(places: Sequence[Place], motion: Motion, dt: float) -> list[Place]:
+def carry(places: Sequence[ObstaclePoint], motion: Motion, dt: float) -> list[ObstaclePoint]:
     """Return where places are in the frame of the rover after the rover has moved for `dt` s."""
     ahead, right = motion.ahead * dt, motion.right * dt
     sine, cosine = math.sin(motion.turn * dt), math.cos(motion.turn * dt)
@@ -34,7 +34,7 @@ def carry(places: Sequence[Place], motion: Motion, dt: float) -> list[Place]:
     return [(x * cosine + y * sine - first, y * cosine - x * sine - second) for x, y in places]
 
 
-class Gap(NamedTuple):
+class OutlineGap(NamedTuple):
     """The way from the outline to an obstacle.
 
     The speed at which a motion closes it is that of its nearest point of the outline: x times the speed ahead, y times
@@ -67,7 +67,7 @@ class Outline:
         cosine, sine = abs(math.cos(bearing)), abs(math.sin(bearing))
         return min(self.ahead / cosine if cosine > 1e-9 else math.inf, self.aside / sine if sine > 1e-9 else math.inf)
 
-    def gap(self, place: Place) -> Gap:
+    def gap(self, place: ObstaclePoint) -> OutlineGap:
         """Return the way from the outline to an obstacle; within it, from the centre outwards."""
         place_x, place_y = place
         x = max(-self.ahead, min(self.ahead, place_x))
@@ -80,9 +80,9 @@ class Outline:
                 away_x, away_y = math.copysign(1.0, away_x), 0.0
             else:
                 away_x, away_y = 0.0, math.copysign(1.0, away_y)
-            return Gap(0.0, away_x, away_y, place_x * away_y - place_y * away_x)
+            return OutlineGap(0.0, away_x, away_y, place_x * away_y - place_y * away_x)
         away_x, away_y = away_x / clearance, away_y / clearance
-        return Gap(clearance, away_x, away_y, x * away_y - y * away_x)
+        return OutlineGap(clearance, away_x, away_y, x * away_y - y * away_x)
 
 
 LEAST_FEED_FORWARD = 0.01

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vehicle.proximity.outline import Motion, Outline, Place, carry
+from vehicle.proximity.outline import Motion, ObstaclePoint, Outline, carry
 from vehicle.readings import Cone, Scan
 
 SILENCE = 0.5
@@ -37,8 +37,8 @@ class RangeSource:
         self.problem: str | None = None
         """Why its newest message was not used."""
         self._outline = outline
-        self._scans: list[list[Place]] = []
-        self._ends: list[Place] = []
+        self._scans: list[list[ObstaclePoint]] = []
+        self._ends: list[ObstaclePoint] = []
         self._way = 0.0, 0.0
         """m ahead and to the right since any distance has changed."""
 
@@ -74,11 +74,11 @@ class RangeSource:
         ahead, right = self._way
         self._way = ahead + motion.ahead * dt, right + motion.right * dt
 
-    def places(self) -> list[Place]:
+    def places(self) -> list[ObstaclePoint]:
         """Return where obstacles are."""
         return [place for places in self._scans for place in places]
 
-    def ends(self) -> list[Place]:
+    def ends(self) -> list[ObstaclePoint]:
         """Return where the sensor sees no farther, and has seen nothing: beyond may be an obstacle."""
         return self._ends
 
@@ -96,7 +96,7 @@ class RangeSource:
             return "contradicts another"
         return None
 
-    def unseen(self) -> list[Place]:
+    def unseen(self) -> list[ObstaclePoint]:
         """Return points right before the outline, all over what the sensor should see."""
         return [
             place
@@ -107,7 +107,7 @@ class RangeSource:
     def _way_along(self, bearing: float) -> float:
         return abs(self._way[0] * math.cos(bearing) + self._way[1] * math.sin(bearing))
 
-    def _places(self, cone: Cone, reach: float) -> list[Place]:
+    def _places(self, cone: Cone, reach: float) -> list[ObstaclePoint]:
         if cone.distance is None or cone.is_clear or cone.distance > reach:
             return []
         return self._points(cone, self._start(cone) + cone.distance)
@@ -116,7 +116,7 @@ class RangeSource:
         return 0.0 if cone.central else self._outline.radius_at(cone.bearing)
 
     @staticmethod
-    def _points(cone: Cone, radius: float) -> list[Place]:
+    def _points(cone: Cone, radius: float) -> list[ObstaclePoint]:
         """Return points on the arc of a cone."""
         count = max(1, min(POINTS_MAX, math.ceil(2 * cone.half_width * radius / SPACING)))
         step = 2 * cone.half_width / count

@@ -13,7 +13,7 @@ from link.runtime.child_process import end_process, start_module
 from link.runtime.local_socket import open_pair
 from vehicle.camera.camera import Camera, CameraReport
 from vehicle.camera.orders import Orders, Setup
-from vehicle.camera.scene import Place, Pose
+from vehicle.camera.scene import Pose, ScenePoint
 
 MODULE = "vehicle.camera.process"
 PERIOD = 0.04
@@ -28,7 +28,9 @@ log = logging.getLogger(__name__)
 class CameraLink:
     """One process of a camera. It is started once: one that is killed needs a restart of the daemon."""
 
-    def __init__(self, camera: Camera, pose: Callable[[], Pose] = Pose, walls: Sequence[tuple[Place, Place]] = ()):
+    def __init__(
+        self, camera: Camera, pose: Callable[[], Pose] = Pose, walls: Sequence[tuple[ScenePoint, ScenePoint]] = ()
+    ):
         """`pose` returns where the simulated rover is. Raises OSError."""
         self.camera = camera
         self._pose = pose

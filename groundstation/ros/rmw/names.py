@@ -21,7 +21,7 @@ _PARTS = 13
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
-class Kind(StrEnum):
+class EntityKind(StrEnum):
     """What a token stands for."""
 
     NODE = "NN"
@@ -43,7 +43,7 @@ class RmwNode(msgspec.Struct, frozen=True):
     @property
     def token(self) -> str:
         """Its liveliness token."""
-        return self._token(0, Kind.NODE)
+        return self._token(0, EntityKind.NODE)
 
     def resolve(self, name: str) -> str:
         """Return the whole name of a topic or service: "~" is the node, without a first slash it is relative."""
@@ -52,7 +52,7 @@ class RmwNode(msgspec.Struct, frozen=True):
             return f"{base}/{self.name}{name[1:]}"
         return name if name.startswith("/") else f"{base}/{name}"
 
-    def _token(self, entity: int, kind: Kind) -> str:
+    def _token(self, entity: int, kind: EntityKind) -> str:
         names = f"%/{mangle(self.namespace)}/{self.name}"
         return f"{ADMIN_SPACE}/{self.domain}/{self.session}/0/{entity}/{kind}/{names}"
 
@@ -62,7 +62,7 @@ class RmwEndpoint(msgspec.Struct, frozen=True):
 
     node: RmwNode
     number: int
-    kind: Kind
+    kind: EntityKind
     name: str
     """Whole name."""
     type: str
@@ -84,7 +84,7 @@ class RmwEndpoint(msgspec.Struct, frozen=True):
 
 def publisher_tokens(domain: int, name: str) -> str:
     """Return the key expression of the tokens of all publishers of a topic."""
-    return f"{ADMIN_SPACE}/{domain}/*/*/*/{Kind.PUBLISHER}/*/*/*/{mangle(name)}/*/*/*"
+    return f"{ADMIN_SPACE}/{domain}/*/*/*/{EntityKind.PUBLISHER}/*/*/*/{mangle(name)}/*/*/*"
 
 
 def mangle(name: str) -> str:

@@ -43,7 +43,7 @@ NOTE_SIZE = 84
 NO_SCREEN = "no screen of this station is open: nothing runs without a person at one"
 
 
-class Stage(Enum):
+class ProposalStage(Enum):
     """Where a proposal is."""
 
     WAITING = auto()
@@ -73,7 +73,7 @@ class Ticket(msgspec.Struct, eq=False):
     proposal: Proposal
     until: float
     """When it ends, if nobody permits it; while it runs, when its key counts no more."""
-    stage: Stage = Stage.WAITING
+    stage: ProposalStage = ProposalStage.WAITING
     began: float = math.inf
     meters: float = 0.0
     """Covered so far."""
@@ -134,7 +134,7 @@ class ProposalBook:
 
     def may_run(self, ticket: Ticket, now: float) -> bool:
         """Return whether what a proposal does may be sent now."""
-        return ticket.stage is Stage.RUNNING and self._fault(ticket, now) is None
+        return ticket.stage is ProposalStage.RUNNING and self._fault(ticket, now) is None
 
     def note_call(self, who: str, text: str, reason: str, now: float) -> None:
         """Record a call that needs nobody."""
@@ -154,14 +154,14 @@ class ProposalBook:
         ticket = self.shown
         if ticket is None or ticket.number != intent.number:
             return
-        if ticket.stage is Stage.RUNNING:
+        if ticket.stage is ProposalStage.RUNNING:
             if now < ticket.until:
                 ticket.until = now + PERMIT_WINDOW
             return
         screen, blocked = self.permitting_screen(), self._operator.permission_blocked_reason(now)
         if not intent.held >= HOLD_TIME or blocked is not None or screen is None or not self._is_selected(ticket):
             return
-        ticket.stage, ticket.until = Stage.RUNNING, now + PERMIT_WINDOW
+        ticket.stage, ticket.until = ProposalStage.RUNNING, now + PERMIT_WINDOW
         ticket.began = ticket.heard_at = self._measured_at = now
         self._say(now, f"agent {ticket.number}: permitted by the key at the {screen}", Severity.WARNING)
         ticket.changed()
@@ -196,7 +196,7 @@ class ProposalBook:
         if ticket is None:
             return None
         proposal, contact = ticket.proposal, self._fleet.get(ticket.proposal.system)
-        runs = ticket.stage is Stage.RUNNING
+        runs = ticket.stage is ProposalStage.RUNNING
         return ProposalView(
             number=ticket.number,
             who=proposal.who,
@@ -217,7 +217,7 @@ class ProposalBook:
     def tick(self, now: float) -> None:
         """End what has waited or run for too long, and what nobody permits any more."""
         for ticket in list(self._tickets):
-            if ticket.stage is Stage.RUNNING:
+            if ticket.stage is ProposalStage.RUNNING:
                 self._measure(ticket, now)
             if (why := self._fault(ticket, now)) is not None:
                 self._end(ticket, why, now)
@@ -237,7 +237,7 @@ class ProposalBook:
 
     def _fault(self, ticket: Ticket, now: float) -> str | None:
         """Return why a proposal ends now."""
-        if ticket.stage is Stage.WAITING:
+        if ticket.stage is ProposalStage.WAITING:
             if self.permitting_screen() is None:
                 return NO_SCREEN
             return "nobody has held the key in time" if now >= ticket.until else None
@@ -259,13 +259,13 @@ class ProposalBook:
     # ---- ends ----
 
     def _end(self, ticket: Ticket, why: str, now: float, *, done: bool = False) -> None:
-        if ticket.stage is Stage.ENDED:
+        if ticket.stage is ProposalStage.ENDED:
             return
-        ran = f" after {now - ticket.began:.1f} s" if ticket.stage is Stage.RUNNING else ""
-        if ticket.stage is Stage.RUNNING:
+        ran = f" after {now - ticket.began:.1f} s" if ticket.stage is ProposalStage.RUNNING else ""
+        if ticket.stage is ProposalStage.RUNNING:
             self._stop(ticket, now)
         self._tickets.remove(ticket)
-        ticket.stage, ticket.why, ticket.done = Stage.ENDED, why, done
+        ticket.stage, ticket.why, ticket.done = ProposalStage.ENDED, why, done
         self._say(now, f"agent {ticket.number}: {'done' if done else 'ended'}{ran}: {why}", Severity.NOTICE)
         ticket.changed()
 
@@ -282,7 +282,7 @@ class ProposalBook:
 
     @property
     def _running(self) -> Ticket | None:
-        return next((each for each in self._tickets if each.stage is Stage.RUNNING), None)
+        return next((each for each in self._tickets if each.stage is ProposalStage.RUNNING), None)
 
     def _refusal(self, proposal: Proposal) -> str | None:
         contact = self._fleet.get(proposal.system)

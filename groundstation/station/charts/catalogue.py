@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 from dialects.messages import MESSAGES, Message
 from groundstation.station.messages.fields import build_info, format_value, make_reader, numeric_fields, rank_fields
-from groundstation.station.messages.message_traffic import MessageTraffic, Place
+from groundstation.station.messages.message_traffic import MessageTraffic, TrafficKey
 from groundstation.views.charts import (
     STATION,
     ChartTemplate,
@@ -70,7 +70,7 @@ MAX_ROWS = 50
 _NAME = re.compile(r"(\w+)\.(\w+)(?:\[(\d+)\])?")
 
 
-def place_of(field: FieldId) -> Place:
+def place_of(field: FieldId) -> TrafficKey:
     """Return the kind of message that has a field."""
     return ((field.sent, field.system, field.component), field.message)
 
@@ -86,7 +86,7 @@ class FieldCatalogue:
     def __init__(self, traffic: MessageTraffic) -> None:
         self._traffic = traffic
         self._fields: list[FieldId] = []
-        self._places: list[Place] = []
+        self._places: list[TrafficKey] = []
 
     def build_page(self, request: FieldsRequest, vehicle: tuple[int, int]) -> FieldsPage:
         """Return the fields that match, those that are drawn, and the ready views of a vehicle (its ids)."""

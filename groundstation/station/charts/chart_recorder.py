@@ -13,7 +13,7 @@ from groundstation.station.charts.recorder import SeriesRecorder
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.messages.fields import Reader, make_reader
 from groundstation.station.messages.message_kind import Tap
-from groundstation.station.messages.message_traffic import MessageTraffic, Place
+from groundstation.station.messages.message_traffic import MessageTraffic, TrafficKey
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Fleet
 from groundstation.views.base import ViewRequest
@@ -117,9 +117,9 @@ class ChartRecorder:
         return self._catalogue.build_page(request, ids)
 
 
-def _taps(recorded: Mapping[FieldId, PointBuffer]) -> Iterator[tuple[Place, Tap]]:
+def _taps(recorded: Mapping[FieldId, PointBuffer]) -> Iterator[tuple[TrafficKey, Tap]]:
     """Yield one tap for each kind of message that has recorded fields."""
-    readers: dict[Place, list[tuple[Callable[[float, float], None], Reader]]] = {}
+    readers: dict[TrafficKey, list[tuple[Callable[[float, float], None], Reader]]] = {}
     for field, buffer in recorded.items():
         kind = class_of(field)
         read = make_reader(kind, field.field, field.index) if kind else None

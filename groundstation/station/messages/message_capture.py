@@ -10,7 +10,7 @@ from dialects.printable import printable
 from groundstation.formats.csv_row import csv_row
 from groundstation.station.messages.fields import array_length
 from groundstation.station.messages.message_fields import field_value
-from groundstation.station.messages.message_traffic import MessageTraffic, Place
+from groundstation.station.messages.message_traffic import MessageTraffic, TrafficKey
 from groundstation.views.messages import CapturePage, CaptureRequest
 
 KEPT = 4000
@@ -30,7 +30,7 @@ class MessageCapture:
 
     def __init__(self, traffic: MessageTraffic) -> None:
         self._traffic = traffic
-        self._place: Place | None = None
+        self._place: TrafficKey | None = None
         self._kept: deque[tuple[int, float, Message]] = deque(maxlen=KEPT)
         self._newest = 0
         self._asked_at = 0.0
@@ -65,7 +65,7 @@ class MessageCapture:
         if self._place is not None and now - self._asked_at > WATCHED_FOR:
             self._watch(None)
 
-    def _watch(self, place: Place | None) -> None:
+    def _watch(self, place: TrafficKey | None) -> None:
         self._place = place
         self._kept.clear()
         self._traffic.set_taps(TAPS, {} if place is None else {place: self._keep})

@@ -13,7 +13,7 @@ from groundstation.station.messages.fields import array_length, build_info, make
 from groundstation.station.messages.message_capture import MessageCapture
 from groundstation.station.messages.message_fields import build_fields
 from groundstation.station.messages.message_kind import MessageKind
-from groundstation.station.messages.message_traffic import MessageTraffic, Place
+from groundstation.station.messages.message_traffic import MessageTraffic, TrafficKey
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.views.base import ViewRequest
 from groundstation.views.charts import FieldId
@@ -49,7 +49,7 @@ class MessageInspector:
     def __init__(self, traffic: MessageTraffic) -> None:
         self._traffic = traffic
         self._capture = MessageCapture(traffic)
-        self._place: Place | None = None
+        self._place: TrafficKey | None = None
         self._kept: deque[tuple[float, Message]] = deque(maxlen=round(SPAN / SPACING))
         self._asked_at = 0.0
 
@@ -86,7 +86,7 @@ class MessageInspector:
             now - kind.at, kind.length, tuple(self._fields(kind)), kind.payload, self._plot(request, kind, now),
         )  # fmt: skip
 
-    def _watch(self, place: Place | None) -> None:
+    def _watch(self, place: TrafficKey | None) -> None:
         self._place = place
         self._kept.clear()
         self._traffic.set_taps(TAPS, {} if place is None else {place: self._keep})

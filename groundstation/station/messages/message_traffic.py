@@ -30,7 +30,7 @@ Source = tuple[bool, int, int]
 """Sent by us, system, component: received ones first, by their ids."""
 
 
-Place = tuple[Source, str]
+TrafficKey = tuple[Source, str]
 """A kind of message: its source and its name."""
 
 
@@ -48,7 +48,7 @@ class MessageTraffic:
         self._labels: dict[tuple[int, int], str] = {}
         self._order: tuple[float, tuple[str, str], list[tuple[Source, str]]] = (0.0, ("", ""), [])
         """When rows were last sorted, for which order and filter, and the result."""
-        self._taps: dict[str, Mapping[Place, Tap]] = {}
+        self._taps: dict[str, Mapping[TrafficKey, Tap]] = {}
         self._bucket_ends = 0.0
 
     # ---- counting ----
@@ -108,23 +108,23 @@ class MessageTraffic:
 
     # ---- for others ----
 
-    def kinds(self) -> Iterator[tuple[Place, MessageKind]]:
+    def kinds(self) -> Iterator[tuple[TrafficKey, MessageKind]]:
         """Yield all kinds with their places."""
         for source, kinds in self._kinds.items():
             for name, kind in kinds.items():
                 yield (source, name), kind
 
-    def find(self, place: Place) -> MessageKind | None:
+    def find(self, place: TrafficKey) -> MessageKind | None:
         """Return a kind; None before its first message."""
         return self._kinds.get(place[0], {}).get(place[1])
 
-    def set_taps(self, owner: str, taps: Mapping[Place, Tap]) -> None:
+    def set_taps(self, owner: str, taps: Mapping[TrafficKey, Tap]) -> None:
         """Give each message of these kinds to their taps, in place of those that `owner` set before."""
         self._taps[owner] = taps
         for place, kind in self.kinds():
             kind.taps = self._taps_of(place)
 
-    def _taps_of(self, place: Place) -> tuple[Tap, ...]:
+    def _taps_of(self, place: TrafficKey) -> tuple[Tap, ...]:
         return tuple(taps[place] for taps in self._taps.values() if place in taps)
 
     # ---- for the screen ----

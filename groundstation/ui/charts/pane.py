@@ -46,7 +46,7 @@ class PaneLine(msgspec.Struct, frozen=True, eq=False):
     chosen: bool = False
 
 
-class PaneValue(msgspec.Struct, frozen=True, eq=False):
+class ChartPaneValue(msgspec.Struct, frozen=True, eq=False):
     """A chart. Two values are equal only if they are the same object: the model makes a new one when it has changed."""
 
     number: int
@@ -65,7 +65,7 @@ class PaneValue(msgspec.Struct, frozen=True, eq=False):
     chosen: bool = False
 
 
-EMPTY = PaneValue(0, "", "", (), 0, 0.0, 1.0, 0)
+EMPTY = ChartPaneValue(0, "", "", (), 0, 0.0, 1.0, 0)
 
 
 def plot_dots(width: int) -> int:
@@ -73,7 +73,7 @@ def plot_dots(width: int) -> int:
     return max(2, (width - AXIS) * 2)
 
 
-def draw_chart(value: PaneValue, width: int, height: int) -> list[Strip]:
+def draw_chart(value: ChartPaneValue, width: int, height: int) -> list[Strip]:
     """Draw a chart of at least two rows: a header, then the picture."""
     canvas = Canvas(width, max(1, height - 1))
     _draw_scale(canvas, value)
@@ -86,7 +86,7 @@ def draw_chart(value: PaneValue, width: int, height: int) -> list[Strip]:
     return [_header(value, width), *canvas.strips()]
 
 
-class ChartPane(Instrument[PaneValue]):
+class ChartPane(Instrument[ChartPaneValue]):
     """One chart."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
@@ -124,7 +124,7 @@ def scale_text(number: float, decimals: int) -> str:
     return f"{number:.0e}" if decimals >= MAX_DECIMALS or abs(number) >= 1e7 else f"…{text[2 - AXIS :]}"
 
 
-def _header(value: PaneValue, width: int) -> Strip:
+def _header(value: ChartPaneValue, width: int) -> Strip:
     """Return the line over a chart: number, title, legend with values, unit."""
     rule = style(BLUE if value.chosen else LINE)
     parts: list[Part] = [
@@ -143,7 +143,7 @@ def _header(value: PaneValue, width: int) -> Strip:
     return strip(*parts, (unit, style(DIM))).crop(0, width)
 
 
-def _draw_scale(canvas: Canvas, value: PaneValue) -> None:
+def _draw_scale(canvas: Canvas, value: ChartPaneValue) -> None:
     middle = ((value.low + value.high) / 2, (canvas.down - 1) // 2)
     for number, y in ((value.high, 0), *([middle] if canvas.height > 3 else []), (value.low, canvas.down - 1)):
         canvas.write(0, y // 4, scale_text(number, value.decimals).rjust(AXIS - 1), style(DIM))
@@ -154,7 +154,7 @@ def _draw_scale(canvas: Canvas, value: PaneValue) -> None:
 class _Plotter:
     """Draws one line on a canvas. Most of what a frame of the Charts screen costs is here."""
 
-    def __init__(self, canvas: Canvas, value: PaneValue, line: PaneLine) -> None:
+    def __init__(self, canvas: Canvas, value: ChartPaneValue, line: PaneLine) -> None:
         self._canvas, self._line = canvas, line
         self._left = value.left
         self._shift = AXIS * 2 - value.left

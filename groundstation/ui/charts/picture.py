@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from groundstation.ui.charts.field_list import CandidateRow, ChartRow, ListRow, SeriesRow, TextRow, ViewRow
 from groundstation.ui.charts.model import ChartsModel
-from groundstation.ui.charts.pane import PaneLine, PaneValue, nice_scale
+from groundstation.ui.charts.pane import ChartPaneValue, PaneLine, nice_scale
 from groundstation.ui.charts.series import SeriesSpec
 from groundstation.ui.charts.stats import StatsRow
 from groundstation.ui.charts.timeline import ChartTimelineValue, TimelineMark, TimelineMode
@@ -24,10 +24,10 @@ class Pictures:
 
     def __init__(self, model: ChartsModel) -> None:
         self._model = model
-        self._panes: dict[int, tuple[object, PaneValue]] = {}
+        self._panes: dict[int, tuple[object, ChartPaneValue]] = {}
         self._stats: tuple[object, tuple[StatsRow, ...]] = (None, ())
 
-    def pane(self, index: int) -> PaneValue:
+    def pane(self, index: int) -> ChartPaneValue:
         """Return the chart with this index."""
         model, axis = self._model, self._model.axis
         chart = model.charts.charts[index]
@@ -48,7 +48,7 @@ class Pictures:
             self._panes[index] = key, self._build(index, texts)
         return self._panes[index][1]
 
-    def _build(self, index: int, texts: tuple[str, ...]) -> PaneValue:
+    def _build(self, index: int, texts: tuple[str, ...]) -> ChartPaneValue:
         model, axis = self._model, self._model.axis
         chart, chosen = model.charts.charts[index], model.charts.chosen
         columns = [model.columns(spec).between(axis.left, axis.right) for spec in chart.lines]
@@ -65,7 +65,9 @@ class Pictures:
         units = dict.fromkeys(unit for spec in chart.lines if (unit := model.unit(spec)))
         at = axis.column(axis.cursor), axis.column(axis.mark)
         is_chosen = chosen is not None and chosen[0] == index
-        return PaneValue(index + 1, chart.title, " ".join(units), lines, axis.left, low, high, decimals, *at, is_chosen)
+        return ChartPaneValue(
+            index + 1, chart.title, " ".join(units), lines, axis.left, low, high, decimals, *at, is_chosen
+        )
 
     def _now_text(self, spec: SeriesSpec) -> str:
         """Return the value at the cursor, or the newest one."""

@@ -32,7 +32,7 @@ from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, Tra
 from groundstation.views.messages import MessagesPage, MessagesRequest
 
 Value = TypeVar("Value")
-Kind = TypeVar("Kind", bound=View)
+ViewType = TypeVar("ViewType", bound=View)
 
 FAST, SLOW = 0.2, 0.5
 """s between two updates of a pane: each changes many of its lines, which is expensive over SSH."""
@@ -53,7 +53,7 @@ class PaneInput(msgspec.Struct, frozen=True):
     camera: CameraFeed | None = None
     """Its camera, for the pane that shows it."""
 
-    def view(self, kind: type[Kind]) -> Kind | None:
+    def view(self, kind: type[ViewType]) -> ViewType | None:
         """Return the newest view of a kind."""
         found = self.views.get(kind)
         return found if isinstance(found, kind) else None

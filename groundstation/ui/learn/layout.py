@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 
-class Place(Enum):
+class PanePlace(Enum):
     """Where the pane is."""
 
     RIGHT = "right"
@@ -21,16 +21,16 @@ WIDTH, HEIGHT = 40, 6
 Size = tuple[int, int]
 
 
-def choose_place(size: Size) -> Place:
+def choose_place(size: Size) -> PanePlace:
     """Return the place of the pane in a terminal of this size."""
     if size[0] >= RIGHT_FROM[0] and size[1] >= RIGHT_FROM[1]:
-        return Place.RIGHT
-    return Place.BELOW if size[0] >= BELOW_FROM[0] and size[1] >= BELOW_FROM[1] else Place.HIDDEN
+        return PanePlace.RIGHT
+    return PanePlace.BELOW if size[0] >= BELOW_FROM[0] and size[1] >= BELOW_FROM[1] else PanePlace.HIDDEN
 
 
-def room_beside(size: Size, place: Place) -> Size:
+def room_beside(size: Size, place: PanePlace) -> Size:
     """Return the columns and rows that are left to the screen."""
     columns, rows = size
-    if place is Place.RIGHT:
+    if place is PanePlace.RIGHT:
         return columns - WIDTH, rows
-    return (columns, rows - HEIGHT) if place is Place.BELOW else (columns, rows)
+    return (columns, rows - HEIGHT) if place is PanePlace.BELOW else (columns, rows)

@@ -9,8 +9,18 @@ from groundstation.learn.attempt import Attempt
 from groundstation.learn.lesson import print_keys
 from groundstation.snapshot import Snapshot
 from groundstation.ui.keys.keynames import format_key, main_key
-from groundstation.ui.learn.layout import HEIGHT, WIDTH, Place, Size, choose_place, room_beside
-from groundstation.ui.learn.pane import DONE, DUE, LATER, WRONG, LessonPane, PaneValue, TaskLine, find_page, lay_out
+from groundstation.ui.learn.layout import HEIGHT, WIDTH, PanePlace, Size, choose_place, room_beside
+from groundstation.ui.learn.pane import (
+    DONE,
+    DUE,
+    LATER,
+    WRONG,
+    LessonPane,
+    LessonPaneValue,
+    TaskLine,
+    find_page,
+    lay_out,
+)
 from groundstation.views.base import View
 
 AT_TASK = -1
@@ -83,7 +93,7 @@ class LessonDock:
     def turn_page(self, size: Size, keymap: Keymap) -> None:
         """Show the next page; after the last one hide the pane, or go on when all is done."""
         value = self.value(size, keymap)
-        if self._hidden or value.place is Place.HIDDEN:
+        if self._hidden or value.place is PanePlace.HIDDEN:
             self._hidden, self._page = False, 0
             return
         pages = lay_out(value, *_pane_size(size))
@@ -95,9 +105,9 @@ class LessonDock:
         else:
             self._hidden = True
 
-    def place(self, size: Size) -> Place:
+    def place(self, size: Size) -> PanePlace:
         """Return where the pane is in a terminal of this size."""
-        return Place.HIDDEN if self._hidden else choose_place(size)
+        return PanePlace.HIDDEN if self._hidden else choose_place(size)
 
     def room(self, size: Size) -> Size:
         """Return what is left to the screen."""
@@ -107,7 +117,7 @@ class LessonDock:
         """Return a pane for a screen."""
         return LessonPane(self.value(size, keymap), id="lesson")
 
-    def value(self, size: Size, keymap: Keymap) -> PaneValue:
+    def value(self, size: Size, keymap: Keymap) -> LessonPaneValue:
         """Return what the pane shows."""
         lesson, key = self.attempt.lesson, _key_of(keymap)
 
@@ -124,7 +134,7 @@ class LessonDock:
             end = ("DONE. Why this matters:", *end, goes)
         step = min(self.attempt.step + 1, len(lesson.steps))
         state = "done" if self.attempt.done else f"task {step} of {len(lesson.steps)}"
-        return PaneValue(
+        return LessonPaneValue(
             heading=f"{self._name} · {state} · {lesson.title}",
             place=self.place(size),
             text=tuple(show(each) for each in lesson.text.split("\n\n")),
@@ -146,7 +156,7 @@ class LessonDock:
 
 
 def _pane_size(size: Size) -> Size:
-    return (WIDTH, size[1]) if choose_place(size) is Place.RIGHT else (size[0], HEIGHT)
+    return (WIDTH, size[1]) if choose_place(size) is PanePlace.RIGHT else (size[0], HEIGHT)
 
 
 def _key_of(keymap: Keymap) -> Callable[[str], str]:

@@ -10,7 +10,7 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.ui.display.wrap import wrap
-from groundstation.ui.learn.layout import HEIGHT, WIDTH, Place
+from groundstation.ui.learn.layout import HEIGHT, WIDTH, PanePlace
 from groundstation.ui.look.colours import AMBER, DIM, GREEN, PANEL, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, strip
 
@@ -25,11 +25,11 @@ class TaskLine(msgspec.Struct, frozen=True):
     text: str
 
 
-class PaneValue(msgspec.Struct, frozen=True):
+class LessonPaneValue(msgspec.Struct, frozen=True):
     """What the pane shows."""
 
     heading: str = ""
-    place: Place = Place.HIDDEN
+    place: PanePlace = PanePlace.HIDDEN
     text: tuple[str, ...] = ()
     """Paragraphs."""
     code: tuple[str, ...] = ()
@@ -51,7 +51,7 @@ Line = tuple[str, str]
 """Mark and text; the mark is "" in a paragraph and in lines after the first."""
 
 
-class LessonPane(Instrument[PaneValue]):
+class LessonPane(Instrument[LessonPaneValue]):
     """At the right of a wide screen, else in six lines below it."""
 
     DEFAULT_CSS = f"""
@@ -60,19 +60,19 @@ class LessonPane(Instrument[PaneValue]):
     LessonPane.-below {{ display: block; dock: bottom; width: 100%; height: {HEIGHT}; }}
     """
 
-    def __init__(self, value: PaneValue, *, id: str | None = None) -> None:  # noqa: A002
+    def __init__(self, value: LessonPaneValue, *, id: str | None = None) -> None:  # noqa: A002
         super().__init__(value, id=id)
         self._set_place(value.place)
 
-    def show(self, value: PaneValue) -> None:
+    def show(self, value: LessonPaneValue) -> None:
         """Show another value, at its place."""
         if value.place is not self.value.place:
             self._set_place(value.place)
         super().show(value)
 
-    def _set_place(self, place: Place) -> None:
-        self.set_class(place is Place.RIGHT, "-right")
-        self.set_class(place is Place.BELOW, "-below")
+    def _set_place(self, place: PanePlace) -> None:
+        self.set_class(place is PanePlace.RIGHT, "-right")
+        self.set_class(place is PanePlace.BELOW, "-below")
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the heading and one page."""
@@ -84,7 +84,7 @@ class LessonPane(Instrument[PaneValue]):
         return [head, *(_draw_line(line, width) for line in pages[at])]
 
 
-def lay_out(value: PaneValue, width: int, height: int) -> list[list[Line]]:
+def lay_out(value: LessonPaneValue, width: int, height: int) -> list[list[Line]]:
     """Return the pages of a pane: one where all fits, else the text, the tasks, and the end."""
     columns, rows = max(10, width - 2), max(1, height - 1)
     text = _paragraphs(value.text, columns)
@@ -99,7 +99,7 @@ def lay_out(value: PaneValue, width: int, height: int) -> list[list[Line]]:
     return [page for part in parts for page in _split(part, rows)] or [[]]
 
 
-def find_page(value: PaneValue, pages: Sequence[Sequence[Line]]) -> int:
+def find_page(value: LessonPaneValue, pages: Sequence[Sequence[Line]]) -> int:
     """Return the index of the page to show."""
     if value.page >= 0:
         return min(value.page, len(pages) - 1)

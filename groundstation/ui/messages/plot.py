@@ -8,7 +8,7 @@ import msgspec
 from textual.strip import Strip
 
 from groundstation.ui.charts.columns import Columns
-from groundstation.ui.charts.pane import PaneLine, PaneValue, draw_chart, nice_scale, plot_dots
+from groundstation.ui.charts.pane import ChartPaneValue, PaneLine, draw_chart, nice_scale, plot_dots
 from groundstation.ui.charts.points import Points
 from groundstation.ui.look.colours import DIM, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, strip
@@ -41,7 +41,7 @@ class MessagePlot(Instrument[MessagePlotValue]):
         return [*lines, strip((_stats(plot)[:width], style(TEXT)))] if stats else lines
 
 
-def build_pane(plot: FieldPlot, width: int) -> PaneValue:
+def build_pane(plot: FieldPlot, width: int) -> ChartPaneValue:
     """Return the chart of a plot at this width."""
     times, values = array("d", plot.times), array("d", plot.values)
     points, columns = Points(), Columns(SPAN / plot_dots(width))
@@ -55,7 +55,7 @@ def build_pane(plot: FieldPlot, width: int) -> PaneValue:
     name = field.field + (f"[{field.index}]" if field.index >= 0 else "")
     text = _text(plot, points.value_at(plot.now))
     line = PaneLine(name, text, columns.between(left, left + plot_dots(width)), 0, chosen=True)
-    return PaneValue(0, "60 s", plot.info.unit, (line,), left, low, high, decimals)
+    return ChartPaneValue(0, "60 s", plot.info.unit, (line,), left, low, high, decimals)
 
 
 def _stats(plot: FieldPlot) -> str:

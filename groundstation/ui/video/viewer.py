@@ -17,7 +17,7 @@ from groundstation.pictures.protocol import Protocol, choose_protocol
 from groundstation.ui.terminal.tty_output import TerminalFile
 from groundstation.ui.video.picture_terminal import TICK, PictureTerminal
 from groundstation.ui.video.status_line import format_status
-from groundstation.video.decoder import Program
+from groundstation.video.decoder import DecoderProgram
 from groundstation.video.feed import Feed
 from groundstation.video.ffmpeg_command import Shape
 from groundstation.video.source import VideoSource
@@ -45,7 +45,9 @@ class ViewerOptions(msgspec.Struct, frozen=True):
 class Viewer:
     """Draws what a feed brings."""
 
-    def __init__(self, source: VideoSource, program: Program, options: ViewerOptions, file: TerminalFile) -> None:
+    def __init__(
+        self, source: VideoSource, program: DecoderProgram, options: ViewerOptions, file: TerminalFile
+    ) -> None:
         self._options = options
         self._ended = asyncio.Event()
         self._terminal = PictureTerminal(file, self._ended.set, self._handle_pong)

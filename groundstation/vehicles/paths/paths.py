@@ -41,7 +41,7 @@ BEHIND = 300
 DRIFT = 1e-4
 """s by which two clocks may differ after a second: the fastest path is not the fastest for ever."""
 
-Kind = tuple[int, type[m.Message]]
+MessageKey = tuple[int, type[m.Message]]
 
 
 class Paths:
@@ -59,7 +59,7 @@ class Paths:
         """Called when a further path is found."""
         self.questions, self.carrier = Questions(), Carrier()
         self._paths: dict[Peer, Path] = {}
-        self._newest: dict[Kind, tuple[Path, int | None, float]] = {}
+        self._newest: dict[MessageKey, tuple[Path, int | None, float]] = {}
         """Of each state message: who brought it last, its time_boot_ms, and when."""
         self._copies = EventCopies()
         self._fastest = math.inf

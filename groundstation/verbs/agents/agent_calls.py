@@ -17,12 +17,12 @@ from msgspec.structs import replace
 
 from dialects.printable import printable
 from groundstation.formats.errors import FileFormatError
-from groundstation.station.agents.proposals import Proposal, Stage, Ticket
+from groundstation.station.agents.proposals import Proposal, ProposalStage, Ticket
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.agents.arguments import InvalidArgumentError, check_arguments
 from groundstation.verbs.agents.bounded_output import BoundedOutput, clean
-from groundstation.verbs.agents.tools import TOOLS, Effect, Tool
+from groundstation.verbs.agents.tools import TOOLS, Tool, ToolEffect
 from groundstation.verbs.common.channel import ChannelEndedError
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyAttribute, LazyCall
@@ -122,14 +122,14 @@ class AgentCalls:
     async def _run(self, number: int, name: str, tool: Tool, values: dict[str, Any], output: BoundedOutput) -> str:
         """Run a tool; return why it has failed, or ""."""
         now = self._session.now
-        if tool.effect is Effect.PROPOSE:
+        if tool.effect is ToolEffect.PROPOSE:
             return await self._propose(number, tool, values, output)
         words = tool.words(values)
         self._book.note_call(self._who, " ".join(words) or name, values["reason"], now)
         if not words:
             self._read_station(name, output)
             return ""
-        if tool.effect is Effect.STOP:
+        if tool.effect is ToolEffect.STOP:
             self._end_what_runs(name)
         async with asyncio.timeout(LONGEST_READING):
             action, options = await asyncio.to_thread(_parse, _for_vehicle(words, values["vehicle"] or self._selected))
@@ -147,7 +147,7 @@ class AgentCalls:
 
     def _end_what_runs(self, name: str) -> None:
         shown = self._book.shown
-        if shown is not None and shown.stage is Stage.RUNNING:
+        if shown is not None and shown.stage is ProposalStage.RUNNING:
             self._book.finish(shown, f"an agent has called {name}", self._session.now)
 
     @property
@@ -175,7 +175,7 @@ class AgentCalls:
         self._tickets[number] = ticket
         try:
             await changed.wait()
-            if ticket.stage is Stage.RUNNING:
+            if ticket.stage is ProposalStage.RUNNING:
                 await self._perform(ticket, tool, action, options, output, changed)
         finally:
             self._book.finish(ticket, "the agent has ended", self._session.now)

@@ -14,7 +14,7 @@ LONGEST_TEXT = 200
 """Characters of a text."""
 
 
-class Kind(Enum):
+class ArgumentKind(Enum):
     """Types of arguments, by their names in a JSON schema."""
 
     NUMBER = "number"
@@ -27,7 +27,7 @@ class Argument(msgspec.Struct, frozen=True):
 
     name: str
     help: str
-    kind: Kind = Kind.NUMBER
+    kind: ArgumentKind = ArgumentKind.NUMBER
     low: float = -math.inf
     high: float = math.inf
     pattern: str = ""
@@ -40,7 +40,7 @@ class Argument(msgspec.Struct, frozen=True):
     def schema(self) -> dict[str, Any]:
         """Return its JSON schema."""
         schema: dict[str, Any] = {"type": self.kind.value, "description": self.help}
-        if self.kind is Kind.TEXT:
+        if self.kind is ArgumentKind.TEXT:
             schema["maxLength"] = LONGEST_TEXT
             if self.pattern:
                 schema["pattern"] = f"^{self.pattern}$"
@@ -83,15 +83,15 @@ def check_arguments(arguments: Sequence[Argument], given: object) -> dict[str, A
 
 
 def _check(argument: Argument, value: object) -> Any:
-    if argument.kind is Kind.TEXT:
+    if argument.kind is ArgumentKind.TEXT:
         return _check_text(argument, value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidArgumentError(f"{argument.name}: {_short(value)} is not a number")
     if not (argument.low <= value <= argument.high and abs(value) < math.inf):  # also NaN
         raise InvalidArgumentError(f"{argument.name}: {_short(value)} is not {_range(argument)}")
-    if argument.kind is Kind.INTEGER and value != int(value):
+    if argument.kind is ArgumentKind.INTEGER and value != int(value):
         raise InvalidArgumentError(f"{argument.name}: {_short(value)} is not a whole number")
-    return int(value) if argument.kind is Kind.INTEGER else float(value)
+    return int(value) if argument.kind is ArgumentKind.INTEGER else float(value)
 
 
 def _check_text(argument: Argument, value: object) -> str:

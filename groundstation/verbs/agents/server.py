@@ -19,7 +19,7 @@ from mcp.server.runner import serve_loop
 from mcp.shared.exceptions import MCPError
 
 from groundstation.verbs.agents.client_pipe import open_client
-from groundstation.verbs.agents.tools import TOOLS, Effect, Tool
+from groundstation.verbs.agents.tools import TOOLS, Tool, ToolEffect
 from groundstation.verbs.common.channel import CompanionChannel
 
 PING_PERIOD = 0.08
@@ -36,9 +36,9 @@ is a proposal: it waits on the operator's screen and runs only while a person ho
 it is done, declined, stopped or nobody has held the key. Give a short honest reason, and propose one step at a time."""
 
 _EFFECTS = {
-    Effect.READ: "",
-    Effect.STOP: "",
-    Effect.PROPOSE: " A proposal: it runs only while the operator holds a key.",
+    ToolEffect.READ: "",
+    ToolEffect.STOP: "",
+    ToolEffect.PROPOSE: " A proposal: it runs only while the operator holds a key.",
 }
 
 Context = ServerRequestContext[Any, Any]
@@ -76,7 +76,7 @@ class AgentServer:
         self._waiting[number] = ended
         self._verb.send({"type": "call", "id": number, "tool": params.name, "arguments": params.arguments or {}})
         pings = None
-        if tool is not None and tool.effect is Effect.PROPOSE:
+        if tool is not None and tool.effect is ToolEffect.PROPOSE:
             pings = asyncio.ensure_future(self._ask_client(context))
         try:
             return _answer(await ended)
@@ -131,8 +131,8 @@ async def serve_agent(verb: CompanionChannel) -> None:
 
 
 def _describe(name: str, tool: Tool) -> types.Tool:
-    reads = tool.effect is Effect.READ
-    hints = types.ToolAnnotations(read_only_hint=reads, destructive_hint=tool.effect is Effect.PROPOSE)
+    reads = tool.effect is ToolEffect.READ
+    hints = types.ToolAnnotations(read_only_hint=reads, destructive_hint=tool.effect is ToolEffect.PROPOSE)
     text = tool.help + _EFFECTS[tool.effect]
     return types.Tool(name=name, description=text, input_schema=tool.schema, annotations=hints)
 

@@ -17,7 +17,7 @@ import msgspec
 
 from dialects import messages as m
 from groundstation.formats.errors import FileFormatError
-from groundstation.rover.protocol import SILENCE, STATE_PERIOD, CurrentState, Ended, Ready, VehicleText
+from groundstation.rover.protocol import SILENCE, STATE_PERIOD, CurrentState, Ended, Ready, TextEvent
 from groundstation.verbs.action import VerbAction
 from groundstation.verbs.api.call_output import CallOutput
 from groundstation.verbs.api.state import build_state
@@ -100,7 +100,7 @@ class ProgramCalls:
     def _tap(self, received: Received, now: float) -> None:
         message = received.message
         if isinstance(message, m.StatusText) and received.system == self._session.vehicle.system:
-            self._send(VehicleText(message.severity, message.text))
+            self._send(TextEvent(message.severity, message.text))
 
     # ---- calls ----
 

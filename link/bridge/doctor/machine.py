@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from link.endpoint import DEFAULT_BAUD
 from link.runtime.diagnosis import Finding, ReportRow, fault, ok, unknown, warn
-from link.transport.processes import Kind, find_socket_holders
+from link.transport.processes import SocketKind, find_socket_holders
 from link.transport.serial_ports import SerialPort, find_serial_ports
 
-USUAL_PORTS: tuple[tuple[Kind, int], ...] = (("udp", 14550), ("udp", 14551), ("udp", 14540), ("tcp", 5760))
+USUAL_PORTS: tuple[tuple[SocketKind, int], ...] = (("udp", 14550), ("udp", 14551), ("udp", 14540), ("tcp", 5760))
 """Ports of ground stations, of a second one, of offboard programs (PX4), and of ArduPilot's simulator."""
 
 
@@ -33,7 +33,7 @@ def _serial(port: SerialPort) -> Finding:
     return ok(f"{text}: free; examine it with: mavhelm bridge doctor serial:{port.path}:{DEFAULT_BAUD}")
 
 
-def _socket(kind: Kind, number: int) -> Finding:
+def _socket(kind: SocketKind, number: int) -> Finding:
     holders = find_socket_holders(kind, number)
     if not holders:
         return ok("free to listen on")

@@ -9,7 +9,7 @@ import pytest
 
 from groundstation.video.ffmpeg_command import Shape, build_ffmpeg_command
 from groundstation.video.gst_command import build_gst_command
-from groundstation.video.source import ANY_ADDRESS, Kind, SourceError, VideoSource, parse_source
+from groundstation.video.source import ANY_ADDRESS, SourceError, SourceKind, VideoSource, parse_source
 
 SHAPE = Shape(160, 90, 10.0)
 ALLOWED = {
@@ -25,20 +25,20 @@ def test_each_kind_of_source(tmp_path: Path) -> None:
     (tmp_path / "a.mp4").touch()
     (tmp_path / "-i").touch()
     for text, source in {
-        "rtp:5600": VideoSource(Kind.RTP, ANY_ADDRESS, 5600, "rtp:5600"),
-        "udp://127.0.0.1:5601": VideoSource(Kind.UDP, "127.0.0.1", 5601, "udp://127.0.0.1:5601"),
+        "rtp:5600": VideoSource(SourceKind.RTP, ANY_ADDRESS, 5600, "rtp:5600"),
+        "udp://127.0.0.1:5601": VideoSource(SourceKind.UDP, "127.0.0.1", 5601, "udp://127.0.0.1:5601"),
         "rtsp://me:secret@10.0.0.2:8554/live": VideoSource(
-            Kind.RTSP, "rtsp://me:secret@10.0.0.2:8554/live", name="rtsp://10.0.0.2:8554/live"
+            SourceKind.RTSP, "rtsp://me:secret@10.0.0.2:8554/live", name="rtsp://10.0.0.2:8554/live"
         ),
         "https://camera/mjpeg?fps=10": VideoSource(
-            Kind.HTTP, "https://camera/mjpeg?fps=10", name="https://camera/mjpeg"
+            SourceKind.HTTP, "https://camera/mjpeg?fps=10", name="https://camera/mjpeg"
         ),
-        "a.mp4": VideoSource(Kind.FILE, str(tmp_path / "a.mp4"), name="a.mp4"),
-        "-i": VideoSource(Kind.FILE, str(tmp_path / "-i"), name="-i"),
-        f"file:{tmp_path}/a.mp4": VideoSource(Kind.FILE, f"{tmp_path}/a.mp4", name=f"{tmp_path}/a.mp4"),
+        "a.mp4": VideoSource(SourceKind.FILE, str(tmp_path / "a.mp4"), name="a.mp4"),
+        "-i": VideoSource(SourceKind.FILE, str(tmp_path / "-i"), name="-i"),
+        f"file:{tmp_path}/a.mp4": VideoSource(SourceKind.FILE, f"{tmp_path}/a.mp4", name=f"{tmp_path}/a.mp4"),
     }.items():
         assert parse_source(text, tmp_path) == source
-    assert parse_source("v4l2:/dev/video0", tmp_path).kind is Kind.V4L2 if Path("/dev/video0").exists() else True
+    assert parse_source("v4l2:/dev/video0", tmp_path).kind is SourceKind.V4L2 if Path("/dev/video0").exists() else True
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from dialects.enums import DriveType
 from vehicle.params import Params
-from vehicle.proximity.outline import Gap, Motion, Outline, WheelMotion, carry
+from vehicle.proximity.outline import Motion, Outline, OutlineGap, WheelMotion, carry
 from vehicle.sim.chassis import CHASSIS, ChassisDimensions
 
 OUTLINE = Outline(Params({"BODY_LENGTH": 0.6, "BODY_WIDTH": 0.4}))
@@ -27,7 +27,7 @@ def test_a_gap_shrinks_as_it_says(x: float, y: float, ahead: float, right: float
 
 
 def test_a_gap_within_the_outline_leads_out() -> None:
-    assert OUTLINE.gap((0.29, 0.0)) == Gap(0.0, 1.0, 0.0, 0.0)
+    assert OUTLINE.gap((0.29, 0.0)) == OutlineGap(0.0, 1.0, 0.0, 0.0)
     assert OUTLINE.gap((0.0, -0.19))[:3] == (0.0, 0.0, -1.0)
     assert OUTLINE.gap((0.0, 0.0)).clearance == 0.0
 

@@ -12,8 +12,8 @@ from msgspec.structs import replace
 from groundstation.ui.charts.columns import Columns
 from groundstation.ui.charts.pane import (
     PATTERNS,
+    ChartPaneValue,
     PaneLine,
-    PaneValue,
     draw_chart,
     nice_scale,
     plot_dots,
@@ -38,7 +38,7 @@ def line(times: list[float], value: float = 0.5, slot: int = 0) -> PaneLine:
 
 
 def drawn(*lines: PaneLine, **changes: Any) -> list[str]:
-    value = PaneValue(1, "speed", "m/s", lines, left=0, low=0.0, high=1.0, decimals=1)
+    value = ChartPaneValue(1, "speed", "m/s", lines, left=0, low=0.0, high=1.0, decimals=1)
     return texts(draw_chart(replace(value, **changes), WIDTH, 5))
 
 

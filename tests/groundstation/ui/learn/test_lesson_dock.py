@@ -5,7 +5,7 @@ from __future__ import annotations
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.learn.attempt import Attempt
 from groundstation.learn.course import load_course
-from groundstation.ui.learn.layout import Place
+from groundstation.ui.learn.layout import PanePlace
 from groundstation.ui.learn.lesson_dock import LessonDock
 from groundstation.ui.learn.pane import DUE, WRONG, lay_out
 
@@ -21,7 +21,11 @@ def dock(number: int, done: list[int] | None = None, after: str = "2 Next") -> L
 
 def test_the_pane_leaves_room_for_the_screen() -> None:
     pane = dock(1)
-    assert [pane.place(size) for size in (LARGE, SMALL, (79, 24))] == [Place.RIGHT, Place.BELOW, Place.HIDDEN]
+    assert [pane.place(size) for size in (LARGE, SMALL, (79, 24))] == [
+        PanePlace.RIGHT,
+        PanePlace.BELOW,
+        PanePlace.HIDDEN,
+    ]
     assert [pane.room(size) for size in (LARGE, SMALL, (79, 24))] == [(100, 45), (80, 18), (79, 24)]
 
 
@@ -39,22 +43,22 @@ def test_every_lesson_fits_into_its_pages() -> None:
 def test_the_key_turns_pages_then_hides_then_shows() -> None:
     pane = dock(1)
     for _ in range(len(lay_out(pane.value(SMALL, KEYS), 80, 6))):
-        assert pane.place(SMALL) is Place.BELOW
+        assert pane.place(SMALL) is PanePlace.BELOW
         pane.turn_page(SMALL, KEYS)
     assert pane.room(SMALL) == SMALL
     pane.turn_page(SMALL, KEYS)
-    assert (pane.place(SMALL), pane.value(SMALL, KEYS).page) == (Place.BELOW, 0)
+    assert (pane.place(SMALL), pane.value(SMALL, KEYS).page) == (PanePlace.BELOW, 0)
 
 
 def test_a_hint_shows_the_pane_again_and_the_end_goes_on_once() -> None:
     done: list[int] = []
     pane = dock(1, done)
     pane.turn_page(LARGE, KEYS)
-    assert pane.place(LARGE) is Place.HIDDEN
+    assert pane.place(LARGE) is PanePlace.HIDDEN
     pane.attempt.hint = "Hold `drive.forward`."
     pane._follow()
     marks = {task.mark: task.text for task in pane.value(LARGE, KEYS).tasks}
-    assert pane.place(LARGE) is Place.RIGHT
+    assert pane.place(LARGE) is PanePlace.RIGHT
     assert (marks[WRONG], marks[DUE][:8]) == ("Hold [i].", "Hold [r]")
     pane.attempt.step = len(pane.attempt.lesson.steps)
     pane._follow()
