@@ -24,7 +24,7 @@ from pathlib import Path
 from tests.waits import PATIENCE
 
 PROGRAMS = (
-    "groundstation.cli.console", "groundstation.cli.main", "groundstation.cli.replay_verb",
+    "groundstation.cli.console", "groundstation.cli.main", "groundstation.cli.local.replay",
     "groundstation.export.exporter", "groundstation.verbs.main", "groundstation.verbs.session.session",
     "link.bridge.bridge", "vehicle.cli.main",
 )  # fmt: skip

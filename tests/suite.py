@@ -58,7 +58,7 @@ LONG = (
     "vehicle/commands/test_go_to.py", "vehicle/commands/test_params.py::test_an_unsaved_value_is_retried",
     "vehicle/machine", "vehicle/motors/test_pins.py", "vehicle/sensors/test_gps.py::test_a_real_gpsd",
     "vehicle/storage/test_tlog_files.py::test_a_real_card",
-    "groundstation/cli/test_keys_verb.py", "groundstation/connect", "groundstation/export", "groundstation/gamepad",
+    "groundstation/cli/local/test_keys.py", "groundstation/connect", "groundstation/export", "groundstation/gamepad",
     "groundstation/recording/test_power_cut.py", "groundstation/replay",
     "groundstation/station/doctor/test_diagnostics.py", "groundstation/station/services",
     "groundstation/test_ipc.py::test_the_version",

@@ -87,7 +87,7 @@ DAY = 86_400 * 100_000
         ("groundstation.station_socket.verb_run.ALIVE_WITHIN", 0.3),
         ("groundstation.station.driving.handover.ANSWER_WITHIN", 10.0),
         ("groundstation.intents.driving.PAD_WINDOW", 0.25),
-        ("groundstation.station.driving.shutdown.DISARM_TIMEOUT", 2.0),
+        ("groundstation.station.driving.stops.shutdown.DISARM_TIMEOUT", 2.0),
         ("link.signing.verifier.NEW_STREAM_WINDOW", 6_000_000),
         ("link.signing.verifier.CRASH_WINDOW", 500_000),
         ("link.signing.verifier.PINNED_FOR", 10.0),

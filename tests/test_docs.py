@@ -10,17 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli import (
-    attach_verb,
-    completion_verb,
-    config_verb,
-    keys_verb,
-    learn_verb,
-    replay_verb,
-    serve_verb,
-    video_verb,
-)
 from groundstation.cli import options as station_options
+from groundstation.cli.local import attach, completion, config, keys, learn, replay, serve, video
 from groundstation.cli.verb_help import LOCAL_VERBS
 from groundstation.verbs import main as verbs_main
 from groundstation.verbs.table import VERBS
@@ -114,14 +105,14 @@ def commands(text: str) -> list[tuple[str, list[str]]]:
 
 
 LOCAL_PARSERS = {
-    "config": config_verb.build_parser,
-    "keys": keys_verb.build_parser,
-    "attach": attach_verb.build_parser,
-    "serve": serve_verb.build_parser,
-    "completion": completion_verb.build_parser,
-    "learn": learn_verb.build_parser,
-    "replay": replay_verb.build_replay_parser,
-    "video": video_verb.build_parser,
+    "config": config.build_parser,
+    "keys": keys.build_parser,
+    "attach": attach.build_parser,
+    "serve": serve.build_parser,
+    "completion": completion.build_parser,
+    "learn": learn.build_parser,
+    "replay": replay.build_replay_parser,
+    "video": video.build_parser,
 }
 
 SHOWN = [(doc.name, program, words) for doc in DOCS for program, words in commands(doc.read_text())]

@@ -16,7 +16,7 @@ import pytest
 from dialects import messages as m
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command
-from groundstation.station.driving.emergency import EmergencyLock
+from groundstation.station.driving.stops.emergency import EmergencyLock
 from groundstation.vehicles.demand.blind_stop import BlindStop
 from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.demand.stop_commands import StopKind

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from platformdirs import user_log_path
 
-from groundstation.cli.local_verb import UsageError, load_settings, report_mistakes
+from groundstation.cli.local.runner import UsageError, load_settings, report_mistakes
 from groundstation.cli.options import REPLAY_SETTINGS, build_parser, option_words
 from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.unknown_options import describe_unknown

@@ -84,21 +84,21 @@ def _verb_first(arguments: Sequence[str]) -> Sequence[str]:
 def _run_local(verb: str, arguments: Sequence[str]) -> int:
     """Run a verb without a vehicle."""
     if verb == "config":
-        from groundstation.cli.config_verb import run
+        from groundstation.cli.local.config import run
     elif verb == "keys":
-        from groundstation.cli.keys_verb import run
+        from groundstation.cli.local.keys import run
     elif verb == "attach":
-        from groundstation.cli.attach_verb import run
+        from groundstation.cli.local.attach import run
     elif verb == "replay":
-        from groundstation.cli.replay_verb import run
+        from groundstation.cli.local.replay import run
     elif verb == "learn":
-        from groundstation.cli.learn_verb import run
+        from groundstation.cli.local.learn import run
     elif verb == "serve":
-        from groundstation.cli.serve_verb import run
+        from groundstation.cli.local.serve import run
     elif verb == "video":
-        from groundstation.cli.video_verb import run
+        from groundstation.cli.local.video import run
     else:
-        from groundstation.cli.completion_verb import run as run_completion
+        from groundstation.cli.local.completion import run as run_completion
         from groundstation.cli.verb_help import EVERY_VERB
 
         return run_completion(arguments, {name: verb.help for name, verb in EVERY_VERB.items()})

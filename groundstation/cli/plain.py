@@ -8,7 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 
-from groundstation.cli.local_verb import report_mistakes
+from groundstation.cli.local.runner import report_mistakes
 from groundstation.cli.verb_help import EVERY_VERB
 from groundstation.station_socket.about import ask_about
 from groundstation.station_socket.connect import running_stations

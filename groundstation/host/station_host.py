@@ -22,7 +22,7 @@ from groundstation.intents.session import Quit
 from groundstation.intents.union import AnyIntent
 from groundstation.recording.station_recording import StationRecording
 from groundstation.sitl.sitl import SimulatorControl
-from groundstation.station.driving.shutdown import DISARM_AFTER, DISARM_TIMEOUT
+from groundstation.station.driving.stops.shutdown import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.process.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from groundstation.watchdog.feed import WatchdogFeed

@@ -11,9 +11,9 @@ from groundstation.station.component import COMPONENT
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.driving import DrivingController
 from groundstation.station.driving.handover import Handover
-from groundstation.station.driving.link_closing import LinkClosing
 from groundstation.station.driving.operator import OperatorSession
-from groundstation.station.driving.shutdown import StationShutdown
+from groundstation.station.driving.stops.link_closing import LinkClosing
+from groundstation.station.driving.stops.shutdown import StationShutdown
 from groundstation.station.links.link_monitor import LinkMonitor
 from groundstation.station.links.path_routing import PathRouting
 from groundstation.station.notes.operator_log import OperatorLog

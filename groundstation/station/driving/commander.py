@@ -9,11 +9,11 @@ from dialects.messages import Message
 from dialects.mode_tables import HOLD
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.arming import ArmSequence, ArmStep, send_mode
-from groundstation.station.driving.blind_stops import EVERYBODY, BlindStops
 from groundstation.station.driving.claims import Claims
 from groundstation.station.driving.command_results import CommandResults
-from groundstation.station.driving.emergency import EmergencyLock
-from groundstation.station.driving.stop_questions import FALLS, StopQuestions
+from groundstation.station.driving.stops.blind_stops import EVERYBODY, BlindStops
+from groundstation.station.driving.stops.emergency import EmergencyLock
+from groundstation.station.driving.stops.stop_questions import FALLS, StopQuestions
 from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, mode_stop
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, StopKind
 from groundstation.vehicles.demand.take_off import find_refusal, take_off_params

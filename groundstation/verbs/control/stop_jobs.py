@@ -7,7 +7,7 @@ import msgspec
 from dialects.enums import result_token
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.arming import CONFIRM_WITHIN
-from groundstation.station.driving.emergency import EmergencyLock
+from groundstation.station.driving.stops.emergency import EmergencyLock
 from groundstation.vehicles.demand.repeated_stop import (
     RepeatedStop,
     StopEnd,

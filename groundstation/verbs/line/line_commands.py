@@ -10,7 +10,7 @@ from typing import Any
 from dialects.enums import Severity
 from groundstation.formats.errors import FileFormatError
 from groundstation.intents.line import RunLine
-from groundstation.station.driving.blind_stops import EVERYBODY
+from groundstation.station.driving.stops.blind_stops import EVERYBODY
 from groundstation.station.station import Station
 from groundstation.vehicles.demand.stop_commands import STOP_VERBS
 from groundstation.vehicles.fleet import Contact

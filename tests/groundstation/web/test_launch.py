@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 import pytest
 
 pytest.importorskip("aiohttp", reason="the extra [web] is not installed")
-from groundstation.cli.serve_verb import build_parser
+from groundstation.cli.local.serve import build_parser
 from groundstation.web import launch as launching
 from groundstation.web.launch import WebLaunch, missing_package
 from link.runtime.child_process import ROOT

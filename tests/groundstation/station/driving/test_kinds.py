@@ -12,7 +12,7 @@ from groundstation.intents.driving import DrivePad, EmergencyStop, Stop
 from groundstation.intents.plan import ChooseMode, GoTo, StartMission
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, Disarm, RequestControl, SetMode
-from groundstation.station.driving.stop_questions import CONFIRM_AFTER, CONFIRM_WITHIN
+from groundstation.station.driving.stops.stop_questions import CONFIRM_AFTER, CONFIRM_WITHIN
 from link.core import Peer, Received
 from tests.fakes.copter import FORCED, HELICOPTER, FakeCopter
 from tests.fakes.vehicle import FakeVehicle

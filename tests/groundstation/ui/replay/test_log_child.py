@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.cli.local.replay import build_replay_parser
 from groundstation.cli.options import REPLAY_SETTINGS, option_words
-from groundstation.cli.replay_verb import build_replay_parser
 from groundstation.config.settings import Settings, ThemeName
 from groundstation.snapshot import RecordingView, ReplayStatus, Snapshot
 from groundstation.ui.replay.log_child import ARMED, IN_REPLAY, NO_LOG, NO_TERMINAL, find_refusal, replay_command

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from groundstation.cli.local_verb import UsageError, run_local
+from groundstation.cli.local.runner import UsageError, run_local
 from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.verb_help import local_examples
 from groundstation.pictures.png import encode_png

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from groundstation.cli.local_verb import UsageError
+from groundstation.cli.local.runner import UsageError
 
 if TYPE_CHECKING:
     from groundstation.learn.course import CourseLesson

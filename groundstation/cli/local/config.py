@@ -10,7 +10,7 @@ from enum import IntEnum
 
 import msgspec
 
-from groundstation.cli.local_verb import load_settings
+from groundstation.cli.local.runner import load_settings
 from groundstation.cli.options import add_config, add_settings
 from groundstation.cli.verb_help import EVERY_VERB, local_examples
 from groundstation.config.config_file import ConfigError, choose_path, read_config

@@ -10,7 +10,7 @@ from groundstation.intents.driving import ClearEmergencyStop, EmergencyStop
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import EmergencyProgress
-from groundstation.station.driving.blind_stops import EVERYBODY, BlindStops
+from groundstation.station.driving.stops.blind_stops import EVERYBODY, BlindStops
 from groundstation.vehicles.demand.stop_commands import FORCE_DISARM, StopKind
 from groundstation.vehicles.state.message_log import MessageLog
 from tests.fakes.rover import FakeArduPilot
@@ -238,7 +238,7 @@ def count_modes(vehicle: FakeVehicle) -> int:
     return sum(each.command == MODE for each in [*vehicle.of("COMMAND_LONG"), *vehicle.of("COMMAND_INT")])
 
 
-def test_hold_repeats_until_it_shows_or_another_mode_is_chosen() -> None:
+def test_hold_repeats_until_shown_or_another_mode_chosen() -> None:
     vehicle = FakeVehicle(mode=Mode.GUIDED)
     cockpit = armed_cockpit(vehicle)
     vehicle.obeys = False

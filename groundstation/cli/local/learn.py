@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from groundstation.cli.console import import_screen, open_screen, record_options, terminal_path
-from groundstation.cli.lesson_options import find_lesson, lesson_words, open_lesson
-from groundstation.cli.local_verb import UsageError, load_settings, run_local
+from groundstation.cli.local.lesson_options import find_lesson, lesson_words, open_lesson
+from groundstation.cli.local.runner import UsageError, load_settings, run_local
 from groundstation.cli.options import add_config, add_settings
 from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationClient
@@ -143,7 +143,7 @@ def _teach(settings: Settings, lesson: CourseLesson) -> tuple[int, CourseLesson 
 
 
 def _serve(settings: Settings, lesson: CourseLesson) -> int:
-    from groundstation.cli.serve_verb import serve
+    from groundstation.cli.local.serve import serve
 
     rovers = [each.options for each in lesson.lesson.simulators]
     tabs = lesson_words(lesson, 0)

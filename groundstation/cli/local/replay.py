@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from groundstation.cli.console import docs_file, import_screen, open_screen, terminal_path
-from groundstation.cli.lesson_options import add_lesson, continue_lesson
-from groundstation.cli.local_verb import load_settings, run_local
+from groundstation.cli.local.lesson_options import add_lesson, continue_lesson
+from groundstation.cli.local.runner import load_settings, run_local
 from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_settings
 from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationClient

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from groundstation.cli.console import docs_file, find_log_file, record_options
-from groundstation.cli.local_verb import UsageError, load_settings, run_local
+from groundstation.cli.local.runner import UsageError, load_settings, run_local
 from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_settings, option_words
 from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationError

@@ -9,7 +9,7 @@ import pytest
 from dialects.enums import Command
 from dialects.modes import Mode
 from groundstation.intents.session import Quit
-from groundstation.station.driving.shutdown import DISARM_AFTER, DISARM_TIMEOUT
+from groundstation.station.driving.stops.shutdown import DISARM_AFTER, DISARM_TIMEOUT
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import Cockpit, armed_cockpit, cockpit_with, driving_cockpit
