@@ -34,6 +34,7 @@ from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
 from link.routing.router import Delivery, Router
 from link.runtime.multiples import next_multiple
+from link.transport.route import find_routes
 from link.transport.transport import Link, RoleTransport, SelectiveTransport
 
 log = logging.getLogger(__name__)
@@ -347,7 +348,13 @@ class Runner:
     @staticmethod
     def _report(link: Link, now: float) -> LinkReport:
         report = link.channel.report(link.transport.problem, now=now, dropped=link.transport.dropped)
-        return replace(report, frames_sent=link.frames_sent, bytes_sent=link.bytes_sent, watch_only=link.watch_only)
+        return replace(
+            report,
+            frames_sent=link.frames_sent,
+            bytes_sent=link.bytes_sent,
+            watch_only=link.watch_only,
+            routes=find_routes(link.transport, report.audience),
+        )
 
     def _flush(self) -> None:
         for outgoing in self._core.messages_to_send():

@@ -36,6 +36,17 @@ class PreArmText(msgspec.Struct, frozen=True):
     """s"""
 
 
+class PathFact(msgspec.Struct, frozen=True):
+    """One path to the vehicle."""
+
+    link: str
+    """Name of its link."""
+    local: str
+    """Address of this computer from which it leaves."""
+    host: str
+    """Address of the other end."""
+
+
 class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     """The known state. A vehicle that was never heard is None."""
 
@@ -45,6 +56,8 @@ class DoctorFacts(msgspec.Struct, frozen=True, kw_only=True):
     operator: OperatorView = msgspec.field(default_factory=OperatorView)
     links: tuple[LinkView, ...] = ()
     endpoints: tuple[str, ...] = ()
+    paths: tuple[PathFact, ...] = ()
+    """To the vehicle, over networks; none of serial ports."""
     id_conflict: str | None = None
     free_id: int = 254
     """System id that nobody who is heard uses."""

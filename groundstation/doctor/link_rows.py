@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
+from ipaddress import ip_address
+from itertools import combinations
 
-from groundstation.doctor.facts import DoctorFacts
+from msgspec import structs
+
+from groundstation.doctor.facts import DoctorFacts, PathFact
 from groundstation.doctor.finding import fault, ok, unknown, warn
 from groundstation.snapshot import LinkView
 from groundstation.views.doctor import ChainFinding
+from link.runtime.diagnosis import Health
 
 SLOW_TERMINAL = 0.25
 """s of a terminal's round trip from which on keys feel late: half of the 0.5 s within which a release must count."""
@@ -73,14 +78,30 @@ def link(facts: DoctorFacts) -> ChainFinding:
         return fault(f"{down or silence} on {where}", "check address, baud rate, cable and power", "app.links")
     if facts.vehicle is None:
         return unknown(f"{where}: no vehicle on it")
-    return _judge(_link_of(facts), facts)
+    found = _judge(_link_of(facts), facts)
+    if found.health not in (Health.OK, Health.UNKNOWN):
+        return found
+    return next(filter(None, (_shared(found, *each) for each in combinations(facts.paths, 2))), found)
+
+
+def _shared(found: ChainFinding, first: PathFact, second: PathFact) -> ChainFinding | None:
+    """Return that two paths share a network, beside what was found of the link; None if they are not known to."""
+    if first.local != second.local:
+        return None
+    both = first.link if first.link == second.link else f"{first.link} and {second.link}"
+    if ip_address(first.host.partition("%")[0]).is_loopback:
+        evidence = f"{found.evidence}; both paths ({both}) stay on this computer: what is behind is not known"
+        return structs.replace(found, evidence=evidence)
+    same = f"lead to {first.host}" if first.host == second.host else f"leave by {first.local}"
+    text = f"{found.evidence}; both paths ({both}) {same}: one cut ends both"
+    return warn(text, "let each path have a network of its own", "app.links")
 
 
 def _link_of(facts: DoctorFacts) -> LinkView:
-    """Return the link that carries the vehicle: the one with the fewest losses."""
+    """Return the link that carries the vehicle: the one that counts, else the one with the fewest losses."""
     assert facts.vehicle is not None
     carrying = [each for each in facts.links if facts.vehicle.system in each.systems] or list(facts.links)
-    return min(carrying, key=lambda each: 1.0 if each.loss is None else each.loss)
+    return min(carrying, key=lambda each: (not each.counts, 1.0 if each.loss is None else each.loss))
 
 
 def _judge(each: LinkView, facts: DoctorFacts) -> ChainFinding:

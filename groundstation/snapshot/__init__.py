@@ -213,6 +213,11 @@ class LinkView(msgspec.Struct, frozen=True, kw_only=True):
     loss: float | None = None
     """Lost fraction of the vehicle's frames over the last 5 s."""
     round_trip: float | None = None
+    """To the selected vehicle over this link."""
+    age: float | None = None
+    """How old the newest news of the selected vehicle on it is, s: how late it came, and how long ago."""
+    counts: bool = False
+    """Of the links to the selected vehicle the one that counts: commands and state take it first."""
     rate: float = 0.0
     """Frames received per second."""
     bytes_per_second: float = 0.0

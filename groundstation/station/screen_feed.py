@@ -33,7 +33,7 @@ class ScreenFeed(DoctorFeed):
         fleet, links = parts.fleet, parts.links
         self._traffic = MessageTraffic(*parts.ids)
         self._detail = MessageInspector(self._traffic)
-        self._charts = ChartRecorder(fleet, self._traffic, links.stats, links.timesync)
+        self._charts = ChartRecorder(fleet, self._traffic, links)
         self._camera = CameraWatch(fleet, parts.commander, links.timesync)
         self.notes = StationNotes(parts.operator, fleet)
         parts.log.listener = self.notes.add_line

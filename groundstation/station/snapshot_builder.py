@@ -38,7 +38,7 @@ class SnapshotBuilder:
                 parts.driving.judge(now).reason, bool(selected and selected.demand_stream.streaming), now
             ),
             proposal=parts.proposals.view(now),
-            links=links.stats.build_views(links.timesync.round_trip),
+            links=links.stats.build_views(links.find_figures(selected, now)),
             signing=fleet.signing_of(selected, now),
             texts=parts.log.build_lines(now, wall),
             faults=faults,

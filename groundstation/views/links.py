@@ -64,6 +64,14 @@ class LinksRequest(ViewRequest, frozen=True):
     """All links."""
 
 
+class PathRow(msgspec.Struct, frozen=True, kw_only=True):
+    """A further address of the selected vehicle on one link. Fields as in LinkRow."""
+
+    address: str
+    round_trip: float | None = None
+    age: float | None = None
+
+
 class LinkRow(msgspec.Struct, frozen=True, kw_only=True):
     """One link. Rates are over the last 5 s, counters since the link opened."""
 
@@ -95,9 +103,15 @@ class LinkRow(msgspec.Struct, frozen=True, kw_only=True):
     dropped: int = 0
     """Frames that could not be sent."""
     round_trip: float | None = None
-    """s, on the link of the selected vehicle."""
+    """s, to the selected vehicle."""
     jitter: float | None = None
-    """s; smoothed difference between one round trip and the next."""
+    """s; smoothed difference between one round trip and the next, on the link that counts."""
+    age: float | None = None
+    """How old the newest news of the selected vehicle on it is, s; None if it brings none."""
+    counts: bool = False
+    """Of the links to the selected vehicle the one that counts: commands and state take it first."""
+    more: tuple[PathRow, ...] = ()
+    """Further addresses of the selected vehicle on the same link."""
     capacity: float | None = None
     """Bytes/s that the line carries in each direction; None where unknown (UDP, TCP)."""
     headroom: float = 1.0

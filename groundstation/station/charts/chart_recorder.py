@@ -10,7 +10,7 @@ from groundstation.station.charts.catalogue import FieldCatalogue, class_of, pla
 from groundstation.station.charts.marks import MarkWatcher
 from groundstation.station.charts.points import PointBuffer
 from groundstation.station.charts.recorder import SeriesRecorder
-from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.links.link_monitor import LinkMonitor
 from groundstation.station.messages.fields import Reader, make_reader
 from groundstation.station.messages.message_kind import Tap
 from groundstation.station.messages.message_traffic import MessageTraffic, TrafficKey
@@ -18,7 +18,6 @@ from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Fleet
 from groundstation.views.base import ViewRequest
 from groundstation.views.charts import STATION, FieldId, FieldsPage, FieldsRequest, SeriesRequest
-from link.services.timesync import TimesyncClient
 
 PERIOD = 0.2
 """s between two looks at the vehicle and at what the station measures, and between two pages."""
@@ -36,13 +35,11 @@ class ChartRecorder:
         self,
         fleet: Fleet,
         traffic: MessageTraffic,
-        links: LinkStats,
-        timesync: TimesyncClient,
+        links: LinkMonitor,
     ) -> None:
         self._fleet = fleet
         self._traffic = traffic
         self._links = links
-        self._timesync = timesync
         self._recorder = SeriesRecorder()
         self._watcher = MarkWatcher(self._recorder.marks)
         self._catalogue = FieldCatalogue(traffic)
@@ -97,10 +94,10 @@ class ChartRecorder:
         if not wanted or contact is None:
             return
         view = contact.state.build_view(now)
-        links = self._links.build_views(self._timesync.round_trip)
-        losses = [link.loss for link in links if link.loss is not None and link.round_trip is not None]
+        links = self._links.stats.build_views(self._links.find_figures(contact, now))
+        losses = [link.loss for link in links if link.loss is not None and link.counts]
         measured = {
-            "round_trip": (self._timesync.round_trip, 1000),
+            "round_trip": (self._links.timesync.round_trip, 1000),
             "loss": (losses[0] if losses else None, 100),
             "command_age": (view.command_age, 1000),
             "key_to_motor": (view.latency, 1000),

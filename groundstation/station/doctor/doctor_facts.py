@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import msgspec
 
 from dialects.enums import Autopilot, Sensor
-from groundstation.doctor.facts import DoctorFacts, SensorBits, SettingFact
+from groundstation.doctor.facts import DoctorFacts, PathFact, SensorBits, SettingFact
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.vehicles.calibration.calibration import CalibrationState
@@ -74,6 +74,7 @@ def collect(
         operator=snapshot.operator,
         links=snapshot.links,
         endpoints=snapshot.endpoints,
+        paths=_paths(contact, links, now),
         id_conflict=snapshot.id_conflict,
         free_id=snapshot.free_id,
         terminal=terminal,
@@ -92,6 +93,17 @@ def collect(
         unread=settings.missing if settings else (),
         params=_params(contact, report),
         motors_tested=tested,
+    )
+
+
+def _paths(contact: Contact | None, links: LinkStats, now: float) -> tuple[PathFact, ...]:
+    """Return the paths to the vehicle that are heard and whose route is known."""
+    known = {each.peer for each in contact.state.paths.live(now)} if contact else set()
+    return tuple(
+        PathFact(report.name, *route)
+        for report in links.newest
+        for peer, route in report.routes.items()
+        if peer in known
     )
 
 

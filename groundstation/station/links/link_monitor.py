@@ -11,7 +11,8 @@ from groundstation.snapshot import RecordingView
 from groundstation.station.links.ground_stations import GroundStations, IdConflict
 from groundstation.station.links.heartbeat_sender import HeartbeatSender
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.vehicles.fleet import Fleet
+from groundstation.station.links.path_figures import FiguresByLink, find_figures
+from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.state.message_log import MessageLog
 from link.core import LinkReport, Received
 from link.protocol.link_events import LinkEvents
@@ -92,6 +93,10 @@ class LinkMonitor:
         for contact in fleet:
             system = contact.state.system
             contact.state.paths.observe(partial(self._loss, system), partial(self.timesync.round_trip_of, now=now), now)
+
+    def find_figures(self, contact: Contact | None, now: float) -> FiguresByLink:
+        """Return what is measured of each path to a vehicle, by link."""
+        return find_figures(contact, partial(self.timesync.round_trip_of, now=now), now)
 
     def _loss(self, system: int, link: int) -> float | None:
         return self.stats.loss(link, system)

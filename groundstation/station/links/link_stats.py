@@ -8,7 +8,8 @@ from collections.abc import Collection, Sequence
 import msgspec
 
 from groundstation.snapshot import LinkView
-from groundstation.views.links import LinkRow
+from groundstation.station.links.path_figures import FiguresByLink, PathFigures
+from groundstation.views.links import LinkRow, PathRow
 from link.core import LinkReport, Peer, SigningCounts, SourceCount
 from link.protocol.link_events import link_problem
 
@@ -56,22 +57,18 @@ class LinkStats:
         """The systems from which frames arrived on any link."""
         return frozenset[int]().union(*map(self.systems, self._samples))
 
-    def build_views(self, round_trip: float | None) -> tuple[LinkView, ...]:
-        """Build the links' part of the snapshot."""
-        return tuple(_view(samples, round_trip) for _, samples in sorted(self._samples.items()))
+    def build_views(self, paths: FiguresByLink) -> tuple[LinkView, ...]:
+        """Build the links' part of the snapshot; `paths` are those to the selected vehicle."""
+        return tuple(_view(samples, paths.get(index, ())) for index, samples in sorted(self._samples.items()))
 
-    def build_rows(
-        self, round_trip: float | None, jitter: float | None, link: int | None, vehicles: Collection[int]
-    ) -> tuple[LinkRow, ...]:
-        """Build the rows of the Links screen; `link` carries the vehicle to which the round trip was measured.
+    def build_rows(self, paths: FiguresByLink, jitter: float | None, vehicles: Collection[int]) -> tuple[LinkRow, ...]:
+        """Build the rows of the Links screen; `paths` and `jitter` are those of the selected vehicle.
 
         Losses are those of `vehicles`: of another ground station the vehicles forward only what is for us, too, so
         that its numbers have gaps without any loss.
         """
-        timed = (round_trip, jitter)
         return tuple(
-            _row(samples, vehicles, *(timed if index == link else (None, None)))
-            for index, samples in sorted(self._samples.items())
+            _row(samples, vehicles, paths.get(index, ()), jitter) for index, samples in sorted(self._samples.items())
         )
 
     @property
@@ -133,8 +130,11 @@ def _sum(report: LinkReport, systems: Collection[int]) -> SourceCount:
     return SourceCount(sum(count.received for count in counts), sum(count.lost for count in counts))
 
 
-def _row(samples: deque[_Sample], vehicles: Collection[int], round_trip: float | None, jitter: float | None) -> LinkRow:
+def _row(
+    samples: deque[_Sample], vehicles: Collection[int], paths: Sequence[PathFigures], jitter: float | None
+) -> LinkRow:
     report = samples[-1].report
+    best = paths[0] if paths else None
     return LinkRow(
         index=report.index,
         watch_only=report.watch_only,
@@ -151,8 +151,14 @@ def _row(samples: deque[_Sample], vehicles: Collection[int], round_trip: float |
         crc_errors=report.crc_errors,
         refused=report.refused_peers,
         dropped=report.dropped,
-        round_trip=round_trip,
-        jitter=jitter,
+        round_trip=best.round_trip if best else None,
+        jitter=jitter if best and best.counts else None,
+        age=round(best.age, 1) if best else None,
+        counts=bool(best and best.counts),
+        more=tuple(
+            PathRow(address=_address(each.peer), round_trip=each.round_trip, age=round(each.age, 1))
+            for each in paths[1 : MAX_PEERS + 1]
+        ),
         capacity=report.capacity,
         headroom=report.headroom,
         unverified=_refused(report.refused),
@@ -177,12 +183,15 @@ def _address(peer: Peer) -> str:
     return f"[{host}]:{port}" if ":" in str(host) else f"{host}:{port}"
 
 
-def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
+def _view(samples: deque[_Sample], paths: Sequence[PathFigures]) -> LinkView:
     newest, systems = samples[-1], samples[-1].systems
+    best = paths[0] if paths else None
     return LinkView(
         name=newest.report.name,
         loss=_loss(samples, systems),
-        round_trip=round_trip if _sum(newest.report, systems).received > 0 else None,
+        round_trip=best.round_trip if best else None,
+        age=round(best.age, 2) if best else None,
+        counts=bool(best and best.counts),
         rate=_rate(samples, "frames"),
         bytes_per_second=_rate(samples, "bytes_received"),
         frames=newest.report.frames,

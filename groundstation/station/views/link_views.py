@@ -35,8 +35,7 @@ class LinkViews:
         self._driving = parts.driving
         self._handover = parts.handover
         self._queries = parts.queries
-        self._links = parts.links.stats
-        self._timesync = parts.links.timesync
+        self._monitor, self._links = parts.links, parts.links.stats
         self._stations = parts.links.stations
         self._ours = Program(*parts.ids, parts.operator.session)
 
@@ -93,10 +92,8 @@ class LinkViews:
     # ---- links ----
 
     def _build_links(self, request: LinksRequest, now: float, wall: float) -> LinksView:
-        selected = self._fleet.selected
-        link = None if selected is None else selected.link
-        round_trip, jitter = self._timesync.round_trip, self._timesync.jitter
-        return LinksView(self._links.build_rows(round_trip, jitter, link, self._fleet.system_ids))
+        paths = self._monitor.find_figures(self._fleet.selected, now)
+        return LinksView(self._links.build_rows(paths, self._monitor.timesync.jitter, self._fleet.system_ids))
 
     # ---- control ----
 

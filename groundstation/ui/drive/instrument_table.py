@@ -40,7 +40,7 @@ INSTRUMENTS: tuple[InstrumentRow, ...] = (
     instrument_row("stops", "readings", StopsPanel, StopsValue.from_state, slow=True, urgent=is_near, layout="-wide"),
     instrument_row("health", "readings", HealthPanel,
                    lambda now: now.snapshot.vehicle.health if now.snapshot.vehicle else (), slow=True, layout="-wide"),
-    instrument_row("links", "readings", LinksPanel, lambda now: now.snapshot.links, slow=True, layout="-tall"),
+    instrument_row("links", "readings", LinksPanel, lambda now: now.snapshot.links, slow=True, layout="-chart"),
     instrument_row("mission", "bottom", MissionStrip, _mission, slow=True, layout="-wide"),
     instrument_row("stops-line", "bottom", StopsLine, StopsValue.from_state, slow=True, urgent=is_near,
                    layout="-narrow"),

@@ -19,6 +19,7 @@ from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.drive.camera_feed import CameraFeed
 from groundstation.ui.drive.instrument_table import INSTRUMENTS
+from groundstation.ui.drive.instruments.links import LinksPanel, vehicle_links
 from groundstation.ui.drive.instruments.stops import StopsPanel
 from groundstation.ui.drive.instruments.strip import DrivingStrip, StripValue
 from groundstation.ui.drive.layout import (
@@ -41,6 +42,8 @@ from groundstation.views.drive import SpeedRequest, SpeedView
 
 BORDERS = 2
 """Rows of the border of a panel."""
+MOST_LINKS = 6
+"""Lines of the panel of the links: three links. The pane of the links and the Links screen show all."""
 
 SLOW = 0.5
 """s between updates of slow rows. Each update changes all their lines, which is expensive over SSH."""
@@ -258,15 +261,19 @@ class DriveScreen(ConsoleScreen):
             if shown and (due or not row.slow or (row.urgent is not None and row.urgent(self._state))):
                 self.show_row(row)
         if due:
-            self._fit_stops()
+            self._fit_panels()
         if self.snapshot.vehicle is not None and not self._small:
             self._show_panes()
         self._follow_camera()
         if self._pane_before is not None:
             self._report_picture()
 
-    def _fit_stops(self) -> None:
-        """Give the panel of the stop bounds no more rows than it has lines."""
+    def _fit_panels(self) -> None:
+        """Give the panel of the stop bounds no more rows than it has lines, and that of the links two for each."""
+        links = self._built["links"]
+        height = Scalar.from_number(min(MOST_LINKS, links.wanted if isinstance(links, LinksPanel) else 0) + BORDERS)
+        if links.styles.height != height:
+            links.styles.height = height
         panel = self._built["stops"]
         most = Scalar.from_number((panel.wanted if isinstance(panel, StopsPanel) else 0) + BORDERS)
         if panel.styles.max_height != most:
@@ -306,6 +313,7 @@ def _conditions(now: DisplayState) -> dict[str, bool]:
     return {
         "-waiting": vehicle is None,
         "-no-legs": no_legs,
+        "-links": len(vehicle_links(now.snapshot.links)) > 1,
         "-alert": bool(active_alerts(now)),
     }
 

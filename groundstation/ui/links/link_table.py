@@ -9,6 +9,7 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.ui.display.wrap import wrap
+from groundstation.ui.links.vehicle_table import age_text
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
@@ -27,6 +28,7 @@ COLUMNS = (
     Column("refused", 7, 6, right=True),
     Column("unsent", 6, 7, right=True),
     Column("rtt", 6, 1, right=True),
+    Column("age", 5, 1, right=True),
     Column("jitter", 6, 8, right=True),
     Column("line", 4, 4, right=True),
 )
@@ -34,6 +36,8 @@ COLUMNS = (
 MUCH_LOSS, SLOW_TRIP, FULL_LINE = 0.02, 0.2, 0.6
 """Loss, round trip in s and share of a line from which on they are amber: above 60 % of a serial line the queues of
 the vehicle grow."""
+OLD = 1.5
+"""s of age from which on it is amber: longer than from one heartbeat to the next."""
 
 
 class LinkTableValue(msgspec.Struct, frozen=True):
@@ -66,7 +70,15 @@ class LinkTable(Instrument[LinkTableValue]):
         rows = self.value.view.rows if self.value.view else ()
         widths = fit(COLUMNS, width)
         cursor = self.value.cursor
-        return [line for link in rows for line in (_row(link, widths, link.index == cursor), *_remarks(link, width))]
+        several = sum(link.age is not None for link in rows) > 1
+        return [
+            line
+            for link in rows
+            for line in (
+                _row(link, widths, marked=link.index == cursor, counts=several and link.counts),
+                *_remarks(link, width),
+            )
+        ]
 
     def line_of(self, index: int, width: int) -> int:
         """Return the line of a link, counted from the first one below the titles."""
@@ -78,10 +90,10 @@ class LinkTable(Instrument[LinkTableValue]):
         return line
 
 
-def _row(link: LinkRow, widths: tuple[int, ...], marked: bool) -> Strip:
-    loss, trip, jitter, share = map(finite_or_none, (link.loss, link.round_trip, link.jitter, link.share))
+def _row(link: LinkRow, widths: tuple[int, ...], *, marked: bool, counts: bool) -> Strip:
+    loss, jitter, share = map(finite_or_none, (link.loss, link.jitter, link.share))
     heard = link.frames_in > 0
-    mark, colour = ("✗", RED) if link.problem else ("●", GREEN) if heard else ("·", DIM)
+    mark, colour = ("✗", RED) if link.problem else ("★" if counts else "●", GREEN) if heard else ("·", DIM)
     return row(
         COLUMNS,
         widths,
@@ -97,7 +109,8 @@ def _row(link: LinkRow, widths: tuple[int, ...], marked: bool) -> Strip:
             _count(link.crc_errors, AMBER),
             _count(link.refused, AMBER),
             _count(link.dropped, AMBER),
-            ("--" if trip is None else f"{1000 * trip:.0f} ms", _warn(trip, SLOW_TRIP)),
+            _trip(link.round_trip),
+            _age(link.age),
             ("--" if jitter is None else f"±{1000 * jitter:.1f}", style(DIM if jitter is None else TEXT)),
             ("--" if share is None else f"{100 * share:.0f}%", _warn(share, FULL_LINE)),
         ],
@@ -106,6 +119,9 @@ def _row(link: LinkRow, widths: tuple[int, ...], marked: bool) -> Strip:
 
 def _remarks(link: LinkRow, width: int) -> Iterator[Strip]:
     """Yield the lines below a row: its problem whole, and a line that is nearly full."""
+    for path in link.more:
+        trip, age = _trip(path.round_trip)[0], _age(path.age)[0]
+        yield strip((f"    also from {path.address}: round trip {trip}, age {age}", style(DIM))).crop(0, width)
     for line in wrap(link.problem or "", width - 4):
         if line:
             yield strip((f"    {line}", style(RED)))
@@ -124,6 +140,16 @@ def _remarks(link: LinkRow, width: int) -> Iterator[Strip]:
 
 def _count(number: int, colour: str) -> Part:
     return (str(number) if number < 100_000 else f"{number // 1000}k"), style(colour if number else DIM)
+
+
+def _trip(seconds: float | None) -> Part:
+    trip = finite_or_none(seconds)
+    return ("--" if trip is None else f"{1000 * trip:.0f} ms"), _warn(trip, SLOW_TRIP)
+
+
+def _age(seconds: float | None) -> Part:
+    age = finite_or_none(seconds)
+    return ("--" if age is None else age_text(age)), _warn(age, OLD)
 
 
 def _warn(value: float | None, limit: float) -> Style:

@@ -31,6 +31,9 @@ from groundstation.ui.widgets.tabs import WIDE, goto_parts
 STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
 """Age of a demand, s: from 0.45 on the vehicle no longer obeys (its MAN_TIMEOUT); 0.2 is four frames at 20 Hz."""
 
+SILENT_LINK = 2.5
+"""s of age from which on one of several links has no bar: two and a half heartbeats."""
+
 _BARS, _NO_BAR = "▂▄▆█", "▁"
 _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
 
@@ -192,8 +195,11 @@ def _field(weight: int, name: str, text: str, colour: str = TEXT) -> StatusField
 def _links(snapshot: Snapshot) -> list[StatusField]:
     if not snapshot.links:
         return [_field(1, "link", "none", DIM)]
-    link = min(snapshot.links, key=lambda each: (finite_or_none(each.loss) is None, finite_or_none(each.loss) or 0.0))
     alive = snapshot.vehicle is not None and snapshot.vehicle.alive
+    several = [(number, each) for number, each in enumerate(snapshot.links, 1) if each.age is not None]
+    if alive and len(several) > 1:
+        return [_numbered(number, each) for number, each in several]
+    link = min(snapshot.links, key=_by_loss)
     loss, trip = finite_or_none(link.loss), finite_or_none(link.round_trip)
     bars, colour = _quality(link, alive)
     strength = StatusField(
@@ -204,6 +210,30 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
         _field(2, "loss", "--" if loss is None else f"{100 * loss:.1f}%", TEXT if (loss or 0) < 0.05 else AMBER),
         _field(2, "rtt", "--" if trip is None else f"{1000 * trip:.0f} ms", TEXT if (trip or 0) < 0.2 else AMBER),
     ]
+
+
+def _by_loss(link: LinkView) -> tuple[bool, bool, float]:
+    """Order links: that of the vehicle that counts first, then those that have lost less."""
+    loss = finite_or_none(link.loss)
+    return not link.counts, loss is None, loss or 0.0
+
+
+def _numbered(number: int, link: LinkView) -> StatusField:
+    """Return one of several links to the vehicle: loss, round trip and age; the one that counts has a mark."""
+    loss, trip, age = map(finite_or_none, (link.loss, link.round_trip, link.age))
+    bars, colour = _quality(link, age is not None and age < SILENT_LINK)
+    figures = [
+        *([] if loss is None else [f"{100 * loss:.0f}%"]),
+        *([] if trip is None else [f"{1000 * trip:.0f} ms"]),
+        *([] if age is None else [f"{age:.1f} s old"]),
+    ]
+    parts: tuple[Part, ...] = (
+        (f"{'★' if link.counts else ' '}{number} ", style(GREEN if link.counts else DIM, bold=link.counts)),
+        (_BARS[:bars], style(colour)),
+        (_NO_BAR * (4 - bars), style(FAINT)),
+        (f" {' '.join(figures)} ", style(TEXT if bars > 1 else AMBER)),
+    )
+    return StatusField(1 if link.counts else 2, parts)
 
 
 _SIGNING = {SigningState.OFF: DIM, SigningState.ON: GREEN, SigningState.NO_KEY: AMBER, SigningState.REQUIRED: AMBER}

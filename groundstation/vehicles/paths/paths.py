@@ -81,6 +81,11 @@ class Paths:
         found = [each for each in self._paths.values() if each.is_live(now)]
         return sorted(found, key=lambda each: (each is not self.best, each.cost))
 
+    @property
+    def known(self) -> list[Path]:
+        """All paths, the best one first: also those that are silent, until they are forgotten."""
+        return sorted(self._paths.values(), key=lambda each: (each is not self.best, each.cost))
+
     def receive(self, received: Received, now: float) -> bool:
         """Note a message of the system; return whether it counts."""
         path = self._paths.get(received.peer) or self._add(received.peer, now)

@@ -10,7 +10,7 @@ import pytest
 from dialects.enums import Autopilot, Sensor
 from groundstation.actions import ACTIONS
 from groundstation.doctor.chain import CHAIN, count_faults, examine
-from groundstation.doctor.facts import DoctorFacts, PreArmText, SensorBits, SettingFact
+from groundstation.doctor.facts import DoctorFacts, PathFact, PreArmText, SensorBits, SettingFact
 from groundstation.snapshot import LinkView, OperatorView, OutputView, VehicleView
 from groundstation.snapshot.drive import StopBound
 from groundstation.vehicles.stops.settings_check import SETTINGS
@@ -250,3 +250,24 @@ def test_doctor_and_drive_agree_on_every_setting(autopilot: int, params: dict[st
                 assert not (stop.never and found.health in (OK, UNKNOWN)), case
                 if found.health is OK and stop.bound is not None:
                     assert f"{stop.does} {stop.bound:g} s" in found.evidence, case
+
+
+def test_two_links_of_one_network_are_one_path() -> None:
+    wifi, same = PathFact("udpin:0.0.0.0:14550", "10.0.0.2", "10.0.0.7"), PathFact("udpin:*:1", "10.0.0.2", "10.0.0.7")
+    found = row("link", facts(paths=(wifi, same)))
+    assert found.health is WARNING
+    assert "both paths (udpin:0.0.0.0:14550 and udpin:*:1) lead to 10.0.0.7: one cut ends both" in found.evidence
+    other = PathFact("tcpout:lte:1", "10.0.0.2", "198.51.100.9")  # another host, by the same interface
+    assert "leave by 10.0.0.2" in row("link", facts(paths=(wifi, other))).evidence
+    apart = PathFact("tcpout:lte:1", "192.0.2.7", "198.51.100.9")
+    assert row("link", facts(paths=(wifi, apart))).health is OK
+    here = tuple(PathFact(f"udpin:{port}", "127.0.0.1", "127.0.0.1") for port in (1, 2))
+    assert "what is behind is not known" in row("link", facts(paths=here)).evidence
+    assert row("link", facts(paths=here)).health is OK
+    lossy = row("link", facts(paths=(wifi, same), links=link(loss=0.5)))
+    assert lossy.health is FAULT  # the worse comes first
+
+
+def test_of_several_links_the_one_that_counts_is_judged() -> None:
+    late = LinkView(name="late", loss=0.0, round_trip=2.0, frames=9, systems=(1,))
+    assert "12 ms" in row("link", facts(links=(late, *link(counts=True)))).evidence

@@ -217,9 +217,20 @@ def snapshot(**changes: Any) -> Snapshot:
     """All of it."""
     picture = Snapshot(
         number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), operator=helm(),
-        links=(LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, rate=55.0),), texts=TEXTS,
+        links=(LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, age=0.05,
+                        counts=True, rate=55.0),), texts=TEXTS,
     )  # fmt: skip
     return msgspec.structs.replace(picture, **changes)
+
+
+TWO_PATHS = snapshot(
+    links=(
+        LinkView(name="udpin:0.0.0.0:14550", loss=0.003, round_trip=0.012, age=0.05, counts=True, rate=55.0),
+        LinkView(name="serial:/dev/ttyUSB0:57600", loss=0.31, round_trip=0.64, age=1.7, rate=9.0),
+        LinkView(name="udpin:127.0.0.1:14551"),
+    )
+)
+"""Two links to one vehicle, the second one late and lossy, and a third one on which nobody is heard."""
 
 
 def waiting(**changes: Any) -> Snapshot:

@@ -57,10 +57,10 @@ LINKS = LinksView(
     (
         LinkRow(name="udpin:0.0.0.0:14550", peers=("192.168.4.20:50211", "192.168.4.21:50212"), peer_count=2,
                 frames_in=98.0, frames_out=22.0, bytes_in=3400.0, bytes_out=800.0, loss=0.003, lost=142,
-                round_trip=0.012, jitter=0.0019),
+                round_trip=0.012, jitter=0.0019, age=0.1, counts=True),
         LinkRow(name="serial:/dev/ttyUSB0:57600", index=1, peer_count=1, frames_in=64.0, frames_out=20.0,
-                bytes_in=3900.0, bytes_out=640.0, loss=0.021, lost=611, crc_errors=9, dropped=31, capacity=5760.0,
-                headroom=0.8),
+                bytes_in=3900.0, bytes_out=640.0, loss=0.021, lost=611, crc_errors=9, dropped=31, age=0.6,
+                round_trip=0.31, capacity=5760.0, headroom=0.8),
         LinkRow(name="udpin:127.0.0.1:14551", index=2),
         LinkRow(name="serial:/dev/ttyACM0:115200", index=3, capacity=11520.0,
                 problem="/dev/ttyACM0 has gone; it is opened again when it is plugged in"),

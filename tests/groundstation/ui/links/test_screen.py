@@ -25,9 +25,18 @@ from groundstation.intents.vehicle import (
 from groundstation.intents.watch import Watch
 from groundstation.snapshot import HandoverNotice, Snapshot
 from groundstation.ui.keys.key_gate import OTHER_SCREEN
+from groundstation.ui.links.link_table import LinkTable, LinkTableValue
 from groundstation.ui.links.screen import LinksScreen
 from groundstation.views.base import View
-from groundstation.views.links import ControlRequest, ControlView, LinkRow, LinksRequest, LinksView, VehiclesRequest
+from groundstation.views.links import (
+    ControlRequest,
+    ControlView,
+    LinkRow,
+    LinksRequest,
+    LinksView,
+    PathRow,
+    VehiclesRequest,
+)
 from tests.groundstation.ui.examples import DRIVE_WATCH, snapshot, vehicle
 from tests.groundstation.ui.link_examples import CONTROL, FLEET, LINKS, OURS, SIX, VIEWS, fleet, many
 from tests.groundstation.ui.pilots import Console, console
@@ -283,3 +292,13 @@ async def test_drive_keys_move_the_cursor_and_drive_nothing() -> None:
         assert screen.station.of(DriveKeyDown)
         assert screen.station.of(SetKeyGate)[-1].open is False
         await until(lambda: row_of(screen, "ArduPilot rover 2").startswith("│›"))
+
+
+def test_further_addresses_of_a_vehicle_are_named_below_its_link() -> None:
+    more = (PathRow(address="10.0.0.9:5", round_trip=0.031, age=75.0),)
+    table = LinkTable(
+        LinkTableValue(LinksView((LinkRow(name="udpin:0.0.0.0:14550", age=0.1, counts=True, more=more),)))
+    )
+    lines = [line.text for line in table.draw(100, 9)]
+    assert lines[2].strip() == "also from 10.0.0.9:5: round trip 31 ms, age 1:15"
+    assert "★" not in lines[1]  # it is the only link
