@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import takewhile
 from typing import NamedTuple
 
+from tests.e2e.other_terminals import OtherTerminals, is_command, last_command
 from tests.e2e.programs import LET_GO
 from tests.e2e.test_in_tmux import Tmux
 from tests.waits import PATIENCE, Patience
@@ -26,7 +28,7 @@ class Deed(NamedTuple):
     """One thing that a task asks for."""
 
     what: str
-    """"hold", "press" or "type"."""
+    """"hold", "press" or "type"; in another terminal "run", "run the last" or "interrupt"."""
     key: str
     seconds: float = 0.0
     times: int = 1
@@ -40,7 +42,16 @@ def read_deeds(task: str) -> list[Deed]:
 def _find_deeds(task: str) -> Iterator[Deed]:
     found = list(re.finditer(r"\[([^\[\]]+|\[|\])\]", task))
     verb = "press"
+    ends = task.startswith("End it")
+    if "type the last command" in task:
+        yield Deed("run the last", "")
     for at, key in enumerate(found):
+        if key[1] == "Ctrl-C":
+            yield Deed("interrupt", "")
+            continue
+        if is_command(key[1]):
+            yield Deed("interrupt" if ends else "run", key[1])
+            continue
         before = task[found[at - 1].end() if at else 0 : key.start()].casefold()
         after = task[key.end() : found[at + 1].start() if at + 1 < len(found) else len(task)]
         verbs = re.findall(r"\b(hold|press|type)\b", before)
@@ -60,8 +71,12 @@ def _find_deeds(task: str) -> Iterator[Deed]:
 class Pupil:
     """Reads the pane and acts."""
 
-    def __init__(self, terminal: Tmux, columns: int) -> None:
-        self.terminal, self._columns = terminal, columns
+    def __init__(self, terminal: Tmux, columns: int, others: OtherTerminals | None = None) -> None:
+        self.terminal, self._columns, self._others = terminal, columns, others
+        self._text: list[str] = []
+        """The pages before the first task, for what is typed into other terminals."""
+        self._command = ""
+        """The newest command in another terminal."""
         self.log: list[str] = []
 
     def pane(self, screen: str) -> list[str]:
@@ -104,19 +119,37 @@ class Pupil:
         """Do every task, and return the last screen."""
         screen = self.terminal.until(lambda screen: self.step(screen) > 0, PATIENCE)
         self.terminal.until(lambda screen: "DISARMED" in screen or "Rover 1" in screen, PATIENCE)
+        if self._others is not None:
+            self._text = self.read_text()
+            self._others.write_program(self._text)
         while (step := self.step(screen)) > 0:
             screen = self._do(step)
         return screen
 
+    def read_text(self) -> list[str]:
+        """Return the lines before the first task, page by page."""
+        lines: list[str] = []
+        while True:
+            pane = self.pane(self.terminal.screen())
+            lines += [line[1:].rstrip() for line in takewhile(lambda each: each[:3] != " › ", pane[1:])]
+            page = re.search(r"page (\d+)/(\d+)", pane[0])
+            if page is None or page[1] == page[2]:
+                return lines
+            turned = f"page {int(page[1]) + 1}/"
+            self.terminal.press_until("C-l", lambda screen, turned=turned: turned in screen)  # type: ignore[misc]
+
     def _do(self, step: int) -> str:
         """Do one task, again where a late machine did not see it; return the screen when another one is due."""
-        patience = Patience(2 * PATIENCE)
+        patience, tries = Patience(2 * PATIENCE), 0
         while True:
             assert not patience.ended, "\n".join([*self.log, self.terminal.screen()])
             task, hint = self.read_task(), self.marked(self.terminal.screen(), "!")
             self.log.append(f"{step}: {hint or task}")
             for deed in read_deeds(hint) or read_deeds(task):
                 self._perform(deed, step)
+            if tries and "Run it again" in task and self._others is not None:
+                self._others.run(self._command)
+            tries += 1
             with suppress(AssertionError):
                 return self.terminal.until(lambda screen: self.step(screen) not in (step, -1), UNTIL)
             self.terminal.until(lambda screen: self.step(screen) != -1, PATIENCE)  # another program has the terminal
@@ -127,11 +160,21 @@ class Pupil:
             self.terminal.press(*("Space" if each == " " else each for each in deed.key))
         elif deed.what == "press":
             self.terminal.press(*[key] * deed.times)
+        elif deed.what in ("run", "run the last", "interrupt"):
+            self._use_another(deed)
         else:
             with suppress(AssertionError):
                 self.terminal.until(lambda screen: self.step(screen) != step, deed.seconds, holding=key)
             self.terminal.pause(LET_GO)
         self.terminal.pause(0.8)
+
+    def _use_another(self, deed: Deed) -> None:
+        assert self._others is not None
+        if deed.what == "interrupt":
+            self._others.interrupt(deed.key)
+            return
+        self._command = deed.key if deed.what == "run" else last_command(self._text)
+        self._others.run(self._command)
 
     @staticmethod
     def _tmux_name(key: str) -> str:
