@@ -19,6 +19,7 @@ class Attempt:
         self.hint = ""
         """What is said about the newest wrong deed; "" for none."""
         self.deeds = Deeds()
+        self._begin_hints()
 
     @property
     def done(self) -> bool:
@@ -33,13 +34,15 @@ class Attempt:
     def see(self, now: Snapshot, screen: str) -> None:
         """Take a snapshot, shown on the screen of this id."""
         if not self.done:
-            self.deeds.see(now, screen)
+            for deeds in (self.deeds, *self._hint_deeds):
+                deeds.see(now, screen)
             self._judge()
 
     def see_view(self, view: View) -> None:
         """Take a view of the screen."""
         if not self.done:
-            self.deeds.see_view(view)
+            for deeds in (self.deeds, *self._hint_deeds):
+                deeds.see_view(view)
             self._judge()
 
     def _judge(self) -> None:
@@ -50,8 +53,19 @@ class Attempt:
             self.step += 1
             self.hint = ""
             self.deeds = Deeds()  # what was done before does not count for the next step
+            self._begin_hints()
             return
-        for hint in due.hints:
-            if is_done(self.deeds, hint):
-                self.hint = hint.text
-                return
+        was, self._held = (
+            self._held,
+            [is_done(deeds, hint) for deeds, hint in zip(self._hint_deeds, due.hints, strict=True)],
+        )
+        newest = next((at for at, (old, new) in enumerate(zip(was, self._held, strict=True)) if new and not old), None)
+        if newest is not None:
+            self.hint = due.hints[newest].text
+            self._hint_deeds = [each if at == newest else Deeds() for at, each in enumerate(self._hint_deeds)]
+
+    def _begin_hints(self) -> None:
+        """Count for each hint of the step anew; the others begin again when one is shown, so the newest deed counts."""
+        hints = () if self.due is None else self.due.hints
+        self._hint_deeds = [Deeds() for _ in hints]
+        self._held = [False for _ in hints]

@@ -112,6 +112,10 @@ CONDITIONS: Mapping[str, LessonCheck] = {
         "a replay stands where the rover still rolls, and nothing is demanded of it any more",
         lambda deeds, asked: deeds.paused_at_stop,
     ),
+    "watches": LessonCheck(
+        "this screen watches: its keys do not drive, and a program may",
+        lambda deeds, asked: bool(deeds.now.lease.driver),
+    ),
     "emergency_stop": LessonCheck("the emergency stop holds", _vehicle(lambda vehicle: vehicle.emergency_stop)),
     "key_while_disarmed": LessonCheck(
         "a drive key was held while the rover was disarmed", lambda deeds, asked: deeds.held_disarmed

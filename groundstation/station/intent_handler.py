@@ -38,6 +38,7 @@ from groundstation.intents.vehicle import (
     RequestControl,
     SelectNextVehicle,
     SelectVehicle,
+    SetMode,
 )
 from groundstation.intents.vehicle_intent import VehicleIntent
 from groundstation.station.core_parts import CoreParts
@@ -110,6 +111,8 @@ class IntentHandler:
             handle(intent, now)
 
     def _send_command(self, intent: VehicleIntent, now: float) -> None:
+        if intent.neutral or isinstance(intent, SetMode):  # a screen that watches may set HOLD only
+            self._verbs.stop(now)
         vehicle = self._selected_vehicle(now)
         if vehicle is None:
             return
@@ -146,6 +149,8 @@ class IntentHandler:
 
     def _stop(self, intent: Stop, now: float) -> None:
         self._operator.sticks.stop()
+        if intent.reason == STOP_KEY:
+            self._verbs.stop(now)
         selected = self._fleet.selected
         if intent.reason == STOP_KEY and selected is not None and selected.state.may_move:
             self._commander.set_mode(selected.state, HOLD, now)  # neutral sticks do not stop a mission
@@ -156,6 +161,7 @@ class IntentHandler:
         All are also those that are not heard, and without a vehicle the first request goes to all.
         """
         self._operator.sticks.block(now)
+        self._verbs.stop(now)
         everything, self._emergency_at = now - self._emergency_at <= SECOND_STOP_WITHIN, now
         for contact in self._fleet:
             if everything or contact.ours or contact is self._fleet.selected:

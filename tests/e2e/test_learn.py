@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from groundstation.learn.progress import Progress
+from tests.e2e.other_terminals import OtherTerminals
+from tests.e2e.programs import LET_GO
 from tests.e2e.pupil import Pupil
 from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.tmux_marks import IN_TMUX
@@ -17,21 +19,33 @@ __all__ = ["tmux"]
 
 pytestmark = IN_TMUX
 
-LESSONS = [*((number, 80, 24) for number in range(1, 9)), (1, 140, 45), (7, 140, 45)]
+SMALL, LARGE = (80, 24), (140, 45)
+LESSONS = [*((number, *SMALL) for number in (*range(1, 9), 10)), (1, *LARGE), (7, *LARGE)]
 
 
 @pytest.fixture(autouse=True)
 def _own_state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Progress and recordings of the machine's user stay as they are."""
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("ROS_HOME", str(tmp_path / "ros"))
+    (tmp_path / "run").mkdir(mode=0o700)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))  # programs find no station of another test
+
+
+@pytest.fixture
+def others(tmp_path: Path) -> Iterator[OtherTerminals]:
+    """Return the other terminals of a pupil."""
+    opened = OtherTerminals(tmp_path)
+    yield opened
+    opened.end()
 
 
 @pytest.mark.parametrize(("number", "columns", "lines"), LESSONS)
 def test_a_lesson_is_passed_by_its_text_alone(
-    tmux: Callable[..., Tmux], tmp_path: Path, number: int, columns: int, lines: int
+    tmux: Callable[..., Tmux], tmp_path: Path, others: OtherTerminals, number: int, columns: int, lines: int
 ) -> None:
     terminal = tmux(columns, lines, "learn", str(number))
-    pupil = Pupil(terminal, columns)
+    pupil = Pupil(terminal, columns, others if number == 10 else None)
     last = pupil.learn()
     assert pupil.step(last) == 0
     wait_until(lambda: Progress(tmp_path / "state" / "mavhelm" / "learn.json").done == (str(number),), "it is saved")
@@ -42,3 +56,21 @@ def test_a_lesson_is_passed_by_its_text_alone(
     ended = terminal.until(lambda screen: "EXIT CODE" in screen, PATIENCE)
     assert "EXIT CODE 0" in ended
     assert "Traceback" not in ended
+
+
+WRONG_DEEDS = (("i", "the rover is disarmed"), (",", "That was backward"), ("j", "That was a turn"))
+"""A key that the first lesson does not ask for at this time, and what is said."""
+
+
+def test_wrong_deeds_get_the_hint_that_names_them(tmux: Callable[..., Tmux]) -> None:
+    terminal = tmux(*LARGE, "learn", "1")
+    pupil = Pupil(terminal, LARGE[0])
+    terminal.until(lambda screen: pupil.step(screen) == 1 and "DISARMED" in screen, PATIENCE)
+    for key, hint in WRONG_DEEDS:
+        terminal.hold_until(key, lambda screen, hint=hint: hint in pupil.marked(screen, "!"), 2 * PATIENCE)  # type: ignore[misc]
+        if key == "i":
+            terminal.pause(LET_GO)
+            terminal.hold_until("r", lambda screen: pupil.step(screen) == 2, 2 * PATIENCE)
+            assert not pupil.marked(terminal.screen(), "!"), "the hint goes when the task is done"
+        terminal.pause(LET_GO)
+    assert pupil.step(pupil.learn()) == 0, "a wrong deed costs nothing"

@@ -12,6 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.intents.driving import EmergencyStop, Stop
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import ReleaseControl
 from groundstation.station_socket.connect import running_stations
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen
@@ -343,6 +346,30 @@ with rover:
     with Screen.attach(station.pid, "screen of a test"):
         road.see_it_stop()
         wait_until(lambda: "the screen of a test drives" in program.said, lambda: program.errors)
+
+
+@pytest.mark.parametrize("intent", [Stop(), EmergencyStop()], ids=["stop", "emergency"])
+def test_a_program_drives_while_a_screen_watches_and_stops_it(
+    road: Road, station: subprocess.Popen[bytes], intent: AnyIntent
+) -> None:
+    with Screen.attach(station.pid, "screen of a test") as screen:
+        screen.see(lambda seen: not seen.lease.driver and seen.vehicle is not None)
+        screen.client.send(ReleaseControl())
+        screen.see(lambda seen: seen.lease.driver == "no screen")
+        program = road.start_driving(f"""\
+with rover:
+    rover.arm(30)
+    for _ in range(2):
+        try:
+            rover.drive(0.5, seconds={LONG})
+        except RoverError as error:
+            say(f"{{type(error).__name__}}: {{error}}")
+""")
+        screen.client.send(intent)
+        road.see_it_stop()
+        assert program.process.wait(30) == 0, program.errors
+        assert "a person has stopped it at a screen" in program.said
+        assert road.vehicle.stands(), "the second call turns no wheel"
 
 
 @pytest.mark.usefixtures("station")

@@ -14,7 +14,7 @@ from groundstation.intents.base import Intent
 from groundstation.intents.driving import STOP_KEY, DriveKeyDown, DriveKeyUp, DrivePad, ReleasePad, Stop
 from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
-from groundstation.intents.vehicle import GiveControl, KeepControl, RequestControl, SetMode
+from groundstation.intents.vehicle import GiveControl, KeepControl, ReleaseControl, RequestControl, SetMode
 from groundstation.snapshot.lease import LeaseView
 from groundstation.station.driving.driving import DrivingController
 from groundstation.station.driving.operator import OperatorSession
@@ -99,6 +99,8 @@ class ScreenLease(msgspec.Struct):
             case ReportKeyReleases(reports=reports):
                 screen.reports_releases = reports
         if screen is self.holder:
+            if isinstance(intent, ReleaseControl):
+                self._pass_to(self._asked.screen if self._asked is not None else None, now)  # a program may drive then
             return None if self._answers(intent, now) else intent
         return intent if self._may_watcher(screen, intent, now) else None
 

@@ -217,6 +217,17 @@ class RunningVerbs:
         if not self._operator.live and self._keeps(verb):
             self._used_at = now
 
+    def stop(self, now: float) -> None:
+        """End what all verbs demand with neutral, and take no more of them: a person at a watching screen has stopped.
+
+        While a screen drives, no verb does, and its stops are for its own keys.
+        """
+        if self.screen_that_drives() is not None:
+            return
+        for verb in self._verbs:
+            if not verb.alone and verb.is_permitted is None:
+                self._refuse(verb, "a person has stopped it at a screen", now)
+
     def tick(self, now: float) -> None:
         """End the demands of verbs that stand still, or that a screen has taken over; send what ends them."""
         screen = self.screen_that_drives()

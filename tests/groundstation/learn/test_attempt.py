@@ -137,5 +137,10 @@ def test_wrong_deeds_of_the_first_lesson_get_their_hints() -> None:
     assert (course.attempt.step, course.attempt.hint) == (1, "")
     course.go(2, LEFT, turn=-1.0)
     assert course.attempt.hint == "That was a turn. Hold `drive.forward`."
-    course.go(3, FORWARD, speed=1.0)
+    for _ in range(2):
+        course.go(3, replace(FORWARD, throttle=-0.6), speed=-0.6)
+        assert course.attempt.hint.startswith("That was backward"), "the newest deed, also for the second time"
+        course.go(2, LEFT, turn=-1.0)
+        assert course.attempt.hint.startswith("That was a turn")
+    course.go(9, FORWARD, speed=1.0)
     assert (course.attempt.step, course.attempt.hint) == (2, "")

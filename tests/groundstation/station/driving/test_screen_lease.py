@@ -7,7 +7,7 @@ import pytest
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
 from groundstation.intents.session import LEASE_TIMEOUT, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
-from groundstation.intents.vehicle import Arm, Disarm, GiveControl, KeepControl, RequestControl, SetMode
+from groundstation.intents.vehicle import Arm, Disarm, GiveControl, KeepControl, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.operator import THAW
 from groundstation.station.driving.screen_lease import ANSWER_WITHIN, DEAD_AFTER, Screen, ScreenLease
 from tests.groundstation.cockpits import FORWARD, driving_cockpit
@@ -80,6 +80,35 @@ def test_second_screen_neither_drives_nor_keeps_the_first_alive(bridge: Bridge) 
     bridge.run(1.0)
     assert max(t for t, x, _ in bridge.cockpit.demands() if x) - at < LEASE_TIMEOUT + 0.1
     assert not bridge.moves
+
+
+def test_a_screen_gives_up_the_keys_and_takes_them_back() -> None:
+    bridge = Bridge()
+    bridge.held = (bridge.first, DriveKeyDown(key="i", throttle=1, steering=0, repeat=True))
+    bridge.run(0.2)
+    assert bridge.moves
+    bridge.do(bridge.first, ReleaseControl())
+    bridge.cockpit.run(REPEAT)
+    assert not bridge.moves
+    bridge.run(2.0)
+    assert not bridge.moves, "the held key counts no more"
+    assert bridge.lease.holder is None
+    assert bridge.lease.view(bridge.first, bridge.now).driver == "no screen"
+    bridge.held = None
+    bridge.do(bridge.first, DriveKeyUp(key="i"), FORWARD)
+    bridge.run(0.5)
+    assert not bridge.moves, "only an explicit key takes them back"
+    bridge.do(bridge.first, RequestControl(), SetKeyGate(open=True), DriveKeyUp(key="i"))
+    assert bridge.lease.holder is bridge.first
+    assert bridge.lease.view(bridge.first, bridge.now).driver == ""
+
+
+def test_keys_given_up_go_to_the_screen_that_asks(bridge: Bridge) -> None:
+    bridge.do(bridge.second, RequestControl())
+    bridge.do(bridge.first, ReleaseControl())
+    bridge.cockpit.run(REPEAT)
+    assert not bridge.moves
+    assert bridge.lease.holder is bridge.second
 
 
 @pytest.mark.parametrize("intent", [Stop(), EmergencyStop(), Disarm(), SetMode(mode="HOLD")])

@@ -7,7 +7,10 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot, OperatorFlag, SystemState, VehicleType
 from dialects.messages import INVALID_AXIS, UINT16_MAX
+from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.session import Quit
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import Disarm, SetMode
 from groundstation.station.driving.arming import ArmSequence
 from groundstation.station.verbs.running_verbs import Purpose, RunningVerb, RunningVerbs, VerbMessage
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
@@ -182,6 +185,30 @@ def test_a_screen_that_comes_ends_the_demand() -> None:
     assert ashore.cockpit.demands()[-1][1] == 0
     ashore.send(FULL)
     assert ashore.refusals == ["the screen on pts/1 drives"]
+
+
+@pytest.mark.parametrize("intent", [Stop(), EmergencyStop(), Disarm(), SetMode(mode="HOLD")])
+def test_a_stop_at_a_watching_screen_ends_the_demand(intent: AnyIntent) -> None:
+    ashore = Ashore()
+    ashore.run(0.5, FULL)
+    assert ashore.cockpit.demands()[-1][1] == 1000
+    ashore.cockpit.do(intent)
+    ashore.cockpit.run(STEP)
+    assert ashore.cockpit.demands()[-1][1] == 0
+    ashore.run(2.0, FULL)
+    assert ashore.cockpit.demands()[-1][1] == 0
+    assert set(ashore.refusals) == {"a person has stopped it at a screen"}
+    again = ashore.add("mavhelm drive (pid 2)")
+    assert not again.refused, "a program that is started after the stop may drive"
+
+
+def test_a_stop_of_the_screen_that_drives_ends_no_later_program() -> None:
+    ashore = Ashore()
+    ashore.verbs.screen_that_drives = lambda: "screen on pts/1"
+    ashore.cockpit.do(Stop())
+    ashore.verbs.screen_that_drives = lambda: None
+    ashore.run(0.5, FULL)
+    assert ashore.cockpit.demands()[-1][1] == 1000
 
 
 def test_channels_are_centred_and_given_back() -> None:
