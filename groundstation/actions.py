@@ -9,7 +9,7 @@ import msgspec
 
 from groundstation.intents.agents import DeclineProposal, PermitProposal
 from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop, SetStyle, StepLimits, Stop
-from groundstation.intents.session import StartSimulator
+from groundstation.intents.session import GiveUpKeys, StartSimulator
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import (
     Arm,
@@ -133,6 +133,8 @@ _ROWS = (
                    GiveControl(), ("Y",)),
     OperatorAction("vehicle.keep", "Keep control", "Refuse the request of another ground station for control",
                    "vehicle", KeepControl(), ("N",)),
+    OperatorAction("vehicle.give_up", "Give up keys", "Stop, and give up the keys: a program may drive then",
+                   "vehicle", GiveUpKeys(), ("F",)),
     OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
                    SelectNextVehicle(), ("n",)),
     OperatorAction("agent.permit", "Permit agent", "Let the proposal of an agent run while this key is held", "vehicle",

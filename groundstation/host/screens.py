@@ -47,7 +47,7 @@ class Lifetime(Enum):
     SCREEN = auto()
     """The end of the screen that has started it, for whatever reason."""
     QUIT = auto()
-    """Its driver quits. A screen that is killed or hung up leaves it running."""
+    """Its driver quits, or the one that gave up the keys last. A screen that is killed or hung up leaves it running."""
     SIGNAL = auto()
     """A signal only."""
 
@@ -176,8 +176,8 @@ class ScreenSet:
 
     def _leave(self, attached: _Attached, intent: Quit | Detach, now: float) -> None:
         """Let a screen go that ends in order, and the station with it if that is its lifetime."""
-        drives = attached.screen is self.lease.holder
-        ends = attached.owner if self._lifetime is Lifetime.SCREEN else self._lifetime is Lifetime.QUIT and drives
+        drives, last = attached.screen is self.lease.holder, self.lease.is_last_driver(attached.screen)
+        ends = attached.owner if self._lifetime is Lifetime.SCREEN else self._lifetime is Lifetime.QUIT and last
         if attached.owner:
             self._host.note_screen(quits=True, now=now)
         if ends and (isinstance(intent, Quit) or self._lifetime is Lifetime.SCREEN):

@@ -64,6 +64,10 @@ class StartSimulator(Intent, frozen=True):
     """A row of groundstation.sitl.simulators.SIMULATORS."""
 
 
+class GiveUpKeys(Intent, frozen=True):
+    """Neutral, and this screen drives no more; without another one that asks, a program may drive then."""
+
+
 class Detach(Intent, frozen=True):
     """The screen ends in order, but its operator did not quit: a station that is kept goes on, neutral."""
 

@@ -9,6 +9,7 @@ import msgspec
 from groundstation.learn.deeds import STANDING, Deeds
 from groundstation.learn.lesson import Checked
 from groundstation.snapshot import VehicleView
+from groundstation.snapshot.lease import NO_SCREEN
 
 FEW = 3
 """Parameters that a filter leaves when it was used well."""
@@ -112,9 +113,9 @@ CONDITIONS: Mapping[str, LessonCheck] = {
         "a replay stands where the rover still rolls, and nothing is demanded of it any more",
         lambda deeds, asked: deeds.paused_at_stop,
     ),
-    "watches": LessonCheck(
-        "this screen watches: its keys do not drive, and a program may",
-        lambda deeds, asked: bool(deeds.now.lease.driver),
+    "gave_up_keys": LessonCheck(
+        "no screen has the keys, so that a program may drive",
+        lambda deeds, asked: deeds.now.lease.driver == NO_SCREEN,
     ),
     "emergency_stop": LessonCheck("the emergency stop holds", _vehicle(lambda vehicle: vehicle.emergency_stop)),
     "key_while_disarmed": LessonCheck(

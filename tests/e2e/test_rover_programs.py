@@ -12,9 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.intents.driving import EmergencyStop, Stop
+from groundstation.intents.driving import Stop
+from groundstation.intents.session import GiveUpKeys
 from groundstation.intents.union import AnyIntent
-from groundstation.intents.vehicle import ReleaseControl
+from groundstation.intents.vehicle import RequestControl
 from groundstation.station_socket.connect import running_stations
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen
@@ -348,13 +349,17 @@ with rover:
         wait_until(lambda: "the screen of a test drives" in program.said, lambda: program.errors)
 
 
-@pytest.mark.parametrize("intent", [Stop(), EmergencyStop()], ids=["stop", "emergency"])
-def test_a_program_drives_while_a_screen_watches_and_stops_it(
-    road: Road, station: subprocess.Popen[bytes], intent: AnyIntent
+@pytest.mark.parametrize(
+    ("intent", "why"),
+    [(Stop(), "a person has stopped it at a screen"), (RequestControl(), "the screen of a test drives")],
+    ids=["stop", "take_the_keys"],
+)
+def test_a_program_drives_while_a_screen_watches_and_ends_it(
+    road: Road, station: subprocess.Popen[bytes], intent: AnyIntent, why: str
 ) -> None:
     with Screen.attach(station.pid, "screen of a test") as screen:
         screen.see(lambda seen: not seen.lease.driver and seen.vehicle is not None)
-        screen.client.send(ReleaseControl())
+        screen.client.send(GiveUpKeys())
         screen.see(lambda seen: seen.lease.driver == "no screen")
         program = road.start_driving(f"""\
 with rover:
@@ -368,8 +373,10 @@ with rover:
         screen.client.send(intent)
         road.see_it_stop()
         assert program.process.wait(30) == 0, program.errors
-        assert "a person has stopped it at a screen" in program.said
+        assert program.said.startswith(f"NotInControl: {why}")
+        assert len(program.said.splitlines()) == 2, "the second call fails, too"
         assert road.vehicle.stands(), "the second call turns no wheel"
+        screen.see(lambda seen: seen.vehicle is not None and not seen.vehicle.armed)
 
 
 @pytest.mark.usefixtures("station")

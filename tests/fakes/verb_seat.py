@@ -37,7 +37,7 @@ class SeatLog:
 
 
 def verb_of(
-    name: str, *, needs_session: bool = False, follows: bool = False, seat: SeatLog | None = None
+    name: str, *, needs_session: bool = False, follows: bool = False, moves: bool = False, seat: SeatLog | None = None
 ) -> RunningVerb:
     """Return a verb for a station to join."""
-    return RunningVerb(name, needs_session, seat or SeatLog(), follows=follows)
+    return RunningVerb(name, needs_session, seat or SeatLog(), follows=follows, moves=moves)

@@ -13,7 +13,7 @@ from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.line import RunLine
 from groundstation.intents.links import AddLink
-from groundstation.intents.session import Detach, ReportScreen, StartSimulator
+from groundstation.intents.session import Detach, GiveUpKeys, ReportScreen, StartSimulator
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle_intent import VehicleIntent
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
@@ -46,7 +46,7 @@ def test_every_intent_travels_through_the_pipe(kind: type[Intent]) -> None:
 
 
 def test_every_intent_has_a_handler() -> None:
-    shell = {StartSimulator, AddLink, RunLine, Detach}
+    shell = {StartSimulator, AddLink, RunLine, Detach, GiveUpKeys}
     assert {*Station(["memory"]).intents.kinds, ReportScreen, *shell, *REPLAY} == set(KINDS)
     assert not any(issubclass(kind, VehicleIntent) for kind in HANDLERS)
 

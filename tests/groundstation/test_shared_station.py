@@ -23,7 +23,7 @@ from groundstation.cli.main import main
 from groundstation.client import StationClient, StationError
 from groundstation.host.listener import ProgramListener
 from groundstation.intents.driving import STOP_KEY, Stop
-from groundstation.intents.session import Quit
+from groundstation.intents.session import GiveUpKeys, Quit
 from groundstation.intents.vehicle import Arm, GiveControl, RequestControl
 from groundstation.ipc import protocol_version
 from groundstation.station_socket.about import describe_stations
@@ -123,13 +123,19 @@ def test_second_screen_watches_stops_and_drives_when_given_keys() -> None:
         first.see(lambda seen: seen.lease.driver == "no screen")
 
 
-def test_kept_station_is_neutral_after_a_kill_and_takes_the_next() -> None:
+@pytest.mark.parametrize("gives_up", [False, True], ids=["drives", "gives_up_the_keys"])
+def test_kept_station_is_neutral_after_a_kill_and_takes_the_next(gives_up: bool) -> None:
     with killed_screen(0.3, "--keep") as (vehicle, station, killed):
         assert_said_neutral(vehicle, killed)
         assert running(station)
         with Screen.attach(station) as screen:
             screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.armed and not seen.lease.driver)
             screen.drive(vehicle)
+            if gives_up:
+                given_up = time.monotonic()
+                screen.client.send(GiveUpKeys())
+                screen.see(lambda seen: seen.lease.driver == "no screen")
+                assert_said_neutral(vehicle, given_up)
             screen.client.send(Quit(disarm=True))
             wait_until(lambda: not running(station))
             assert not vehicle.armed

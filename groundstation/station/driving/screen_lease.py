@@ -12,10 +12,10 @@ from dialects.enums import Severity
 from dialects.mode_tables import HOLD
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import STOP_KEY, DriveKeyDown, DriveKeyUp, DrivePad, ReleasePad, Stop
-from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.session import GiveUpKeys, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
-from groundstation.intents.vehicle import GiveControl, KeepControl, ReleaseControl, RequestControl, SetMode
-from groundstation.snapshot.lease import LeaseView
+from groundstation.intents.vehicle import GiveControl, KeepControl, RequestControl, SetMode
+from groundstation.snapshot.lease import NO_SCREEN, LeaseView
 from groundstation.station.driving.driving import DrivingController
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.vehicles.state.message_log import MessageLog
@@ -65,6 +65,8 @@ class ScreenLease(msgspec.Struct):
     driving: DrivingController
     log: MessageLog
     holder: Screen | None = None
+    _gave_up: Screen | None = None
+    """The screen that has given up the keys, while nobody has them."""
     _asked: _Asked | None = None
     _count: int = 0
 
@@ -84,10 +86,16 @@ class ScreenLease(msgspec.Struct):
         """Forget a screen that has ended. Returns True if it drove: neutral, and nobody drives."""
         if self._asked is not None and self._asked.screen is screen:
             self._asked = None
+        if screen is self._gave_up:
+            self._gave_up = None
         if screen is not self.holder:
             return False
-        self._pass_to(self._asked.screen if self._asked is not None else None, now)
+        self._pass_to(self._waiting, now)
         return True
+
+    def is_last_driver(self, screen: Screen) -> bool:
+        """Return whether a screen has the keys, or gave them up and nobody has taken them since."""
+        return screen is (self.holder or self._gave_up)
 
     def filter(self, screen: Screen, intent: AnyIntent, now: float) -> AnyIntent | None:
         """Return the intent if the station carries it out; None if not, or if it was for the lease itself."""
@@ -99,8 +107,9 @@ class ScreenLease(msgspec.Struct):
             case ReportKeyReleases(reports=reports):
                 screen.reports_releases = reports
         if screen is self.holder:
-            if isinstance(intent, ReleaseControl):
-                self._pass_to(self._asked.screen if self._asked is not None else None, now)  # a program may drive then
+            if isinstance(intent, GiveUpKeys):
+                self._give_up(screen, now)
+                return None
             return None if self._answers(intent, now) else intent
         return intent if self._may_watcher(screen, intent, now) else None
 
@@ -119,8 +128,17 @@ class ScreenLease(msgspec.Struct):
         asked = self._asked
         if screen is not self.holder:
             waits = max(0.0, asked.until - now) if asked is not None and asked.screen is screen else None
-            return LeaseView(driver=self.holder.name if self.holder else "no screen", waits=waits)
+            return LeaseView(driver=self.holder.name if self.holder else NO_SCREEN, waits=waits)
         return LeaseView() if asked is None else LeaseView(asks=asked.screen.name, left=max(0.0, asked.until - now))
+
+    @property
+    def _waiting(self) -> Screen | None:
+        return None if self._asked is None else self._asked.screen
+
+    def _give_up(self, screen: Screen, now: float) -> None:
+        """Pass the keys to the screen that asks for them; without one no screen drives, and programs may."""
+        self._pass_to(self._waiting, now)
+        self._gave_up = screen if self.holder is None else None
 
     def _answers(self, intent: AnyIntent, now: float) -> bool:
         """Handle the holder's answer. Returns False without a request: then it is for another ground station."""
@@ -162,7 +180,7 @@ class ScreenLease(msgspec.Struct):
 
     def _pass_to(self, screen: Screen | None, now: float) -> None:
         """Change the holder: neutral, and no key that is held anywhere counts."""
-        self.holder, self._asked = screen, None
+        self.holder, self._asked, self._gave_up = screen, None, None
         new = screen or Screen(-1, "")
         self.operator.change_screen(new.gate, now, reports_releases=new.reports_releases)
         self.driving.drop_demands()

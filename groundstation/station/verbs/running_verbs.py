@@ -36,6 +36,8 @@ FRESH = 3.0
 CONSTANT = frozenset((m.AutopilotVersion.id, m.RoverDriveInfo.id, m.HomePosition.id))
 """Ids of messages that a vehicle sends once, and that hold as long as it is heard."""
 
+STOPPED = "a person has stopped it at a screen"
+
 MAX_KINDS = 64 * MAX_VEHICLES
 """Kinds of messages, of all senders together, whose newest is kept."""
 
@@ -93,6 +95,8 @@ class RunningVerb(msgspec.Struct, eq=False):
     seat: VerbSeat
     follows: bool = False
     """It keeps the session going that a verb has used just before."""
+    moves: bool = False
+    """It drives, or begins what drives: a person who stops the vehicle ends it."""
     is_permitted: Callable[[float], bool] | None = None
     """Of a verb of an agent: whether a person lets it act now. None: it is the user's own."""
     alone: bool = False
@@ -218,15 +222,16 @@ class RunningVerbs:
             self._used_at = now
 
     def stop(self, now: float) -> None:
-        """End what all verbs demand with neutral, and take no more of them: a person at a watching screen has stopped.
+        """End the verbs that move vehicles, with neutral: a person at a watching screen has stopped.
 
-        While a screen drives, no verb does, and its stops are for its own keys.
+        While a screen drives, no verb does, and its stops are for its own keys. What an agent does ends by itself.
         """
         if self.screen_that_drives() is not None:
             return
-        for verb in self._verbs:
-            if not verb.alone and verb.is_permitted is None:
-                self._refuse(verb, "a person has stopped it at a screen", now)
+        for verb in list(self._verbs):
+            if not verb.alone and verb.is_permitted is None and (verb.moves or verb.demands):
+                self._refuse(verb, STOPPED, now)
+                verb.seat.refuse(STOPPED)
 
     def tick(self, now: float) -> None:
         """End the demands of verbs that stand still, or that a screen has taken over; send what ends them."""

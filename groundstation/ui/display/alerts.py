@@ -8,6 +8,7 @@ from enum import Enum, auto
 import msgspec
 
 from groundstation.snapshot import EmergencyProgress, VehicleView
+from groundstation.snapshot.lease import NO_SCREEN
 from groundstation.ui.display.agent_texts import hold_text, proposal_text
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.keys.key_gate import OTHER_SCREEN, TEXT_FIELD
@@ -181,7 +182,10 @@ def _state(now: DisplayState) -> Iterator[Alert]:
 
 def _gate(now: DisplayState) -> Iterator[Alert]:
     lease = now.snapshot.lease
-    if lease.driver:
+    if lease.driver == NO_SCREEN:
+        takes = f"{now.key('vehicle.control')} takes the keys"
+        yield Alert(AlertLevel.WARNING, f"you watch: {NO_SCREEN} drives, a program may; {takes}, stops work")
+    elif lease.driver:
         request = f"asked ({lease.waits:.0f} s)" if lease.waits is not None else f"{now.key('vehicle.control')} asks"
         yield Alert(AlertLevel.WARNING, f"you watch: {lease.driver} drives; {request}, stops work")
     elif now.closure is not None and now.closure.reason not in _ELSEWHERE:

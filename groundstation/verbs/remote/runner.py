@@ -94,6 +94,7 @@ class ShellVerb:
             self._flush,
             needs_session=not action.watches,
             follows=self._follows,
+            moves=action.shows_neutral or action.guarded(options),
             silence=self._silence,
             speak=session.speak,
         )

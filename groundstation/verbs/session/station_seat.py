@@ -38,19 +38,22 @@ class StationSeat:
         needs_session: bool = False,
         follows: bool = False,
         silence: Callable[[float], float] = lambda now: 0.0,
+        moves: bool = False,
         alone: bool = False,
         is_permitted: Callable[[float], bool] | None = None,
         speak: Callable[[], list[VerbMessage]] | None = None,
     ) -> None:
         """`flush` sends what the station has queued; `silence`: for how many s the shell of the verb was silent.
 
-        `alone`: the station is that of the verb's own process. `is_permitted`: see RunningVerb. `speak`
+        `moves`, `is_permitted`: see RunningVerb. `alone`: the station is that of the verb's own process. `speak`
         returns what the verb sends now; None: what its VerbCore does.
         """
         self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
         self._speak = core.messages_to_send if isinstance(core, VerbCore) else speak
-        self._verb = RunningVerb(name, needs_session, self, follows=follows, alone=alone, is_permitted=is_permitted)
+        self._verb = RunningVerb(
+            name, needs_session, self, follows=follows, moves=moves, alone=alone, is_permitted=is_permitted
+        )
 
     @cached_property
     def broken(self) -> asyncio.Future[None]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
-from groundstation.intents.session import LEASE_TIMEOUT, RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.session import LEASE_TIMEOUT, GiveUpKeys, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, Disarm, GiveControl, KeepControl, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.operator import THAW
@@ -87,7 +87,7 @@ def test_a_screen_gives_up_the_keys_and_takes_them_back() -> None:
     bridge.held = (bridge.first, DriveKeyDown(key="i", throttle=1, steering=0, repeat=True))
     bridge.run(0.2)
     assert bridge.moves
-    bridge.do(bridge.first, ReleaseControl())
+    bridge.do(bridge.first, GiveUpKeys())
     bridge.cockpit.run(REPEAT)
     assert not bridge.moves
     bridge.run(2.0)
@@ -101,11 +101,41 @@ def test_a_screen_gives_up_the_keys_and_takes_them_back() -> None:
     bridge.do(bridge.first, RequestControl(), SetKeyGate(open=True), DriveKeyUp(key="i"))
     assert bridge.lease.holder is bridge.first
     assert bridge.lease.view(bridge.first, bridge.now).driver == ""
+    bridge.run(1.0)
+    bridge.held = (bridge.first, FORWARD)
+    bridge.run(0.5)
+    assert bridge.moves, "without another request: the vehicle was never released"
+
+
+def test_only_the_screen_that_gave_up_the_keys_counts_as_its_last_driver(bridge: Bridge) -> None:
+    lease, first, second = bridge.lease, bridge.first, bridge.second
+    assert (lease.is_last_driver(first), lease.is_last_driver(second)) == (True, False)
+    bridge.do(second, GiveUpKeys())
+    assert lease.holder is first, "a screen that watches has none to give up"
+    bridge.do(first, GiveUpKeys())
+    assert (lease.is_last_driver(first), lease.is_last_driver(second)) == (True, False)
+    bridge.do(second, RequestControl())
+    assert (lease.is_last_driver(first), lease.is_last_driver(second)) == (False, True)
+    lease.leave(second, bridge.now)
+    assert lease.holder is None
+    assert not lease.is_last_driver(first)
+    bridge.do(first, RequestControl(), GiveUpKeys())
+    lease.leave(first, bridge.now)
+    assert not lease.is_last_driver(first)
+
+
+def test_releasing_control_of_a_vehicle_keeps_the_keys(bridge: Bridge) -> None:
+    """Others are asked for a vehicle; the tmux of a screen that nobody sees releases all. No program may drive then."""
+    for intent in (ReleaseControl(), ReleaseControl(all=True)):
+        bridge.do(bridge.first, intent)
+        bridge.run(1.0)
+        assert not bridge.moves
+        assert bridge.lease.holder is bridge.first
 
 
 def test_keys_given_up_go_to_the_screen_that_asks(bridge: Bridge) -> None:
     bridge.do(bridge.second, RequestControl())
-    bridge.do(bridge.first, ReleaseControl())
+    bridge.do(bridge.first, GiveUpKeys())
     bridge.cockpit.run(REPEAT)
     assert not bridge.moves
     assert bridge.lease.holder is bridge.second

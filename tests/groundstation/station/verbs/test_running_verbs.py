@@ -12,7 +12,7 @@ from groundstation.intents.session import Quit
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Disarm, SetMode
 from groundstation.station.driving.arming import ArmSequence
-from groundstation.station.verbs.running_verbs import Purpose, RunningVerb, RunningVerbs, VerbMessage
+from groundstation.station.verbs.running_verbs import STOPPED, Purpose, RunningVerb, RunningVerbs, VerbMessage
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.verbs.control.arm import ArmJob
 from groundstation.verbs.session.core import VerbCore
@@ -46,8 +46,8 @@ class Ashore:
         self.verb = self.add("mavhelm send", needs_session=needs_session)
         self.alive = True
 
-    def add(self, name: str, *, needs_session: bool = True, follows: bool = False) -> RunningVerb:
-        verb = verb_of(name, needs_session=needs_session, follows=follows, seat=self.seat)
+    def add(self, name: str, *, needs_session: bool = True, follows: bool = False, moves: bool = False) -> RunningVerb:
+        verb = verb_of(name, needs_session=needs_session, follows=follows, moves=moves, seat=self.seat)
         self.verbs.join(verb, self.cockpit.now)
         return verb
 
@@ -197,9 +197,24 @@ def test_a_stop_at_a_watching_screen_ends_the_demand(intent: AnyIntent) -> None:
     assert ashore.cockpit.demands()[-1][1] == 0
     ashore.run(2.0, FULL)
     assert ashore.cockpit.demands()[-1][1] == 0
-    assert set(ashore.refusals) == {"a person has stopped it at a screen"}
-    again = ashore.add("mavhelm drive (pid 2)")
+    assert set(ashore.refusals) == {STOPPED}
+    again = ashore.add("mavhelm drive (pid 2)", moves=True)
     assert not again.refused, "a program that is started after the stop may drive"
+    assert ashore.passed(FULL, verb=again) == [1]
+
+
+def test_a_stop_ends_what_may_move_and_nothing_else() -> None:
+    ashore = Ashore()
+    program, upload = ashore.add("mavhelm api (pid 2)", moves=True), ashore.add("mavhelm param (pid 3)")
+    ashore.run(0.5)
+    ashore.cockpit.do(Stop("quitting"))
+    assert not ashore.refusals, "only the key of a person does"
+    ashore.cockpit.do(Stop())
+    assert ashore.refusals == [STOPPED]
+    assert program.refused == STOPPED, "between two calls, too: the next one may start a mission"
+    assert ashore.passed(FULL, verb=program) == [0]
+    assert not upload.refused
+    assert ashore.passed(m.ParamSet(1, 1, b"X", 1.0, 9), verb=upload) == [1]
 
 
 def test_a_stop_of_the_screen_that_drives_ends_no_later_program() -> None:
