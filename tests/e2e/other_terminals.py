@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.ports import free_port
 from tests.waits import PATIENCE
 
 COMMAND = re.compile(r"(?:roscore|[a-z0-9_]{3,} .+)")
@@ -28,7 +29,9 @@ class OtherTerminals:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-        self._environment = {**os.environ, "PATH": programs}
+        self._master = str(free_port())
+        master = {"ROS_MASTER_URI": f"http://127.0.0.1:{self._master}", "ROS_HOSTNAME": "127.0.0.1"}
+        self._environment = {**os.environ, **master, "ROS_HOME": str(folder / "ros"), "PATH": programs}
         self._running: dict[str, subprocess.Popen[bytes]] = {}
         self.said = folder / "other_terminals.txt"
         """What the programs have printed."""
@@ -46,8 +49,9 @@ class OtherTerminals:
         process = self._running.pop(command, None)
         if process is None or process.poll() is not None:
             with self.said.open("ab") as said:
+                port = ["-p", self._master] if command == "roscore" else []  # other tests have masters, too
                 process = subprocess.Popen(
-                    shlex.split(command), cwd=self._folder, env=self._environment,
+                    [*shlex.split(command), *port], cwd=self._folder, env=self._environment,
                     stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True,
                 )  # fmt: skip
         self._running[command] = process  # the newest is the last

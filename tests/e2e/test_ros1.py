@@ -4,36 +4,17 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
-from tests.e2e.ros1.rig import SYSTEM_PYTHON, Rig
-from tests.waits import PATIENCE, wait_until
+from tests.e2e.ros1.marks import NEEDS_ROS
+from tests.e2e.ros1.rig import Rig
+from tests.waits import wait_until
 
-INSTALLED = Path(__file__).parent / "ros1" / "installed.py"
-PACKAGES = "python3-roslaunch python3-rospy python3-geometry-msgs python3-sensor-msgs python3-nav-msgs"
-
-
-def has_ros() -> bool:
-    """Return whether all of ROS 1 that these tests use is installed."""
-    words = [SYSTEM_PYTHON, str(INSTALLED)]
-    try:
-        return subprocess.run(words, capture_output=True, timeout=PATIENCE).returncode == 0
-    except OSError:
-        return False
-
-
-pytestmark = [
-    pytest.mark.e2e,
-    pytest.mark.skipif(
-        "MAVHELM_CI" not in os.environ and not has_ros(),
-        reason=f"ROS 1 or a part of it is not installed (Debian: {PACKAGES})",
-    ),
-]
+pytestmark = [pytest.mark.e2e, NEEDS_ROS]
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ class LessonPaneValue(msgspec.Struct, frozen=True):
     end: tuple[str, ...] = ()
     """What is said when all is done."""
     page: int = 0
-    """Counted from 0; a page after the last is the last. -1: the first page with a task that is due."""
+    """Counted from 0; a page after the last is the last. -1: the first page with the task that is due, or the end."""
     key: str = ""
     """Key that turns the page."""
 
@@ -103,9 +103,12 @@ def find_page(value: LessonPaneValue, pages: Sequence[Sequence[Line]]) -> int:
     """Return the index of the page to show."""
     if value.page >= 0:
         return min(value.page, len(pages) - 1)
-    wanted = (WRONG, DUE) if not value.end else ()
-    found = (at for at, page in enumerate(pages) if any(mark in wanted for mark, _ in page))
-    return next(found, len(pages) - 1)
+    shown = (at for at, page in enumerate(pages) if any(_is_due(value, line) for line in page))
+    return next(shown, len(pages) - 1)
+
+
+def _is_due(value: PaneValue, line: Line) -> bool:
+    return line[1] == value.end[0] if value.end else line[0] in (WRONG, DUE)
 
 
 def _apart(parts: Sequence[list[Line]]) -> list[Line]:

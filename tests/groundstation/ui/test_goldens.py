@@ -221,9 +221,11 @@ def views_for(name: str) -> Sequence[View]:
 
 def begin_lesson() -> LessonDock:
     """Return the first lesson, with the hint of a wrong deed."""
-    attempt = Attempt(load_course()[0].lesson)
-    attempt.deeds.held_disarmed = True
-    return LessonDock("Lesson 1", attempt, next_heading="2 A key on the wire")
+    dock = LessonDock("Lesson 1", Attempt(load_course()[0].lesson), next_heading="2 A key on the wire")
+    for uptime in (1.0, 1.2):
+        dock.see(snapshot(uptime=uptime, vehicle=vehicle(armed=False), operator=helm(held=("i",))), "drive")
+    assert dock.attempt.hint
+    return dock
 
 
 def fill_recent(name: str) -> None:

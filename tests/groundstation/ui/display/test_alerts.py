@@ -38,6 +38,12 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         AlertLevel.WARNING,
         "you watch: screen on pts/4 drives; g asks",
     ),
+    (
+        snapshot(lease=LeaseView(driver="no screen")),
+        {},
+        AlertLevel.WARNING,
+        "you watch: no screen drives, a program may; g takes the keys, stops work",
+    ),
     (snapshot(lease=LeaseView(driver="x", waits=7.9)), {}, AlertLevel.WARNING, "x drives; asked (8 s), stops work"),
     (snapshot(handover=ASKED), {}, AlertLevel.QUESTION, "control of Rover 1: Y gives, N keeps (8 s)"),
     (

@@ -7,7 +7,7 @@ from groundstation.learn.attempt import Attempt
 from groundstation.learn.course import load_course
 from groundstation.ui.learn.layout import PanePlace
 from groundstation.ui.learn.lesson_dock import LessonDock
-from groundstation.ui.learn.pane import DUE, WRONG, lay_out
+from groundstation.ui.learn.pane import DUE, WRONG, find_page, lay_out
 
 KEYS = Keymap("standard", KEYMAPS["standard"])
 SMALL, LARGE = (80, 24), (140, 45)
@@ -64,5 +64,8 @@ def test_a_hint_shows_the_pane_again_and_the_end_goes_on_once() -> None:
     pane._follow()
     pane._follow()
     assert done == [1]
+    value = pane.value(SMALL, KEYS)
+    pages = lay_out(value, 80, 6)
+    assert pages[find_page(value, pages)][0] == ("", "DONE. Why this matters:")
     pane.turn_page(LARGE, KEYS)
     assert pane.goes_on
