@@ -107,7 +107,7 @@ def find_page(value: LessonPaneValue, pages: Sequence[Sequence[Line]]) -> int:
     return next(shown, len(pages) - 1)
 
 
-def _is_due(value: PaneValue, line: Line) -> bool:
+def _is_due(value: LessonPaneValue, line: Line) -> bool:
     return line[1] == value.end[0] if value.end else line[0] in (WRONG, DUE)
 
 
