@@ -19,6 +19,10 @@ class Attempt:
         self.hint = ""
         """What is said about the newest wrong deed; "" for none."""
         self.deeds = Deeds()
+        self._hint_deeds: list[Deeds] = []
+        """For each hint of the step, what was seen since another one was shown, so that the newest deed counts."""
+        self._held: list[bool] = []
+        """Which hints held at the newest look."""
         self._begin_hints()
 
     @property
@@ -55,17 +59,13 @@ class Attempt:
             self.deeds = Deeds()  # what was done before does not count for the next step
             self._begin_hints()
             return
-        was, self._held = (
-            self._held,
-            [is_done(deeds, hint) for deeds, hint in zip(self._hint_deeds, due.hints, strict=True)],
-        )
-        newest = next((at for at, (old, new) in enumerate(zip(was, self._held, strict=True)) if new and not old), None)
+        before, self._held = self._held, [is_done(*each) for each in zip(self._hint_deeds, due.hints, strict=True)]
+        newest = next((at for at, held in enumerate(self._held) if held and not before[at]), None)
         if newest is not None:
             self.hint = due.hints[newest].text
             self._hint_deeds = [each if at == newest else Deeds() for at, each in enumerate(self._hint_deeds)]
 
     def _begin_hints(self) -> None:
-        """Count for each hint of the step anew; the others begin again when one is shown, so the newest deed counts."""
         hints = () if self.due is None else self.due.hints
         self._hint_deeds = [Deeds() for _ in hints]
         self._held = [False for _ in hints]
