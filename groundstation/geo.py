@@ -6,6 +6,7 @@ The ground around a place is drawn as a plane. The error is 0.1 % at 10 km, more
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import msgspec
@@ -104,3 +105,15 @@ def read_place(latitude: int, longitude: int) -> tuple[float, float] | None:
     if (not latitude and not longitude) or not is_on_earth(north, east):
         return None
     return north, (east if east < MAX_LONGITUDE else -MAX_LONGITUDE)
+
+
+def place_around(centre: Point, heading: float, seen: Iterable[tuple[float, float]]) -> tuple[Point, ...]:
+    """Return points that are seen from a vehicle: each a bearing clockwise from its nose, rad, and a distance, m."""
+    north, east = centre
+    return tuple(
+        (
+            round(north + distance * math.cos(heading + bearing), 2),
+            round(east + distance * math.sin(heading + bearing), 2),
+        )
+        for bearing, distance in seen
+    )

@@ -120,6 +120,10 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Why outputs differ from the demand: "slew", "neutral first" ..."""
     slowed: tuple[float, str] | None = None
     """m/s that the vehicle allows itself now, and why, in two words; None while its demand is within that."""
+    nearest: tuple[float, float] | None = None
+    """The nearest obstacle: bearing clockwise from the nose, rad, and distance, m; None if none is reported."""
+    obstacles: tuple[tuple[float, float], ...] = ()
+    """All that it reports, each like `nearest`."""
     command_age: float | None = None
     """Age of the newest demand that the vehicle has taken, s; from some age on it is not obeyed any more."""
     command_age_estimated: bool = False

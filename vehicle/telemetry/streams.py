@@ -112,7 +112,7 @@ STREAMS: tuple[Stream, ...] = (
            change_key=lambda view: (view.navigator.estimate.origin, view.navigator.origin_altitude)),
     Stream(m.HomePosition, COMMON, 0.5, build_status.home_position, change_key=lambda view: view.home),
     Stream(m.ObstacleDistance, COMMON, 1, build_proximity.obstacle_distance, DataStream.EXTENDED_STATUS),
-    Stream(m.DistanceSensor, COMMON, 1, build_proximity.distance_sensor, DataStream.EXTENDED_STATUS),
+    Stream(m.DistanceSensor, COMMON, 4, build_proximity.distance_sensor, DataStream.EXTENDED_STATUS),
     Stream(m.OnboardComputerStatus, COMMON, 0.5, build_computer.onboard_computer_status, DataStream.EXTENDED_STATUS),
     Stream(m.AttitudeQuaternion, COMMON, 0, build_pose.attitude_quaternion),
     Stream(m.HighresImu, COMMON, 0, build_pose.highres_imu),

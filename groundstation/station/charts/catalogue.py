@@ -37,6 +37,11 @@ READY_VIEWS: tuple[tuple[str, tuple[tuple[str, tuple[str, ...]], ...]], ...] = (
         ("loss", (f"{STATION}.loss", "RADIO_STATUS.txbuf")),
         ("signal", ("RADIO_STATUS.rssi", "RADIO_STATUS.remrssi", "RADIO_STATUS.noise")),
     )),
+    ("obstacles", (
+        ("nearest", ("DISTANCE_SENSOR.current_distance",)),
+        ("speed limit", ("ROVER_DRIVE_STATUS.speed_limit", "VFR_HUD.groundspeed")),
+        ("ahead", ("OBSTACLE_DISTANCE.distances[0]",)),
+    )),
 )  # fmt: skip
 """Name -> charts; a chart has a title and fields. "a|b": the first of them that the vehicle sends."""
 

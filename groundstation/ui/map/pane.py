@@ -11,6 +11,7 @@ from groundstation.ui.map.draw.plan_map_value import MapMark, PlanMapValue
 from groundstation.ui.map.draw.scene import (
     build_legs,
     build_marks,
+    build_obstacles,
     build_outlines,
     find_reference,
     find_route,
@@ -29,6 +30,7 @@ def build_pane(copies: PlanCopies, vehicle: VehicleView | None, *, ascii: bool =
         return PlanMapValue(no_position(vehicle))
     frame = LocalFrame(reference)
     mission = copies.items.get(PlanKind.MISSION, ())
+    place = _point(frame, view.place)
     home, current = _point(frame, view.home), None if view.state == COMPLETE else view.current
     reached = frozenset(range(len(mission)) if view.state == COMPLETE else view.reached)
     looks = dict.fromkeys(reached, "done") | ({current: "now"} if current is not None else {})
@@ -37,7 +39,8 @@ def build_pane(copies: PlanCopies, vehicle: VehicleView | None, *, ascii: bool =
     return PlanMapValue(
         note="",
         home=home,
-        vehicle=_point(frame, view.place),
+        vehicle=place,
+        obstacles=build_obstacles(place, vehicle),
         heading=None if vehicle is None or vehicle.heading is None else round(vehicle.heading, 1),
         track=track_points(copies.track, frame),
         legs=build_legs(find_route(mission, frame, home), home, current, reached),

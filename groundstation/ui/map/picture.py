@@ -11,7 +11,7 @@ from groundstation.geo import Point, bearing
 from groundstation.snapshot import VehicleView
 from groundstation.ui.map.draw.ground import NOT_FITTED, Looking
 from groundstation.ui.map.draw.plan_map_value import MapMark, PlanMapValue
-from groundstation.ui.map.draw.scene import build_legs, build_marks, build_outlines, track_points
+from groundstation.ui.map.draw.scene import build_legs, build_marks, build_obstacles, build_outlines, track_points
 from groundstation.ui.map.model import PLAN_NAMES, MapModel
 from groundstation.ui.map.plan.checks import check_fence, fence_shapes
 from groundstation.ui.map.plan.commands import command_title
@@ -35,6 +35,7 @@ def build_map(model: MapModel, vehicle: VehicleView | None, *, ascii: bool = Fal
         note="",
         home=model.home,
         vehicle=model.ground.vehicle,
+        obstacles=build_obstacles(model.ground.vehicle, vehicle),
         heading=None if vehicle is None or vehicle.heading is None else round(vehicle.heading, 1),
         track=track_points(model.copies.track, frame),
         legs=build_legs(model.route, model.home, current if mission else None, reached),

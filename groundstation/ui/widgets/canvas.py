@@ -10,6 +10,7 @@ from rich.segment import Segment
 from rich.style import Style
 from textual.strip import Strip
 
+from groundstation.ui.look.colours import RED
 from groundstation.ui.look.colours import style as style_of
 
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
@@ -141,3 +142,10 @@ def _crossings(edges: Iterable[tuple[Point, Point]], y: int) -> Iterable[float]:
     for (x1, y1), (x2, y2) in edges:
         if (y1 <= y) != (y2 <= y):
             yield x1 + (y - y1) * (x2 - x1) / (y2 - y1)
+
+
+def draw_obstacles(canvas: Canvas, places: Iterable[Point]) -> None:
+    """Draw what range sensors see: a blot of 2x2 dots for each direction, on any map."""
+    for x, y in places:
+        for across, down in ((0, 0), (1, 0), (0, 1), (1, 1)):
+            canvas.dot(round(x) + across, round(y) + down, style_of(RED))

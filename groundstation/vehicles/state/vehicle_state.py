@@ -20,6 +20,7 @@ from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.readings.foreign_drive import ForeignDrive
 from groundstation.vehicles.readings.key_to_motor import KeyTimings
 from groundstation.vehicles.readings.latency import LatencyMeter
+from groundstation.vehicles.readings.obstacles import ObstacleReadings
 from groundstation.vehicles.readings.outputs import drive_names
 from groundstation.vehicles.readings.track import Track
 from groundstation.vehicles.readings.values import (
@@ -83,6 +84,7 @@ class VehicleState:
         self.key_timings = KeyTimings()
         self.latency = LatencyMeter(self.key_timings)
         self.foreign = ForeignDrive()
+        self.obstacles = ObstacleReadings()
         self.autopilot: int = Autopilot.GENERIC
         self.kind: int = VehicleType.GENERIC
         self.model = find_kind(self.autopilot, self.kind)
@@ -248,6 +250,8 @@ class VehicleState:
             outputs=self.foreign.outputs(now) if drive is None else self._outputs(drive),
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
             slowed=slowed_speed(drive),
+            nearest=self.obstacles.nearest(now, newest=self.has_rover_dialect),
+            obstacles=self.obstacles.around(now),
             latency=self.latency.latest,
             key_to_motor=self.key_timings.build_view(),
             failsafes=self.failsafes,
@@ -419,6 +423,10 @@ _HANDLERS: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.SysStatus: VehicleState._system,
     m.BatteryStatus: VehicleState._battery_status,
     m.FenceStatus: VehicleState._fence_status,
+    m.ObstacleDistance: lambda state, message, now: state.obstacles.handle_around(
+        message, state._values.get("heading"), now
+    ),
+    m.DistanceSensor: lambda state, message, now: state.obstacles.handle_sensor(message, now),
     m.ServoOutputRaw: lambda state, message, now: state.foreign.handle_servos(message, now),
     m.ActuatorOutputStatus: lambda state, message, now: state.foreign.handle_actuators(message, now),
     m.RcChannels: lambda state, message, now: state.foreign.handle_rc(message, now),

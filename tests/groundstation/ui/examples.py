@@ -223,6 +223,14 @@ def snapshot(**changes: Any) -> Snapshot:
     return msgspec.structs.replace(picture, **changes)
 
 
+WALLED = snapshot(
+    vehicle=vehicle(
+        slowed=(0.4, "obstacle"), nearest=(0.8, 0.6),
+        obstacles=tuple((0.3 + 0.1 * step, 5.0 + 0.5 * step) for step in range(12)),
+    )
+)  # fmt: skip
+"""An obstacle ahead on the right, which slows the rover down."""
+
 TWO_PATHS = snapshot(
     links=(
         LinkView(name="udpin:0.0.0.0:14550", loss=0.003, round_trip=0.012, age=0.05, counts=True, rate=55.0),

@@ -42,6 +42,14 @@ STYLES: dict[str, tuple[str, Callable[[], Style]]] = {
 """Drive style -> its label and look; the styles that keep driving without a key held are in loud colours."""
 
 
+OBSTACLE = "obstacle"
+"""Reason of a limit that has a distance and a direction."""
+NEAR = 5.0
+"""m within which an obstacle is shown."""
+ARROWS = ("↑", "↗", "→", "↘", "↓", "↙", "←", "↖")
+SIDES = ("F", "FR", "R", "BR", "B", "BL", "L", "FL")
+"""Where an obstacle is, from the front to the right; the second in ASCII, which has no such arrows."""
+
 _SIGNS = {"space": "␣", "pageup": "⇞", "pagedown": "⇟"}
 """Key -> its one character."""
 
@@ -65,6 +73,8 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     """The gamepad drives."""
     slowed: tuple[float, str] | None = None
     """m/s that the vehicle allows itself, and why."""
+    nearest: str = ""
+    """Distance and direction of the nearest obstacle, if it is near."""
     overrides: bool = False
     """The key is held that overrides the limits before obstacles."""
     flies: bool = False
@@ -93,6 +103,7 @@ class KeycapsValue(msgspec.Struct, frozen=True):
             ignored=bool(operator.ignored),
             gamepad=PAD in operator.held,
             slowed=vehicle.slowed if vehicle is not None and vehicle.armed else None,
+            nearest="" if vehicle is None else nearest_text(vehicle.nearest, ascii=now.ascii),
             overrides=operator.overrides,
             recorded=None if now.snapshot.replay is None else operator.held,
         )
@@ -144,12 +155,27 @@ def limit_parts(value: KeycapsValue) -> list[Part]:
     """Return the limits of the keys; while the vehicle limits itself further, its limit and the reason."""
     if value.slowed is not None:
         speed, reason = value.slowed
-        first = ("OVERRIDE ", style(RED, bold=True)) if value.overrides else ("at most ", style(DIM))
-        return [first, (f"{speed:.1f} m/s", style(AMBER, bold=True)), (f": {reason}", style(AMBER))]
+        where = f" {value.nearest}" if value.nearest and reason == OBSTACLE and not value.overrides else ""
+        first = ("OVERRIDE ", style(RED, bold=True)) if value.overrides else ("≤" if where else "at most ", style(DIM))
+        return [first, (f"{speed:.1f} m/s", style(AMBER, bold=True)), (f": {reason}{where}", style(AMBER))]
+    if value.nearest:
+        return [
+            (value.nearest, style(TEXT)),
+            (" limits ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
+            (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
+        ]  # fmt: skip
     return [
         ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
         (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
     ]  # fmt: skip
+
+
+def nearest_text(nearest: tuple[float, float] | None, *, ascii: bool = False) -> str:  # noqa: A002
+    """Return distance and direction of an obstacle, "0.6 m ↗"; "" if it is far, or there is none."""
+    if nearest is None or not all(map(math.isfinite, nearest)) or nearest[1] > NEAR:
+        return ""
+    bearing, distance = nearest
+    return f"{distance:.1f} m {(SIDES if ascii else ARROWS)[round(bearing / (math.tau / 8)) % 8]}"
 
 
 def flight_limit_parts(value: KeycapsValue) -> list[Part]:

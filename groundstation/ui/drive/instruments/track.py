@@ -9,9 +9,10 @@ from typing import Any
 import msgspec
 from textual.strip import Strip
 
+from groundstation.geo import place_around
 from groundstation.snapshot import VehicleView
 from groundstation.ui.look.colours import AMBER, BLUE, DIM, LINE, RED, YELLOW, style, theme_changes
-from groundstation.ui.widgets.canvas import Canvas, Point
+from groundstation.ui.widgets.canvas import Canvas, Point, draw_obstacles
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 
 REACH = 150.0
@@ -35,6 +36,7 @@ class TrackValue(msgspec.Struct, frozen=True):
     """Draw the vehicle as one character: its outline needs braille."""
     zoom: int = 0
     """Each step up halves what is shown around the vehicle; 0: all of the near track and home."""
+    obstacles: tuple[Point, ...] = ()
 
     @classmethod
     def from_vehicle(
@@ -51,7 +53,8 @@ class TrackValue(msgspec.Struct, frozen=True):
         north, east = vehicle.position
         heading = finite_or_none(vehicle.heading)
         rounded = None if heading is None else round(heading, 1)
-        return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, track, ascii, zoom)
+        seen = () if heading is None else place_around((north, east), heading, vehicle.obstacles)
+        return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, track, ascii, zoom, seen)
 
 
 class MapView(msgspec.Struct, frozen=True):
@@ -135,6 +138,7 @@ class TrackMap(Instrument[TrackValue]):
         if value.home is not None:
             x, y = view.to_canvas(value.home, canvas)
             canvas.write(int(x) >> 1, int(y) >> 2, "⌂", style(AMBER, bold=True))
+        draw_obstacles(canvas, [view.to_canvas(point, canvas) for point in value.obstacles])
         _draw_vehicle(canvas, view.to_canvas(value.position, canvas), value.heading, ascii=value.ascii)
         _draw_labels(canvas, view, value)
         return canvas.strips()

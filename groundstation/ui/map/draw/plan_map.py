@@ -8,7 +8,7 @@ from groundstation.ui.look.colours import BLUE, DIM, style
 from groundstation.ui.map.draw.plan_drawing import LEGS, PlanDrawing
 from groundstation.ui.map.draw.plan_map_value import PlanMapValue
 from groundstation.ui.map.draw.window import fit_window
-from groundstation.ui.widgets.canvas import Canvas
+from groundstation.ui.widgets.canvas import Canvas, draw_obstacles
 from groundstation.ui.widgets.instrument import Instrument
 
 
@@ -33,6 +33,7 @@ class PlanMap(Instrument[PlanMapValue]):
         for leg in value.legs:
             colour, dots, gap = LEGS[leg.look]
             drawing.dashes(leg.start, leg.end, style(colour), dots, gap)
+        draw_obstacles(canvas, map(drawing.at, value.obstacles))
         drawing.cross(value.cursor, value.measured)
         drawing.labels(value)
         drawing.vehicle(value)

@@ -63,6 +63,8 @@ class PlanMapValue(msgspec.Struct, frozen=True):
     heading: float | None = None
     """Clockwise from north, rad."""
     track: tuple[Point, ...] = ()
+    obstacles: tuple[Point, ...] = ()
+    """What the range sensors of the vehicle see; a fit leaves them out."""
     legs: tuple[MapLeg, ...] = ()
     outlines: tuple[MapOutline, ...] = ()
     layers: tuple[MapShape, ...] = ()

@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from groundstation.geo import LocalFrame, Place, Point
+from groundstation.geo import LocalFrame, Place, Point, place_around
+from groundstation.snapshot import VehicleView
 from groundstation.ui.map.draw.plan_map_value import LegState, MapLeg, MapMark, MapOutline
 from groundstation.ui.map.plan.checks import fence_shapes
 from groundstation.ui.map.plan.commands import CIRCLES, POLYGONS, RETURN_POINT, RTL
 from groundstation.ui.map.plan.geometry import place_of
 from groundstation.ui.map.plan.rows import Items
+from groundstation.ui.widgets.instrument import finite_or_none
 from groundstation.views.plan import PlanItem, PlanKind, PlanTrackView, PlanView
 
 NAV_LAST = 95
@@ -105,3 +107,11 @@ def track_points(track: PlanTrackView | None, frame: LocalFrame) -> tuple[Point,
         return ()
     north, east = frame.to_point(track.origin)
     return tuple((north + n, east + e) for n, e in track.points)
+
+
+def build_obstacles(place: Point | None, vehicle: VehicleView | None) -> tuple[Point, ...]:
+    """Return what the range sensors of a vehicle see; nothing where its place or heading is not known."""
+    heading = None if vehicle is None else finite_or_none(vehicle.heading)
+    if vehicle is None or place is None or heading is None:
+        return ()
+    return place_around(place, heading, vehicle.obstacles)

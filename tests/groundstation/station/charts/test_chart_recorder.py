@@ -136,9 +136,10 @@ def test_ready_views_are_built_from_what_the_vehicle_sends() -> None:
     desk = Desk()
     desk.cockpit.do(Watch((FieldsRequest(),)))
     desk.run(1.0)
-    drive, power, link = desk.fields.ready
+    drive, power, link, obstacles = desk.fields.ready
     assert (drive.name, drive.charts, power.name, power.charts) == ("drive", (), "power", ())
     assert link.charts[0].fields[0] == ROUND_TRIP
+    assert (obstacles.name, obstacles.charts) == ("obstacles", ())
     desk.run(1.0, volts=12104)
     power = desk.fields.ready[1]
     assert [chart.title for chart in power.charts] == ["voltage", "current", "charge"]
