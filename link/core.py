@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import msgspec
@@ -79,6 +79,10 @@ class Route(NamedTuple):
     """Address of this machine."""
     host: str
     """Address of the other end, without its port."""
+
+
+OtherPeers = Callable[[Received, float], Iterable[Peer]]
+"""Returns where else the sender of a message is at a time, s: on other links of the same program."""
 
 
 class SourceCount(msgspec.Struct, frozen=True):

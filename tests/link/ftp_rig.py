@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from link.core import Peer
 from link.services.ftp.files import Content, DirectoryEntry, FileTree, Folder, GeneratedFolder, MemoryFolder, Query
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
 from link.services.ftp.server import FtpServer
@@ -55,6 +56,8 @@ class FtpRig:
     slow: bool = False
     written: list[tuple[str, bytes | None]] = field(default_factory=list)
     sequence: int = 0
+    others: list[Peer] = field(default_factory=list)
+    """Where else every client is."""
 
     def __post_init__(self) -> None:
         def pack(query: Query) -> bytes | None:
@@ -77,6 +80,7 @@ class FtpRig:
             component=1,
             pacer=self.pacer,
             allowed=lambda received, now: self.allowed,
+            other_peers=lambda received, now: self.others,
         )
 
     def send(self, packet: FtpPacket, now: float = 0.0, **who: Any) -> list[FtpPacket]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.core import Received
+from link.core import Peer, Received
 from link.services.mission.commit import PendingPlanWrite
 from link.services.mission.items import ItemRequest, ItemRule, Items, MissionItem, PlanRules, PositionRule
 from link.services.mission.server import MissionServer
@@ -84,9 +84,13 @@ class MissionRig:
     """Items that were not part of a plan."""
     at: int = 0
     pacer: BulkPacer | None = None
+    others: list[Peer] = field(default_factory=list)
+    """Where else every sender is."""
 
     def __post_init__(self) -> None:
-        self.server = MissionServer(self, RULES, system=1, component=1, pacer=self.pacer)
+        self.server = MissionServer(
+            self, RULES, system=1, component=1, pacer=self.pacer, other_peers=lambda received, now: self.others
+        )
 
     def authorize_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         return self.verdict

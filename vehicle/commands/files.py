@@ -41,6 +41,7 @@ class FileServices:
             component=component,
             pacer=context.file_pacer,
             allowed=lambda received, now: _may_write(received, context.control.ownership, now),
+            other_peers=context.control.ownership.other_peers,
         )
         self._log = LogServer(
             logbook.recording.folder,

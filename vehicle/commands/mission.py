@@ -67,7 +67,14 @@ class MissionService:
         self._rules = plan_rules(do_items)
         self._reached = ItemReachedSender()
         system, component = context.ids
-        self._server = MissionServer(self, self._rules, system=system, component=component, pacer=context.pacer)
+        self._server = MissionServer(
+            self,
+            self._rules,
+            system=system,
+            component=component,
+            pacer=context.pacer,
+            other_peers=context.control.ownership.other_peers,
+        )
         context.navigator.mission.set_do_items(do_items)
         self._restore()
 

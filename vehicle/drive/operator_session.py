@@ -21,6 +21,8 @@ PROOF_VALID = 1.0
 """s for which a good proof names the session of its sender: when it takes control, and when it sends a command."""
 SENDERS_MAX = 16
 """Senders whose newest proof is remembered."""
+LINK_MEMORY = 30.0
+"""s for which a link that has fallen silent is still known as one of a session: as long as a file stays open."""
 LINKS_MAX = 8
 """Conversations of one session that are remembered."""
 
@@ -134,3 +136,17 @@ class RecentProofs:
             if is_link and len(session.links) < LINKS_MAX:
                 session.add_proof(other, theirs, proven_at, good=True)
         return session
+
+    def links_of(self, conversation: Conversation, now: float) -> list[Conversation]:
+        """Return the other conversations that have proven the session of a sender, also those that are silent."""
+        proof, at = self._newest.get(conversation, (None, -math.inf))
+        if proof is None or now - at > LINK_MEMORY:
+            return []
+        return [
+            other
+            for other, (theirs, proven_at) in self._newest.items()
+            if other != conversation
+            and other.ids == conversation.ids
+            and theirs.session == proof.session
+            and now - proven_at <= LINK_MEMORY
+        ]

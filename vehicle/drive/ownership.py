@@ -22,7 +22,7 @@ import math
 from dialects import messages as m
 from dialects.enums import Severity
 from dialects.traits import COMMANDS, DEMANDS, only_asks
-from link.core import Received
+from link.core import Peer, Received
 from link.signing.role import SigningRole
 from vehicle.drive.conversation import Conversation, FrameMemory, Newcomer, Sender
 from vehicle.drive.driver import CLASH_PAUSE, Driver
@@ -216,6 +216,11 @@ class Ownership:
         self._texts.reset_once("demand")
         self._heard = self._last_heard
         self.driver = None
+
+    def other_peers(self, sender: Sender, now: float) -> list[Peer]:
+        """Return where else the ground station of a sender is: its transfers go on over each of its links."""
+        conversation = Conversation.of(sender)
+        return [each.peer for each in self._proofs.links_of(conversation, now) if each.peer != conversation.peer]
 
     def add_proof(self, conversation: Conversation, proof: Proof, now: float, *, good: bool) -> None:
         """Note a proof of an introduced ground station; that of the driver's session has the driver's ids."""

@@ -13,7 +13,7 @@ from typing import TypeVar
 
 from dialects import messages as m
 from dialects.codec import MAX_FRAME
-from link.core import Outgoing, Received
+from link.core import OtherPeers, Outgoing, Received
 from link.services.ftp.files import FileTree
 from link.services.ftp.handlers import FtpHandlers, FtpRequest
 from link.services.ftp.protocol import MAX_DATA, SEQUENCE_MASK, FtpError, FtpOpcode, FtpPacket, parse_packet
@@ -38,6 +38,7 @@ class FtpServer:
     """Answers for one system and component.
 
     `allowed` returns whether the sender may write; while it returns None the sender is not answered, and repeats.
+    `other_peers` returns where else the sender is: over several links it is one client.
     """
 
     def __init__(
@@ -48,10 +49,11 @@ class FtpServer:
         component: int,
         pacer: BulkPacer,
         allowed: Callable[[Received, float], bool | None] = lambda received, now: True,
+        other_peers: OtherPeers = lambda received, now: (),
     ) -> None:
         self._ids = (system, component)
         self._pacer = pacer
-        self._allowed = allowed
+        self._allowed, self._other_peers = allowed, other_peers
         self._sessions = FtpSessions()
         self._handlers = FtpHandlers(tree, self._sessions)
         self._waiting: dict[FtpClientId, FtpRequest] = {}
@@ -67,6 +69,8 @@ class FtpServer:
         packet, client = parse_packet(message), client_id(received)
         if packet.op in (FtpOpcode.ACK, FtpOpcode.NAK):
             return []
+        for peer in self._other_peers(received, now):
+            self._move(client._replace(peer=peer), client)
         again = self._stored_reply(client, packet, now)
         allowed = self._allowed(received, now) if received.introduced else False
         return again or self._attempt(FtpRequest(client, packet, allowed), now)
@@ -80,6 +84,15 @@ class FtpServer:
         for session in self._sessions.bursts():
             outgoing += self._burst(session, now)
         return outgoing
+
+    def _move(self, client: FtpClientId, to: FtpClientId) -> None:
+        """Go on with a client on another link."""
+        self._sessions.move(client, to)
+        if stored := self._stored_replies.pop(client, None):
+            self._stored_replies[to] = (stored[0], stored[1]._replace(peer=to.peer))
+        if request := self._waiting.pop(client, None):
+            request.client = to
+            self._waiting[to] = request
 
     def _stored_reply(self, client: FtpClientId, packet: FtpPacket, now: float) -> list[Outgoing]:
         """Return the stored reply to a repeated request.

@@ -103,6 +103,13 @@ class FtpSessions:
         """Return all open files of a client."""
         return [session for session in self._open.values() if session.client == client]
 
+    def move(self, client: FtpClientId, to: FtpClientId) -> None:
+        """Let the open files of a client be those of another one: it is the same on another link."""
+        for session in self.for_client(client):
+            self.close(session)
+            session.client = to
+            self._open[to, session.number] = session
+
     def close(self, session: FtpSession) -> None:
         """Remove a session."""
         self._open.pop((session.client, session.number), None)

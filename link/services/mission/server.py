@@ -13,7 +13,7 @@ from typing import Protocol
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.core import Outgoing, Received
+from link.core import OtherPeers, Outgoing, Received
 from link.services.mission.commit import PlanBackend, PlanChange, PlanChanges
 from link.services.mission.download import PlanDownloads
 from link.services.mission.items import ItemRequest, Items, MissionItem, PlanRules, from_message, item_request
@@ -57,7 +57,10 @@ class MissionBackend(PlanBackend, Protocol):
 
 
 class MissionServer:
-    """Holds the plans of one system and component. `rules` has a row for each supported plan type."""
+    """Holds the plans of one system and component. `rules` has a row for each supported plan type.
+
+    `other_peers` returns where else the sender of a message is: over several links it is one client.
+    """
 
     def __init__(
         self,
@@ -67,8 +70,9 @@ class MissionServer:
         system: int,
         component: int,
         pacer: BulkPacer | None = None,
+        other_peers: OtherPeers = lambda received, now: (),
     ) -> None:
-        self._backend = backend
+        self._backend, self._other_peers = backend, other_peers
         self._rules = rules
         self._ids = (system, component)
         self._plans = PlanSet(rules)
@@ -151,6 +155,7 @@ class MissionServer:
         return bool(system == self._ids[0] or to_all) and component in (0, self._ids[1])
 
     def _handle_write(self, received: Received, now: float) -> list[Outgoing]:
+        self._follow(received, now)
         match received.message:
             case m.MissionCount() | m.MissionWritePartialList() | m.MissionClearAll() as message:
                 return self._begin(message, received, now)
@@ -162,6 +167,20 @@ class MissionServer:
                 self._backend.set_current_item(message.seq, received, now)
                 return [Outgoing(self._backend.build_mission_current())]
         return []
+
+    def _follow(self, received: Received, now: float) -> None:
+        """Go on with an upload over the link on which its sender is now."""
+        sender = sender_of(received)
+        for peer in self._other_peers(received, now):
+            before = sender._replace(peer=peer)
+            for kind in self._rules:
+                upload, change, ended = self._uploads.get(kind), self._changes.pending(kind), self._ended.get(kind)
+                if upload is not None and upload.sender == before:
+                    upload.move(sender)
+                if change is not None and change.sender == before:
+                    change.sender = sender
+                if ended is not None and ended.sender == before:
+                    self._ended[kind] = ended.move(sender)
 
     def _begin(self, message: _Begin, received: Received, now: float) -> list[Outgoing]:
         sender, number = sender_of(received), message.mission_type
@@ -250,9 +269,9 @@ class MissionServer:
         self._ended.pop(kind, None)
         last = getattr(message, "seq", -1)
 
-        def reply(verdict: MissionResult, now: float) -> list[Outgoing]:
-            answer = ack(upload.sender, kind, verdict, self.plan_id(kind) if verdict is MissionResult.ACCEPTED else 0)
-            self._ended[kind] = EndedUpload(upload.sender, last, now, answer)
+        def reply(verdict: MissionResult, now: float, sender: MissionPeer = upload.sender) -> list[Outgoing]:
+            answer = ack(sender, kind, verdict, self.plan_id(kind) if verdict is MissionResult.ACCEPTED else 0)
+            self._ended[kind] = EndedUpload(sender, last, now, answer)
             return [answer]
 
         if verdict is not MissionResult.ACCEPTED:
@@ -261,10 +280,10 @@ class MissionServer:
         change = PlanChange(
             {kind: upload.items},
             lambda: self._backend.authorize_write(received, kind, now),
-            reply,
-            upload.sender,
-            message,
+            sender=upload.sender,
+            cause=message,
         )
+        change.build_reply = lambda verdict, now: reply(verdict, now, change.sender or upload.sender)
         return self._changes.begin(change, now)
 
     def _handle_ack(self, message: m.MissionAck, sender: MissionPeer, now: float) -> list[Outgoing]:
@@ -288,10 +307,10 @@ class MissionServer:
         change = PlanChange(
             dict.fromkeys(kinds, ()),
             lambda: _first_refusal(self._backend.authorize_write(received, kind, now) for kind in kinds),
-            lambda verdict, now: [ack(sender, message.mission_type, verdict)],
-            sender,
-            message,
+            sender=sender,
+            cause=message,
         )
+        change.build_reply = lambda verdict, now: [ack(change.sender or sender, message.mission_type, verdict)]
         return self._changes.begin(change, now)
 
 

@@ -50,6 +50,10 @@ class EndedUpload(msgspec.Struct, frozen=True):
     at: float
     ack: Outgoing
 
+    def move(self, sender: MissionPeer) -> EndedUpload:
+        """Return the same end for a sender that is on another link now."""
+        return EndedUpload(sender, self.last, self.at, self.ack._replace(peer=sender.peer))
+
     def repeat_ack(self, sequence: int, sender: MissionPeer, now: float) -> list[Outgoing]:
         """Return the MISSION_ACK again if the sender of the upload has repeated its last item."""
         repeated = (sender, sequence) == (self.sender, self.last) and now - self.at <= REPEAT_WINDOW
@@ -78,7 +82,7 @@ class PlanUpload:
         self._end = end
         self._last_item_at = self._requested_at = now
         self._as_int = True
-        self._only_int = False
+        self._only_int = self._moved = False
         self.float_requested = False
         """MISSION_REQUEST was sent."""
         self.invalid_item: tuple[int, MissionItem] | None = None
@@ -96,6 +100,10 @@ class PlanUpload:
         request = m.MissionRequestInt if self._as_int else m.MissionRequest
         return Outgoing(request(self.sender.system, self.sender.component, self._next, self.kind), self.sender.peer)
 
+    def move(self, sender: MissionPeer) -> None:
+        """Go on with the sender on another link; what was requested on the former one is requested again."""
+        self.sender, self._moved = sender, True
+
     def handle_item(self, message: m.MissionItem | m.MissionItemInt, now: float) -> list[Outgoing] | MissionResult:
         """Handle an item; return the messages to send, or how the upload ends.
 
@@ -104,12 +112,14 @@ class PlanUpload:
         """
         if message.seq != self._next:
             skipped = message.seq > self._next and now - self._requested_at >= MIN_REQUEST_INTERVAL
-            return [self.request_item(now)] if skipped else []
+            again, self._moved = skipped or self._moved, False
+            return [self.request_item(now)] if again else []
         item = from_message(message)
         fault = item_fault(item, self._rules.commands, self._rules.frames)
         if fault is not None:
             self.invalid_item = self._next, item
             return fault
+        self._moved = False
         self._items[self._next : self._next + 1] = [item]
         self._next, self._last_item_at = self._next + 1, now
         return [self.request_item(now)] if self._next < self._end else self._rules.check(self.items)

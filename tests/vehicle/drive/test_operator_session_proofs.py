@@ -11,6 +11,7 @@ from dialects.messages import RoverOperatorPresence
 from link.core import Peer
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.operator_session import (
+    LINK_MEMORY,
     LINKS_MAX,
     PROOF_VALID,
     SENDERS_MAX,
@@ -33,7 +34,7 @@ def message(flags: int, echo: int = 1000) -> RoverOperatorPresence:
 
 
 def test_bounds() -> None:
-    assert (PROOF_VALID, SENDERS_MAX, LINKS_MAX) == (1.0, 16, 8)
+    assert (PROOF_VALID, SENDERS_MAX, LINKS_MAX, LINK_MEMORY) == (1.0, 16, 8, 30.0)
 
 
 def test_only_a_message_with_axes_is_a_proof() -> None:
@@ -137,3 +138,16 @@ class TestRecentProofs:
         assert all(proofs.session_of(sender, 10.2) for sender in senders[:SENDERS_MAX])
         proofs.add(senders[-1], PROOF, 10.2)
         assert [sender.component for sender in senders if not proofs.session_of(sender, 10.3)] == [1]
+
+    def test_links_of_one_session_are_known_for_half_a_minute(self) -> None:
+        proofs, other = RecentProofs(), SENDER._replace(peer=Peer(1, "gcs"))
+        assert proofs.links_of(SENDER, 10.0) == []
+        for sender, session in (
+            (SENDER, 7), (other, 7), (SENDER._replace(component=1), 7), (SENDER._replace(numbering=2), 8),
+        ):  # fmt: skip
+            proofs.add(sender, PROOF._replace(session=session), 10.0)
+        assert proofs.links_of(SENDER, 10.0) == [other]
+        proofs.add(SENDER, PROOF, 20.0)
+        assert proofs.links_of(SENDER, 10.0 + LINK_MEMORY) == [other]
+        assert proofs.links_of(SENDER, 10.1 + LINK_MEMORY) == []
+        assert proofs.links_of(other, 10.1 + LINK_MEMORY) == []

@@ -7,7 +7,7 @@ import pytest
 from dialects import messages as m
 from dialects.axes import build_manual_control
 from dialects.enums import Command, Severity
-from link.core import Outgoing, Received
+from link.core import Outgoing, Peer, Received
 from tests.vehicle.bench import BEAT, NEUTRAL
 from tests.vehicle.conversations import conversation
 from vehicle.drive.conversation import Conversation
@@ -222,6 +222,15 @@ class TestTake:
         assert scene.ownership.driver.is_copy
         scene.ownership.take(OTHER, scene.now)
         assert scene.ownership.driver.is_copy is False
+
+    def test_the_other_links_of_a_station_are_known_by_its_session(self) -> None:
+        scene, elsewhere = Scene(None), GCS._replace(peer=Peer(9, "lte"))
+        for speaker in (GCS, elsewhere, GCS._replace(numbering=GCS.numbering + 5)):
+            scene.prove(speaker)
+        assert scene.ownership.other_peers(elsewhere, scene.now) == [GCS.peer, GCS.peer]
+        assert scene.ownership.other_peers(GCS, scene.now) == [elsewhere.peer]
+        scene.prove(elsewhere, PROOF._replace(session=8))
+        assert scene.ownership.other_peers(elsewhere, scene.now) == []
 
     def test_a_proof_of_other_ids_is_not_that_of_the_driver(self) -> None:
         scene = Scene(None)

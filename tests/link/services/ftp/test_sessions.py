@@ -10,7 +10,7 @@ from link.services.ftp.server import FtpServer
 from link.services.ftp.sessions import EXPIRY, IDLE_AFTER, MAX_FILE, MAX_SESSIONS, MAX_SESSIONS_PER_CLIENT
 from link.services.pacing import BulkPacer
 from tests.link.ftp_rig import GENERAL, LOG, MAX_OFFSET, FtpRig, as_entries, error, only_plans
-from tests.link.services_world import OTHER_PEER
+from tests.link.services_world import OTHER_PEER, PEER, from_gcs
 
 # ---- repeats ----
 
@@ -214,3 +214,40 @@ def test_closing_written_file_waits_for_disk_and_is_said_again(
     assert answer is None or error(told) is answer
     assert ("new.plan" in missions.files) is (answer is None)
     assert vehicle.send(closing) == [told]  # the answer was lost
+
+
+def test_an_open_file_goes_on_over_another_link_of_its_client() -> None:
+    vehicle = FtpRig()
+    question = FtpPacket(1, FtpOpcode.OPEN, data=b"/logs/1.bin")
+    vehicle.send(question)
+    vehicle.sequence = 1
+    assert error(vehicle.ask(FtpOpcode.READ, size=9, peer=OTHER_PEER)) is FtpError.INVALID_SESSION  # somebody else
+    vehicle.others = [PEER]
+    assert vehicle.ask(FtpOpcode.READ, size=9, peer=OTHER_PEER).data == LOG[:9]
+    vehicle.others = []
+    assert error(vehicle.ask(FtpOpcode.READ, size=9)) is FtpError.INVALID_SESSION  # it has moved
+    vehicle.others = [OTHER_PEER]
+    burst = FtpPacket(50, FtpOpcode.BURST, data=b"")
+    vehicle.send(burst)
+    assert {each.peer for each in vehicle.server.tick(0.1)} == {PEER}
+
+
+def test_an_answer_that_was_lost_with_the_link_comes_on_the_other_one() -> None:
+    vehicle = FtpRig()
+    remove = FtpPacket(9, FtpOpcode.REMOVE, data=b"/missions/old.plan")
+    vehicle.send(remove)
+    vehicle.others = [PEER]
+    [again] = vehicle.server.receive(from_gcs(remove.message(1, 1), peer=OTHER_PEER), 0.2)
+    assert again.peer == OTHER_PEER
+    assert vehicle.written == [("old.plan", None)]  # it was removed once
+
+
+def test_a_request_that_waits_is_answered_on_the_newest_link() -> None:
+    vehicle = FtpRig(slow=True)
+    crc = FtpPacket(9, FtpOpcode.CRC, data=b"/logs/1.bin")
+    vehicle.send(crc)
+    vehicle.others = [PEER]
+    vehicle.server.receive(from_gcs(FtpPacket(9, FtpOpcode.ACK).message(1, 1), peer=OTHER_PEER), 0.1)  # no request
+    vehicle.server.receive(from_gcs(crc.message(1, 1), peer=OTHER_PEER), 0.2)
+    answers = [each for step in range(1, 200) for each in vehicle.server.tick(0.2 + step / 50)]
+    assert {each.peer for each in answers} == {OTHER_PEER}

@@ -9,11 +9,13 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
+from link.core import Outgoing
 from link.services.mission.upload import REPEAT_WINDOW, REQUEST_TIMEOUT, UPLOAD_TIMEOUT
 from tests.link.mission_rig import (
     FENCE_CIRCLE,
     NAV_WAYPOINT,
     MissionRig,
+    item_int,
     plain,
     waypoint,
 )
@@ -190,3 +192,45 @@ def test_what_is_for_others_or_from_strangers_is_not_answered(system: int, compo
     assert vehicle.ask(m.MissionCount(system, component, 1), introduced=introduced) == []
     assert vehicle.ask(m.MissionRequestList(system, component, 0), introduced=introduced) == []
     assert vehicle.tick(1.0) == []
+
+
+def only(outgoing: list[Outgoing]) -> Outgoing:
+    """The one that there is."""
+    [each] = outgoing
+    return each
+
+
+def test_an_upload_goes_on_over_another_link_of_its_sender() -> None:
+    vehicle = MissionRig()
+    vehicle.ask(m.MissionCount(1, 1, 3))
+    vehicle.give(waypoint(0), 0)
+    assert vehicle.give(waypoint(0), 0, peer=OTHER_PEER) == []  # it is somebody else
+    vehicle.others = [PEER]
+    again: Any = only(vehicle.server.receive(from_gcs(item_int(waypoint(0), 0), peer=OTHER_PEER), 0.1))
+    assert (again.peer, again.message.seq) == (OTHER_PEER, 1)  # the request on the cut link is lost
+    assert vehicle.give(waypoint(0), 0, peer=OTHER_PEER) == []  # once is enough
+    vehicle.give(waypoint(1), 1, peer=OTHER_PEER)
+    [late] = vehicle.server.tick(0.1 + REQUEST_TIMEOUT)
+    assert late.peer == OTHER_PEER
+    vehicle.others = [OTHER_PEER]
+    done: Any = only(vehicle.server.receive(from_gcs(item_int(waypoint(2), 2)), 0.7))
+    assert (done.peer, done.message.type) == (PEER, MissionResult.ACCEPTED)
+    vehicle.others = [PEER]
+    repeated: Any = only(vehicle.server.receive(from_gcs(item_int(waypoint(2), 2), peer=OTHER_PEER), 0.8))
+    assert (repeated.peer, repeated.message.type) == (OTHER_PEER, MissionResult.ACCEPTED)
+
+
+def test_a_plan_on_its_way_to_the_disk_is_acknowledged_on_the_new_link() -> None:
+    vehicle = MissionRig(disk=[], others=[PEER])
+    vehicle.ask(m.MissionCount(1, 1, 1))
+    assert vehicle.give(waypoint(0), 0) == []
+    assert vehicle.give(waypoint(0), 0, peer=OTHER_PEER) == []
+    assert vehicle.disk is not None
+    vehicle.disk[0].done = True
+    done: Any = only(vehicle.server.tick(0.5))
+    assert (done.peer, done.message.type) == (OTHER_PEER, MissionResult.ACCEPTED)
+    vehicle.ask(m.MissionClearAll(1, 1, 0))
+    vehicle.ask(m.MissionClearAll(1, 1, 0), peer=OTHER_PEER)
+    vehicle.disk[1].done = True
+    cleared: Any = only(vehicle.server.tick(1.0))
+    assert (cleared.peer, cleared.message.type) == (OTHER_PEER, MissionResult.ACCEPTED)
