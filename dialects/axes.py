@@ -61,6 +61,8 @@ class AxisMap(msgspec.Struct, frozen=True):
     """"": the vehicle does not climb."""
     climb_neutral: int = 0
     climb_span: int = FULL_DEFLECTION
+    climb_dead: int = 0
+    """Distance from neutral within which the vehicle does not climb: the least demand begins beyond it."""
 
 
 _PX4 = AxisMap(throttle="z", steering="y", throttle_neutral=500, throttle_span=500, unused=0)
@@ -73,17 +75,25 @@ HOVER = 500
 z = 0 is full descent there. In STABILIZE it is no thrust, and the vehicle falls."""
 
 CLIMB_SPAN = 300
-"""Largest distance of z from HOVER: half of the speeds that ArduCopter has at full deflection (its dead zone ends at
-100), so that no key asks for the end of the range."""
+"""Largest distance of z from HOVER: half of the speeds that ArduCopter has at full deflection, so that no key asks for
+the end of the range."""
+
+ARDUPILOT_DEAD, PX4_DEAD = 100, 50
+"""Distance of z from HOVER within which it does not climb: THR_DZ of ArduCopter, MPC_HOLD_DZ of PX4 (0.1)."""
 
 LOWEST_THROTTLE = HOVER - CLIMB_SPAN
 """The least z that any path may send to what flies."""
 
-COPTER_AXES = AxisMap(throttle="x", steering="r", side="y", climb="z", climb_neutral=HOVER, climb_span=CLIMB_SPAN)
+COPTER_AXES = AxisMap(
+    throttle="x", steering="r", side="y", climb="z", climb_neutral=HOVER, climb_span=CLIMB_SPAN,
+    climb_dead=ARDUPILOT_DEAD,
+)  # fmt: skip
 """x is pitch (forward positive), y roll, z throttle from 0 to 1000, r yaw.
 
 ArduCopter ignores a message with z < 0 (GCS_MAVLINK_Copter.cpp, handle_manual_control_axes); PX4 leaves out axes beyond
 their range (mavlink_receiver.cpp). INT16_MAX releases ArduPilot's override, so that all four are sent."""
+
+PX4_COPTER_AXES = replace(COPTER_AXES, climb_dead=PX4_DEAD)
 
 GROUND_TYPES = frozenset((VehicleType.GROUND_ROVER, VehicleType.SURFACE_BOAT))
 """MAV_TYPEs whose neutral is that of their autopilot; every other one has that of what flies."""
@@ -123,7 +133,7 @@ def axis_map(autopilot: int, kind: int, frame: int | None = None) -> AxisMap:
     axes are those of a rover that turns by its wheels.
     """
     if kind not in GROUND_TYPES:
-        return COPTER_AXES
+        return PX4_COPTER_AXES if autopilot == Autopilot.PX4 else COPTER_AXES
     default = AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
     return default if frame is None else FRAMES.get(autopilot, {}).get(frame, default)
 
@@ -149,8 +159,15 @@ def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[
     if axis_map.side:
         setattr(message, axis_map.side, round(_clamp(axes.side) * FULL_DEFLECTION))
     if axis_map.climb:
-        setattr(message, axis_map.climb, axis_map.climb_neutral + round(_clamp(axes.climb) * axis_map.climb_span))
+        setattr(message, axis_map.climb, axis_map.climb_neutral + _climb_offset(_clamp(axes.climb), axis_map))
     return message
+
+
+def _climb_offset(climb: float, axis_map: AxisMap) -> int:
+    """Return the distance from neutral: 0 for no demand, else beyond the dead zone."""
+    if climb == 0.0:
+        return 0
+    return round(math.copysign(axis_map.climb_dead, climb) + climb * (axis_map.climb_span - axis_map.climb_dead))
 
 
 def _clamp(value: float) -> float:
@@ -171,3 +188,19 @@ def parse_manual_control(
     if axis_map.reverse_flips_steering and throttle < 0:
         steering = -steering
     return (throttle if abs(throttle) <= 1.0 else None, steering if abs(steering) <= 1.0 else None)
+
+
+def parse_axes(message: ManualControl | RoverOperatorPresence, axis_map: AxisMap) -> Axes | None:
+    """Return the whole demand of a message, for people to see; None where throttle or steering is not valid."""
+    throttle, steering = parse_manual_control(message, axis_map)
+    if throttle is None or steering is None:
+        return None
+    side = _valid(getattr(message, axis_map.side)) / FULL_DEFLECTION if axis_map.side else 0.0
+    offset = _valid(getattr(message, axis_map.climb) - axis_map.climb_neutral) if axis_map.climb else 0
+    beyond = max(0.0, abs(offset) - axis_map.climb_dead) / (axis_map.climb_span - axis_map.climb_dead)
+    return Axes(throttle, steering, side, math.copysign(min(1.0, beyond), offset) if beyond else 0.0)
+
+
+def _valid(value: int) -> int:
+    """Return the value of an axis; 0 for INT16_MAX, which means that there is none, and for all others out of range."""
+    return value if abs(value) <= FULL_DEFLECTION else 0

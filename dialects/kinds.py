@@ -12,7 +12,16 @@ from functools import lru_cache
 import msgspec
 
 from dialects import rover
-from dialects.axes import AXIS_MAPS, COPTER_AXES, AxisMap
+from dialects.axes import (
+    ARDUPILOT_DEAD,
+    AXIS_MAPS,
+    CLIMB_SPAN,
+    COPTER_AXES,
+    HOVER,
+    PX4_COPTER_AXES,
+    PX4_DEAD,
+    AxisMap,
+)
 from dialects.enums import Autopilot, ModeFlag, VehicleType, type_name
 from dialects.mode_tables import (
     ARDUPILOT,
@@ -73,7 +82,7 @@ class SpeedParam(msgspec.Struct, frozen=True):
 
 
 class AxisLimits(msgspec.Struct, frozen=True):
-    """Which parameters limit what keys demand: the first that the vehicle has counts."""
+    """Which parameters say what a full demand asks for: the first that the vehicle has counts."""
 
     speed: tuple[SpeedParam, ...] = ()
     climb: tuple[SpeedParam, ...] = ()
@@ -176,6 +185,10 @@ _PX4_ROVER = VehicleKind(
     hold_moves=True, hidden=frozenset(name for number, name in PX4.items() if number not in _PX4_ROVER_MODES),
 )  # fmt: skip
 
+_ARDUPILOT_CLIMB = (CLIMB_SPAN - ARDUPILOT_DEAD) / (HOVER - ARDUPILOT_DEAD)
+_PX4_CLIMB = (CLIMB_SPAN - PX4_DEAD) / (HOVER - PX4_DEAD)
+"""Share of its own full climb that our full demand asks for."""
+
 _COPTER_THRUST = frozenset(
     {"STABILIZE", "ACRO", "DRIFT", "FLIP", "THROW", "TURTLE", "SYSTEMID", "AUTOROTATE", "RATE_ACRO", "GUIDED_NOGPS"}
 )
@@ -186,7 +199,7 @@ _ARDU_COPTER = VehicleKind(
     hidden=_COPTER_THRUST | {"SPORT", "POSITION", "OF_LOITER", "AUTOTUNE", "AVOID_ADSB", "AUTO_RTL"},
     limits=AxisLimits(
         (SpeedParam("LOIT_SPEED_MS"), SpeedParam("LOIT_SPEED", 0.01)),
-        (SpeedParam("PILOT_SPD_UP"), SpeedParam("PILOT_SPEED_UP", 0.01)),
+        (SpeedParam("PILOT_SPD_UP", _ARDUPILOT_CLIMB), SpeedParam("PILOT_SPEED_UP", 0.01 * _ARDUPILOT_CLIMB)),
         (SpeedParam("PILOT_Y_RATE"),),
     ),
     instruments=("flight",),
@@ -200,9 +213,10 @@ _PX4_COPTER_MODES = (
 _PX4_COPTER = VehicleKind(
     "copter", modes=PX4, aliases={**PX4_ALIASES, MANUAL: "POSCTL"}, keys=frozenset({"ALTCTL", "POSCTL", "POSCTL_SLOW"}),
     standing=frozenset({HOLD}), falls=True, hold_moves=True, drive_mode="POSCTL", land="AUTO_LAND", home="AUTO_RTL",
-    thrust=_PX4_THRUST, hidden=frozenset(name for number, name in PX4.items() if number not in _PX4_COPTER_MODES),
+    axes=PX4_COPTER_AXES, thrust=_PX4_THRUST,
+    hidden=frozenset(name for number, name in PX4.items() if number not in _PX4_COPTER_MODES),
     limits=AxisLimits(
-        (SpeedParam("MPC_VEL_MANUAL"),), (SpeedParam("MPC_Z_VEL_MAX_UP"),), (SpeedParam("MPC_MAN_Y_MAX"),)
+        (SpeedParam("MPC_VEL_MANUAL"),), (SpeedParam("MPC_Z_VEL_MAX_UP", _PX4_CLIMB),), (SpeedParam("MPC_MAN_Y_MAX"),)
     ),
     instruments=("flight",),
 )  # fmt: skip
@@ -279,10 +293,14 @@ def find_kind(autopilot: int, kind: int) -> VehicleKind:
     return VehicleKind(row.word, refusal, _modes(autopilot, kind), _aliases(autopilot), falls=row.falls)
 
 
+DRIVEN_WORDS = "rovers, boats and multicopters"
+"""What keys drive, in a text."""
+
+
 def _unknown(kind: int) -> str:
     if kind == rover.MAV_TYPE_GENERIC:
-        return "keys drive rovers and boats, and this one does not say what it is (MAV_TYPE 0)"
-    return f"keys drive rovers and boats, and this is a {type_name(kind)} (MAV_TYPE {kind})"
+        return f"keys drive {DRIVEN_WORDS}, and this one does not say what it is (MAV_TYPE 0)"
+    return f"keys drive {DRIVEN_WORDS}, and this is a {type_name(kind)} (MAV_TYPE {kind})"
 
 
 def _modes(autopilot: int, kind: int) -> ModeTable:

@@ -15,6 +15,7 @@ import msgspec
 from groundstation.host_process import REPLAY, STATION, ArgumentsError, HostProcess
 from groundstation.intents.session import Detach, Quit
 from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import TAKE_OFF_ALTITUDE
 from groundstation.ipc import (
     MAX_PACKET,
     IntentBatch,
@@ -88,6 +89,7 @@ class StationClient:
         system: int = 255,
         style: str = "hold",
         speed: float = 0.6,
+        take_off: float = TAKE_OFF_ALTITUDE,
         sitl: bool = False,
         simulators: Sequence[Sequence[str]] = (),
         log_file: Path | None = None,
@@ -108,7 +110,8 @@ class StationClient:
         process is killed. `keep`: the station goes on then. `process` runs already and waits for its arguments.
         `meanwhile` is called first: the process takes 0.1 s to import its modules.
         """
-        options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
+        options = [f"--system={system}", f"--style={style}", f"--speed={speed}", f"--take-off={take_off}"]
+        options += ["--sitl"] if sitl else []
         options += [f"--simulator={' '.join(each)}" for each in simulators]
         options += ["--keep"] if keep else []
         if log_file is not None:

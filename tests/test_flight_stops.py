@@ -19,7 +19,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, CutMotors, Disarm, ReleaseControl, SetMode, TakeOff
 from groundstation.vehicles.demand.demand_stream import FINAL_NEUTRALS
 from groundstation.vehicles.demand.stop_commands import StopKind
-from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad
+from tests.fakes.flying import HOME_ALTITUDE, ArduCopter, FlyingVehicle, Px4Quad
 from tests.fakes.params import Param
 from tests.flight import FlightCockpit, hovering_cockpit
 from tests.groundstation.cockpits import Cockpit
@@ -182,7 +182,7 @@ def test_keys_fly_all_four_axes_and_z_stays_in_its_bounds(build: Build) -> None:
         cockpit.run(4.0)
         assert abs(getattr(copter, axis)) == pytest.approx(0.0, abs=0.01)
         assert copter.altitude == pytest.approx(altitude, abs=LOSS)
-    assert copter.lowest_z == 320
+    assert copter.lowest_z == (280 if isinstance(copter, ArduCopter) else 300)
 
 
 @COPTERS
@@ -347,6 +347,51 @@ def test_no_key_takes_off_what_would_fall_or_fly_on(
     cockpit.do(TakeOff(held=1.0), UP)
     cockpit.run(3.0)
     assert copter.highest == 0.0
+
+
+FENCES: list[tuple[Callable[..., FlyingVehicle], dict[str, float], str]] = [
+    (ArduCopter, {"FENCE_ENABLE": 1, "FENCE_ALT_MAX": 4}, "FENCE_ALT_MAX 4"),
+    (ArduCopter, {"FENCE_AUTOENABLE": 3, "FENCE_ALT_MAX": 4}, "FENCE_ALT_MAX 4"),
+    (Px4Quad, {"GF_MAX_VER_DIST": 4}, "GF_MAX_VER_DIST 4"),
+]
+NO_FENCES: list[tuple[Callable[..., FlyingVehicle], dict[str, float]]] = [
+    (ArduCopter, {"FENCE_ENABLE": 1, "FENCE_ALT_MAX": 4, "FENCE_TYPE": 6}),
+    (Px4Quad, {"GF_MAX_VER_DIST": 4, "GF_ACTION": 0}),
+]
+
+
+@pytest.mark.parametrize(("build", "params", "limit"), FENCES)
+def test_no_take_off_goes_above_its_own_fence(
+    build: Callable[..., FlyingVehicle], params: dict[str, float], limit: str
+) -> None:
+    copter = build(**params)
+    cockpit = Cockpit(copter)
+    cockpit.run(8.0)
+    cockpit.do(Arm(held=1.0))
+    cockpit.run(2.0)
+    assert copter.armed, cockpit.texts
+    cockpit.do(TakeOff(altitude=5.0, held=1.0))
+    cockpit.run(3.0)
+    assert copter.highest == 0.0
+    assert any(f"5 m is above its altitude fence, {limit}: take off lower" in text for text in cockpit.texts)
+    ground = 0.0 if isinstance(copter, ArduCopter) else HOME_ALTITUDE
+    by_hand = [m.CommandLong(1, 1, Command.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 0, ground + each) for each in (5.0, 3.0)]
+    assert [cockpit.station.may_send(each, cockpit.now) for each in by_hand] == [False, True]
+    cockpit.do(TakeOff(held=1.0))
+    cockpit.run(8.0)
+    assert copter.highest == pytest.approx(3.0, abs=0.3)
+
+
+@pytest.mark.parametrize(("build", "params"), NO_FENCES)
+def test_a_fence_without_an_altitude_limits_none(build: Callable[..., FlyingVehicle], params: dict[str, float]) -> None:
+    hovering_cockpit(build(**params), 5.0)
+
+
+def test_a_copter_that_has_no_fence_takes_off() -> None:
+    copter = ArduCopter()
+    for name in [each for each in copter.params if each.startswith("FENCE_")]:
+        del copter.params[name]
+    hovering_cockpit(copter)
 
 
 def test_nothing_takes_off_before_its_settings_are_read() -> None:

@@ -76,6 +76,7 @@ def _run(options: argparse.Namespace, names: Sequence[str], process: HostProcess
             system=settings.system,
             style=settings.style,
             speed=settings.speed,
+            take_off=settings.take_off,
             sitl=options.sitl,
             simulators=[("--camera",)] if options.camera else [],
             log_file=log_file,

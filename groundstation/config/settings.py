@@ -17,6 +17,7 @@ import msgspec
 from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.input.pad_mapping import OFF
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
+from groundstation.intents.vehicle import HIGHEST_TAKE_OFF, LOWEST_TAKE_OFF, TAKE_OFF_ALTITUDE
 from link.runtime.docstrings import field_docs
 
 TEXTS = 'text in "quotes", or a list of texts'
@@ -39,6 +40,8 @@ class Option(msgspec.Struct, frozen=True):
     metavar: str | None = None
     default: str = ""
     """What the help says about the default; "" for the default value itself."""
+    unit: str = ""
+    """Of a number, e.g. "m"."""
 
 
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -52,6 +55,10 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How keys drive. hold: while a key is held; latch: until the next key; step: each press adds 10 %."""
     speed: Annotated[float, msgspec.Meta(ge=LOWEST_LIMIT, le=HIGHEST_LIMIT), Option("--speed", "FRACTION")] = 0.6
     """Limit of the sticks."""
+    take_off: Annotated[
+        float, msgspec.Meta(ge=LOWEST_TAKE_OFF, le=HIGHEST_TAKE_OFF), Option("--take-off", "METRES", unit="m")
+    ] = TAKE_OFF_ALTITUDE
+    """Altitude above the ground to which the key T takes off a copter. docs/copters.md."""
     keymap: Annotated[str, Option("--keys", "NAME|FILE")] = "standard"
     """Key map: standard, teleop, or a TOML file."""
     gamepad: Annotated[str, Option("--gamepad", "NAME|any|off")] = OFF
@@ -132,7 +139,8 @@ class SettingRow(msgspec.Struct, frozen=True):
         """What is allowed, for people: "a number from 0.1 to 1"."""
         info = self._info
         if isinstance(info, msgspec.inspect.IntType | msgspec.inspect.FloatType):
-            return f"a number from {info.ge:g} to {info.le:g}"
+            unit = f" {self.option.unit}" if self.option is not None and self.option.unit else ""
+            return f"a number from {info.ge:g} to {info.le:g}{unit}"
         if self.choices:
             return f"one of {', '.join(self.choices)}"
         if self.is_switch:
@@ -144,7 +152,7 @@ class SettingRow(msgspec.Struct, frozen=True):
         hint = ""
         with contextlib.suppress(TypeError, ValueError, msgspec.ValidationError):
             percent = float(value)  # type: ignore[arg-type]  # anything: the error says that it is not a number
-            if percent > 1:
+            if percent > 1 and isinstance(self._info, msgspec.inspect.FloatType) and self._info.le == 1:
                 hint = f"; {percent:g} % is {self.convert(percent / 100):g}"
         return f"{shown} is not {self.allowed}{hint}"
 

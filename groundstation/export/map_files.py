@@ -27,8 +27,8 @@ class MapFormat(msgspec.Struct, frozen=True):
 
     point: Callable[[Position], str]
     """Returns the lines of a point."""
-    pause: str
-    """Lines between two segments of a track."""
+    pause: Callable[[bool], str]
+    """Returns the lines between two segments of a track; takes whether it flies."""
     lines: Callable[[Tracks, LogInfo], Iterator[str | RecordedTrack]]
     """Yields the lines of the file, and each track where its points are."""
 
@@ -81,7 +81,7 @@ def _gpx_lines(tracks: Tracks, log: LogInfo) -> Iterator[str | RecordedTrack]:
 
 
 def _kml_lines(tracks: Tracks, log: LogInfo) -> Iterator[str | RecordedTrack]:
-    """Yield a line for each vehicle, on the ground."""
+    """Yield a line for each vehicle: on the ground, of what flies at its altitude above mean sea level."""
     yield f'{_XML}<kml xmlns="{KML}"><Document><name>{_text(log.name)}</name>'
     yield '<Style id="track"><LineStyle><color>ff3399ff</color><width>3</width></LineStyle></Style>'
     for system, track in sorted(tracks.of.items()):
@@ -119,7 +119,13 @@ def _kml_head(system: int, track: RecordedTrack) -> Iterator[str]:
     yield f"<Placemark><name>vehicle {system}</name>"
     yield f"<TimeSpan><begin>{iso_time(begin)}</begin><end>{iso_time(end)}</end></TimeSpan>"
     yield "<styleUrl>#track</styleUrl>"
-    yield "<MultiGeometry><LineString><tessellate>1</tessellate><coordinates>"
+    yield f"<MultiGeometry>{_kml_line(track.flies)}"
+
+
+def _kml_line(flies: bool) -> str:
+    """Return the begin of a line; a wall below it shows where it has flown."""
+    look = "<extrude>1</extrude><altitudeMode>absolute</altitudeMode>" if flies else "<tessellate>1</tessellate>"
+    return f"<LineString>{look}<coordinates>"
 
 
 def _kml_remark(each: Remark) -> str:
@@ -136,7 +142,5 @@ def _text(text: str) -> str:
     return escape(printable(text))
 
 
-GPX_FORMAT = MapFormat(_gpx_point, "</trkseg>\n<trkseg>\n", _gpx_lines)
-KML_FORMAT = MapFormat(
-    _kml_point, "</coordinates></LineString>\n<LineString><tessellate>1</tessellate><coordinates>\n", _kml_lines
-)
+GPX_FORMAT = MapFormat(_gpx_point, lambda flies: "</trkseg>\n<trkseg>\n", _gpx_lines)
+KML_FORMAT = MapFormat(_kml_point, lambda flies: f"</coordinates></LineString>\n{_kml_line(flies)}\n", _kml_lines)

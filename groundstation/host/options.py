@@ -11,6 +11,7 @@ from pathlib import Path
 
 from groundstation.host_process import STATION, read_arguments
 from groundstation.input.style import Style
+from groundstation.intents.vehicle import TAKE_OFF_ALTITUDE
 from groundstation.station_socket.connect import SOCKET_BUFFER
 from link.runtime import stdio
 from link.runtime.local_socket import take_over
@@ -56,6 +57,7 @@ def station_parser() -> argparse.ArgumentParser:
     parser.add_argument("--system", type=int, default=255)
     parser.add_argument("--style", choices=list(Style), default=Style.HOLD)
     parser.add_argument("--speed", type=float, default=0.6)
+    parser.add_argument("--take-off", type=float, default=TAKE_OFF_ALTITUDE, metavar="METRES")
     parser.add_argument("--sitl", action="store_true")
     parser.add_argument(
         "--simulator",

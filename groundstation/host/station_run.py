@@ -38,6 +38,7 @@ def run(
         system=options.system,
         style=Style(options.style),
         speed=options.speed,
+        take_off=options.take_off,
         session=secrets.randbits(32),
         texts=texts,
         now=now,

@@ -30,12 +30,18 @@ class Disarm(VehicleIntent, frozen=True):
         commands.disarm(vehicle, now)
 
 
+LOWEST_TAKE_OFF, HIGHEST_TAKE_OFF = 1.0, 30.0
+"""m above the ground to which keys take off."""
+TAKE_OFF_ALTITUDE = 3.0
+"""m, without the setting for it."""
+
+
 class TakeOff(VehicleIntent, frozen=True):
     """Take off to an altitude above the ground, and hover there."""
 
     confirmed = "take-off"
-    altitude: float = 3.0
-    """m"""
+    altitude: float | None = None
+    """m; None: as the station is set."""
     held: float = 0.0
     """s for which the key was held; refused below HOLD_TIME."""
 

@@ -32,8 +32,8 @@ class Commands(Protocol[VehicleOf]):
     def disarm(self, vehicle: VehicleOf, now: float) -> None:
         """Disarm, and repeat until the heartbeat agrees."""
 
-    def take_off(self, vehicle: VehicleOf, altitude: float, now: float) -> None:
-        """Take off to an altitude above the ground, m."""
+    def take_off(self, vehicle: VehicleOf, altitude: float | None, now: float) -> None:
+        """Take off to an altitude above the ground, m; None: to the one that is set."""
 
     def cut_motors(self, vehicle: VehicleOf, now: float) -> None:
         """Cut the motors of what flies."""

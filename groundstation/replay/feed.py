@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from dialects.axes import NEUTRAL, Axes, parse_manual_control
+from dialects.axes import NEUTRAL, parse_axes
 from dialects.codec import CRC_EXTRA, decode_frame
 from dialects.enums import OperatorFlag
 from dialects.enums import StationEventKind as Kind
@@ -133,8 +133,8 @@ class StationFeed:
     def _show_demand(self, message: ManualControl | RoverOperatorPresence, target: int, now: float) -> None:
         contact = self.station.fleet.get(target)
         if contact is not None and contact is self.station.fleet.selected:
-            throttle, steering = parse_manual_control(message, contact.choose_axes(NEUTRAL))
-            self.station.operator.record_demand(Axes(throttle or 0.0, steering or 0.0))
+            axes = parse_axes(message, contact.choose_axes(NEUTRAL))
+            self.station.operator.record_demand(axes or NEUTRAL)
             self._demand_until = now + DEMAND_SHOWN
 
     def _show_keys(self, note: RoverStationEvent, now: float) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from dialects import messages as m
-from dialects.axes import axis_map, parse_manual_control
+from dialects.axes import NEUTRAL, axis_map, parse_axes
 from dialects.codec import CRC_SIZE, HEADER_V2, MAGIC_V2, decode
 from dialects.enums import Severity
 from groundstation.replay.events import EVENT_IDS, EventFinder, Found, LogEvent
@@ -181,8 +181,8 @@ class Findings:
         target = message.target if isinstance(message, m.ManualControl) else message.target_system
         vehicle = self.finder.vehicles.get(target)
         if vehicle is not None:
-            axes = parse_manual_control(message, axis_map(vehicle.autopilot, vehicle.kind))
-            self.demand.add(time, max(abs(axis) for axis in axes if axis is not None) if any(axes) else 0.0)
+            axes = parse_axes(message, axis_map(vehicle.autopilot, vehicle.kind)) or NEUTRAL
+            self.demand.add(time, max(map(abs, (axes.throttle, axes.steering, axes.side, axes.climb))))
 
     def params_before(self, offset: int) -> list[int]:
         """Return the offsets of the newest value of each parameter before an offset."""

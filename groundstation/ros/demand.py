@@ -11,8 +11,8 @@ import msgspec
 
 from dialects.axes import NEUTRAL, Axes
 
-DEFAULT_SPEED, DEFAULT_TURN = 1.0, 1.0
-"""m/s and rad/s that are full deflection, unless the user says otherwise."""
+DEFAULT_SPEED, DEFAULT_TURN, DEFAULT_CLIMB = 1.0, 1.0, 1.0
+"""m/s, rad/s and m/s that are full deflection, unless the user says otherwise."""
 
 FORWARD, BACKWARD = Axes(throttle=1.0), Axes(throttle=-1.0)
 LEFT, RIGHT = Axes(steering=-1.0), Axes(steering=1.0)
@@ -39,19 +39,27 @@ class Scale(msgspec.Struct, frozen=True):
     """m/s of a Twist, > 0."""
     turn: float = DEFAULT_TURN
     """rad/s of a Twist, > 0."""
+    climb: float = DEFAULT_CLIMB
+    """m/s up of a Twist, > 0."""
+    flies: bool = False
+    """linear.y and linear.z count."""
     word_throttle: float = 0.6
     """0 to 1: of `forward` and `backward`, as of the article's car."""
     word_steering: float = 0.4
     """0 to 1: of `left` and `right`."""
 
-    def of_twist(self, linear_x: float, angular_z: float) -> Axes:
+    def of_twist(self, linear: tuple[float, float, float], angular_z: float) -> Axes:
         """Return the demand of a Twist in m/s and rad/s; more than full deflection is full deflection.
 
-        Raises RefusedDemandError for what is not a finite number.
+        `linear`: forward, left, up; the last two count for what flies. Raises RefusedDemandError for what is not a
+        finite number.
         """
-        if not (math.isfinite(linear_x) and math.isfinite(angular_z)):
-            raise RefusedDemandError(f"linear.x {linear_x:g}, angular.z {angular_z:g}: not finite")
-        return Axes(_clamp(linear_x / self.speed), _clamp(-angular_z / self.turn))
+        x, y, z = linear if self.flies else (linear[0], 0.0, 0.0)
+        if not all(map(math.isfinite, (x, y, z, angular_z))):
+            sides = f", linear.y {y:g}, linear.z {z:g}" if self.flies else ""
+            raise RefusedDemandError(f"linear.x {x:g}{sides}, angular.z {angular_z:g}: not finite")
+        turn = _clamp(-angular_z / self.turn)
+        return Axes(_clamp(x / self.speed), turn, _clamp(-y / self.speed), _clamp(z / self.climb))
 
     def of_word(self, data: str) -> Axes:
         """Return the demand of the data of a String. Raises RefusedDemandError for an unknown word."""

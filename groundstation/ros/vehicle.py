@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from dialects import messages as m
-from dialects.axes import axis_map, parse_manual_control
+from dialects.axes import axis_map, parse_axes
 from dialects.enums import Autopilot, OperatorFlag, VehicleType
 from groundstation.geo import FIX_2D, read_place
 from groundstation.ros.frames import Quaternion, Vector, attitude_to_enu, frd_to_flu, into_body, ned_to_enu
@@ -61,13 +61,13 @@ class RosVehicle:
         return None if row is None else row(self, message, microseconds)
 
     def take_demand(self, message: m.ManualControl | m.RoverOperatorPresence) -> tuple[str, str, Values] | None:
-        """Return the operator's demand: throttle and steering as parts of full deflection, left positive."""
+        """Return the operator's demand as parts of full deflection: forward, left and up are positive."""
         if isinstance(message, m.RoverOperatorPresence) and not message.flags & OperatorFlag.AXES:
             return None
-        throttle, steering = parse_manual_control(message, axis_map(self.autopilot, self._kind, self._drive_type))
-        if throttle is None or steering is None:
+        axes = parse_axes(message, axis_map(self.autopilot, self._kind, self._drive_type))
+        if axes is None:
             return None
-        twist = _twist((throttle, 0.0, 0.0), (0.0, 0.0, -steering + 0.0))
+        twist = _twist((axes.throttle, -axes.side + 0.0, axes.climb), (0.0, 0.0, -axes.steering + 0.0))
         return "cmd_vel", "geometry_msgs/msg/Twist", twist
 
     # ---- rows ----

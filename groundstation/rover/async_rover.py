@@ -141,17 +141,20 @@ class AsyncRover(StateValues):
         """Release the emergency stop."""
         await self.run("estop", "--clear")
 
-    async def drive(self, throttle: float, steering: float = 0.0, *, seconds: float) -> None:
+    async def drive(
+        self, throttle: float, steering: float = 0.0, *, side: float = 0.0, climb: float = 0.0, seconds: float
+    ) -> None:
         """Drive by hand for up to 9 s, then neutral.
 
-        `throttle`: -1 to 1, negative backwards; `steering`: -1 to 1, positive to the right. Raises NotInControl,
-        Refused, LinkLost.
+        `throttle`: -1 to 1, negative backwards; `steering`: -1 to 1, positive to the right. Of a copter also `side`,
+        positive to the right, and `climb`, negative for down. Raises NotInControl, Refused, LinkLost.
         """
-        _need_demand(throttle, steering)
+        _need_demand(throttle, steering, side, climb)
         if not 0 < seconds <= LONGEST:
             raise InvalidCall(f"{seconds!r} s is not above 0 and up to {LONGEST:g} s")
-        words = ("--throttle", f"{100 * throttle:g}", "--steering", f"{100 * steering:g}", "--for", f"{seconds:g}")
-        await self._connected.call("drive", *words, drives=True)
+        demand = {"--throttle": throttle, "--steering": steering, "--side": side, "--climb": climb}
+        words = [f"{option}={100 * value:g}" for option, value in demand.items()]
+        await self._connected.call("drive", *words, "--for", f"{seconds:g}", drives=True)
 
     async def turn(self, degrees: float, demand: float = 0.4) -> float:
         """Turn on the spot, then neutral; return by how many degrees it has turned. Positive is to the right.

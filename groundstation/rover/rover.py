@@ -159,13 +159,15 @@ class Rover(StateValues):
         """Release the emergency stop."""
         self.call(lambda rover: rover.clear_estop())
 
-    def drive(self, throttle: float, steering: float = 0.0, *, seconds: float) -> None:
+    def drive(
+        self, throttle: float, steering: float = 0.0, *, side: float = 0.0, climb: float = 0.0, seconds: float
+    ) -> None:
         """Drive by hand for up to 9 s, then neutral.
 
-        `throttle`: -1 to 1, negative backwards; `steering`: -1 to 1, positive to the right. Raises NotInControl,
-        Refused, LinkLost.
+        `throttle`: -1 to 1, negative backwards; `steering`: -1 to 1, positive to the right. Of a copter also `side`,
+        positive to the right, and `climb`, negative for down. Raises NotInControl, Refused, LinkLost.
         """
-        self.call(lambda rover: rover.drive(throttle, steering, seconds=seconds))
+        self.call(lambda rover: rover.drive(throttle, steering, side=side, climb=climb, seconds=seconds))
 
     def turn(self, degrees: float, demand: float = 0.4) -> float:
         """Turn on the spot, then neutral; return by how many degrees it has turned. Positive is to the right.

@@ -62,8 +62,14 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Above home, m."""
     climb: float | None = None
     """m/s."""
+    take_off: float | None = None
+    """m above the ground to which the key for it takes off; None: it does not fly."""
+    altitude_fence: float | None = None
+    """m above home that its own fence allows; None: there is none, or it is not known."""
     speed_over_ground: float | None = None
     """m/s, in any direction."""
+    drift: float | None = None
+    """m/s with which it is carried away while the sticks are at rest; None: it is not, or that cannot be told."""
     battery_left: float | None = None
     """s until the battery is empty, at the rate at which it was used; None: not known."""
     full_speed: float | None = None
@@ -157,6 +163,11 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """A foreign vehicle obeys another ground station only, by its settings: which one, and what to do."""
     warnings: tuple[str, ...] = ()
     """Why a foreign vehicle may ignore us, and its settings that would let it drive on."""
+
+    @property
+    def obeys_keys(self) -> bool:
+        """Its mode is the one for keys: MANUAL, or any that holds the altitude of what flies."""
+        return self.drivable if self.flies else self.mode == self.keys_mode
 
 
 class HandoverNotice(msgspec.Struct, frozen=True):

@@ -6,6 +6,7 @@ from collections.abc import MutableMapping, Sequence
 
 from dialects.enums import Severity
 from groundstation.input.style import Style
+from groundstation.intents.vehicle import TAKE_OFF_ALTITUDE
 from groundstation.station.agents.proposals import ProposalBook
 from groundstation.station.component import COMPONENT
 from groundstation.station.driving.commander import Commander
@@ -28,8 +29,8 @@ from groundstation.vehicles.state.message_log import MessageLog
 class CoreParts:
     """Vehicles, operator, driving, commands, services, links and log of one ground station.
 
-    `system` and `component` are our ids, `session` a random number. `docs_cache` has texts of parameters, see
-    VehicleServices.
+    `system` and `component` are our ids, `session` a random number. `take_off`: m above the ground, of its key.
+    `docs_cache` has texts of parameters, see VehicleServices.
     """
 
     def __init__(
@@ -40,6 +41,7 @@ class CoreParts:
         component: int = COMPONENT,
         style: Style = Style.HOLD,
         speed: float = 0.6,
+        take_off: float = TAKE_OFF_ALTITUDE,
         session: int = 0,
         docs_cache: MutableMapping[int, bytes] | None = None,
         now: float = 0.0,
@@ -53,8 +55,8 @@ class CoreParts:
         self.links = LinkMonitor(endpoints, log, system, now)
         stats = self.links.stats
         self.paths = PathRouting(fleet)
-        commander = self.commander = Commander(log, *ids)
-        commander.take_off_refusal = fleet.take_off_refusal
+        commander = self.commander = Commander(log, *ids, take_off_altitude=take_off)
+        commander.take_off_refusal, commander.altitude_fence = fleet.take_off_refusal, fleet.altitude_fence
         hold = TransferPause(fleet, operator, stats)
         self.services = ServiceRequests(fleet, commander, log, *ids, texts=docs_cache, is_held=hold.is_held)
         self.driving = DrivingController(operator, fleet, commander, ids)

@@ -296,7 +296,10 @@ class OperatorCore:
             return None
         system = m.target_system(message)
         meant = (contact for contact in self.fleet if system in (0, contact.state.system))
-        refusals = (flight_refusal(message, contact.state, contact.take_off_refusal) for contact in meant)
+        refusals = (
+            flight_refusal(message, contact.state, contact.take_off_refusal, contact.altitude_fence)
+            for contact in meant
+        )
         return next(filter(None, refusals), None)
 
     def report_to_watchdog(self, now: float) -> tuple[WatchdogTarget, ...]:

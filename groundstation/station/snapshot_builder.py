@@ -50,6 +50,7 @@ class SnapshotBuilder:
 
     def _vehicle(self, contact: Contact, now: float) -> VehicleView:
         state, commander, driving = contact.state, self._parts.commander, self._parts.driving
+        fence = contact.altitude_fence
         return state.build_view(
             now,
             in_control=driving.is_in_control(contact),
@@ -60,6 +61,8 @@ class SnapshotBuilder:
             stop_question=commander.stop_question(state.system, now),
             stop_doubt=state.senders.find_doubt(now) if commander.is_locked(state.system) else "",
             duplicates=state.senders.describe_duplicates(now),
+            take_off=commander.take_off_altitude if state.model.flies else None,
+            altitude_fence=None if fence is None else fence.highest,
             refusal=commander.last_refusal(state.system, now),
             **self._display.build_fields(contact, now),
         )

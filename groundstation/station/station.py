@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from groundstation.input.style import Style
+from groundstation.intents.vehicle import TAKE_OFF_ALTITUDE
 from groundstation.snapshot import Snapshot
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.operator_core import OperatorCore
@@ -22,12 +23,20 @@ class Station(OperatorCore):
         system: int = 255,
         style: Style = Style.HOLD,
         speed: float = 0.6,
+        take_off: float = TAKE_OFF_ALTITUDE,
         session: int = 0,
         texts: ParamTexts = ParamTexts(),  # noqa: B008 - frozen
         now: float = 0.0,
     ) -> None:
         parts = CoreParts(
-            endpoints, system=system, style=style, speed=speed, session=session, docs_cache=texts.cache, now=now
+            endpoints,
+            system=system,
+            style=style,
+            speed=speed,
+            take_off=take_off,
+            session=session,
+            docs_cache=texts.cache,
+            now=now,
         )
         self.feed = ScreenFeed(parts, texts)
         super().__init__(parts, self.feed)

@@ -25,6 +25,7 @@ from groundstation.vehicles.state.vehicle_details import VehicleDetails
 from groundstation.vehicles.state.vehicle_heartbeat import MAX_VEHICLES, is_vehicle, replaces
 from groundstation.vehicles.state.vehicle_params import VehicleParams
 from groundstation.vehicles.state.vehicle_state import LOST_AFTER, VehicleState
+from groundstation.vehicles.stops.altitude_fence import AltitudeFence
 from groundstation.vehicles.stops.settings_check import SettingsCheck, find_settings
 from link.core import LinkReport, Received
 
@@ -79,6 +80,11 @@ class Contact(msgspec.Struct):
             return ""
         check = self.settings_check
         return "what it does without a link is not known" if check is None else check.take_off_refusal
+
+    @property
+    def altitude_fence(self) -> AltitudeFence | None:
+        """How high its own fence lets it fly; None: there is no such fence, or it is not known."""
+        return self.settings_check.altitude_fence if self.settings_check else None
 
     def choose_axes(self, demand: Axes) -> AxisMap:
         """Return the axes of MANUAL_CONTROL that this vehicle uses.
@@ -182,6 +188,11 @@ class Fleet:
         """Return why keys may not take off this vehicle, see Contact; "" if they may."""
         contact = self._contacts.get(system)
         return contact.take_off_refusal if contact else ""
+
+    def altitude_fence(self, system: int) -> AltitudeFence | None:
+        """Return how high its own fence lets this vehicle fly, see Contact."""
+        contact = self._contacts.get(system)
+        return contact.altitude_fence if contact else None
 
     def select(self, system: int, now: float) -> None:
         """Select the vehicle with this system id, if there is one."""

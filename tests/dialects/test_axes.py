@@ -23,6 +23,7 @@ from dialects.axes import (
     axis_map,
     build_manual_control,
     build_neutral,
+    parse_axes,
     parse_manual_control,
 )
 from dialects.enums import Autopilot, VehicleType
@@ -215,4 +216,27 @@ def test_no_demand_of_what_flies_is_below_the_least_z(a: float, b: float, c: flo
 
 def test_each_axis_of_what_flies_has_its_own() -> None:
     message = build_manual_control(Axes(0.5, -0.2, 1.0, -0.6), 1, axis_map(Autopilot.PX4, 2))
-    assert (message.x, message.r, message.y, message.z) == (500, -200, 1000, 320)
+    assert (message.x, message.r, message.y, message.z) == (500, -200, 1000, 300)
+    message = build_manual_control(Axes(climb=-0.6), 1, axis_map(Autopilot.ARDUPILOT, 2))
+    assert message.z == 280
+
+
+@given(st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1))
+def test_a_demand_of_what_flies_is_read_as_it_was_sent(a: float, b: float, c: float, d: float) -> None:
+    for autopilot in (Autopilot.ARDUPILOT, Autopilot.PX4):
+        axes = axis_map(autopilot, 2)
+        read = parse_axes(build_manual_control(Axes(a, b, c, d), 1, axes), axes)
+        assert read is not None
+        for sent, seen in zip((a, b, c, d), (read.throttle, read.steering, read.side, read.climb), strict=True):
+            assert seen == pytest.approx(sent, abs=0.005)
+
+
+@pytest.mark.parametrize(("autopilot", "dead"), [(Autopilot.ARDUPILOT, 100), (Autopilot.PX4, 50)])
+def test_the_least_climb_leaves_the_dead_zone_of_the_throttle(autopilot: int, dead: int) -> None:
+    axes = axis_map(autopilot, 2)
+    assert build_manual_control(Axes(climb=0.1), 1, axes).z > HOVER + dead
+    assert build_manual_control(Axes(climb=-0.1), 1, axes).z < HOVER - dead
+
+
+def test_an_axis_that_says_nothing_is_no_demand() -> None:
+    assert parse_axes(ManualControl(1, 0, 32767, 32767, 0, 0), axis_map(Autopilot.ARDUPILOT, 2)) == NEUTRAL

@@ -308,6 +308,7 @@ def _follow(value: float, wanted: float, most: float) -> float:
 SAFE_COPTER: dict[str, float] = {
     "RC_OVERRIDE_TIME": 3.0, "FS_THR_ENABLE": 1, "FS_GCS_ENABLE": 5, "FS_GCS_TIMEOUT": 5.0, "FS_OPTIONS": 0,
     "MAV_GCS_SYSID": 255, "LOIT_SPEED": 1250.0, "PILOT_SPEED_UP": 250.0, "PILOT_Y_RATE": 202.5, "THR_DZ": 100,
+    "FENCE_ENABLE": 0, "FENCE_AUTOENABLE": 0, "FENCE_TYPE": 7, "FENCE_ALT_MAX": 100.0,
 }  # fmt: skip
 """Defaults of ArduCopter, but for FS_GCS_ENABLE (0) and FS_OPTIONS (16: pilot control goes on without a station)."""
 
@@ -395,9 +396,10 @@ SAFE_QUAD: dict[str, float] = {
     "COM_RC_IN_MODE": 1, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 2, "COM_FAIL_ACT_T": 5.0, "COM_DL_LOSS_T": 10,
     "NAV_DLL_ACT": 2, "MIS_TAKEOFF_ALT": 2.5, "MPC_VEL_MANUAL": 10.0, "MPC_Z_VEL_MAX_UP": 3.0,
     "MPC_Z_VEL_MAX_DN": 1.5, "MPC_MAN_Y_MAX": 150.0,
+    "GF_ACTION": 2, "GF_MAX_VER_DIST": 0.0,
 }  # fmt: skip
 """Defaults of PX4, but for NAV_DLL_ACT (0)."""
-WHOLE = ("COM_RC_IN_MODE", "NAV_RCL_ACT", "COM_DL_LOSS_T", "NAV_DLL_ACT")
+WHOLE = ("COM_RC_IN_MODE", "NAV_RCL_ACT", "COM_DL_LOSS_T", "NAV_DLL_ACT", "GF_ACTION")
 FALLS = (5, 6)
 """Terminate, disarm."""
 

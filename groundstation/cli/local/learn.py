@@ -130,6 +130,7 @@ def _teach(settings: Settings, lesson: CourseLesson) -> tuple[int, CourseLesson 
             [],
             style=settings.style,
             speed=settings.speed,
+            take_off=settings.take_off,
             sitl=True,
             simulators=rovers,
             log_file=log_file,

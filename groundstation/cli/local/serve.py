@@ -128,6 +128,7 @@ def _station_options(settings: Settings, endpoints: Sequence[str], *, sitl: bool
         system=settings.system,
         style=settings.style,
         speed=settings.speed,
+        take_off=settings.take_off,
         log_file=log_file,
         dialect=settings.dialect_path,
         sign_key=settings.sign_key,

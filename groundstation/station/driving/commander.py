@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dialects.enums import Command, Result, Severity
 from dialects.messages import Message
 from dialects.mode_tables import HOLD
+from groundstation.intents.vehicle import TAKE_OFF_ALTITUDE
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.arming import ArmSequence, ArmStep, send_mode
 from groundstation.station.driving.claims import Claims
@@ -16,9 +17,10 @@ from groundstation.station.driving.stops.emergency import EmergencyLock
 from groundstation.station.driving.stops.stop_questions import FALLS, StopQuestions
 from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, mode_stop
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, StopKind
-from groundstation.vehicles.demand.take_off import find_refusal, take_off_params
+from groundstation.vehicles.demand.take_off import find_fence_refusal, find_refusal, take_off_params
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.vehicles.stops.altitude_fence import AltitudeFence
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient, CommandOutcome
 
@@ -37,7 +39,9 @@ STOP_TIMEOUT = 6.0
 class Commander:
     """Sends commands to all vehicles. `system` and `component` are our ids."""
 
-    def __init__(self, log: MessageLog, system: int, component: int) -> None:
+    def __init__(
+        self, log: MessageLog, system: int, component: int, *, take_off_altitude: float = TAKE_OFF_ALTITUDE
+    ) -> None:
         self._log = log
         self._results = CommandResults(log)
         self._client = CommandClient(system, component)
@@ -54,6 +58,10 @@ class Commander:
         self._query_outcomes: list[CommandOutcome] = []
         self.take_off_refusal: Callable[[int], str] = lambda system: ""
         """Takes a system id; returns why keys may not take off this vehicle, "" if they may."""
+        self.altitude_fence: Callable[[int], AltitudeFence | None] = lambda system: None
+        """Takes a system id; returns how high the fence of this vehicle lets it fly."""
+        self.take_off_altitude = take_off_altitude
+        """m above the ground, of the key."""
 
     # ---- commands of the operator ----
 
@@ -93,9 +101,14 @@ class Commander:
         self._claims.remove(vehicle.system)
         self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL.name, 0, 0, 0, station, now=now)
 
-    def take_off(self, vehicle: VehicleState, altitude: float, now: float) -> None:
-        """Take off to an altitude above the ground, m; refused for what does not fly, flies already or is disarmed."""
+    def take_off(self, vehicle: VehicleState, altitude: float | None, now: float) -> None:
+        """Take off to an altitude above the ground, m; None: to the one that is set.
+
+        Refused for what does not fly, flies already or is disarmed, and above its altitude fence.
+        """
+        altitude = self.take_off_altitude if altitude is None else altitude
         why = find_refusal(vehicle, self.take_off_refusal(vehicle.system), now)
+        why = why or find_fence_refusal(altitude, self.altitude_fence(vehicle.system))
         if why:
             self._results.add_refusal(vehicle.system, f"take-off: {vehicle.name}: {why}", now)
             return

@@ -49,6 +49,13 @@ class DriveDisplay:
         """Choose the parameters to read, and add to the series."""
         for contact in self._fleet:
             contact.drive.tick(now)
+            self._measure_drift(contact, now)
+
+    def _measure_drift(self, contact: Contact, now: float) -> None:
+        state, ours = contact.state, contact is self._fleet.selected and contact.demand_stream.streaming
+        rests = ours and state.in_air and state.mode in state.model.keys and not self._operator.moves
+        speed = state.speed_over_ground if state.monitor.is_alive(now) else None
+        contact.drive.drift.add(speed, now, rests=rests)
 
     def handle_sent(self, message: Message, now: float) -> None:
         """Record that a message was sent."""
@@ -71,6 +78,7 @@ class DriveDisplay:
             "speed_demand": drive.speed_demand(now),
             "stops": stop_bounds(drive.rules, facts),
             **drive.flight_limits(),
+            "drift": drive.drift.speed(now),
             "battery_left": drive.battery_left,
             "health": drive.health.build_lines(now),
             "mission": drive.mission.build(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from groundstation.input.hold_to_confirm import HoldProgress
+from groundstation.intents.vehicle import TakeOff
+from groundstation.snapshot import VehicleView
 from groundstation.snapshot.agents import ProposalView
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.keys.key_gate import OTHER_SCREEN
@@ -12,11 +14,14 @@ BAR = 10
 """Cells of the progress of a held key."""
 
 
-def hold_text(hold: HoldProgress) -> str:
+def hold_text(hold: HoldProgress, vehicle: VehicleView | None) -> str:
     """Return the progress of a key that is held to confirm an action."""
     full = int(BAR * hold.held / hold.action.hold_time)
     bar = "█" * full + "░" * (BAR - full)
-    return f"{hold.action.label}: hold {format_key(hold.key)} {bar} {hold.held:.1f} s"
+    label = hold.action.label
+    if isinstance(hold.action.intent, TakeOff) and vehicle is not None and vehicle.take_off is not None:
+        label = f"{label} to {vehicle.take_off:g} m"
+    return f"{label}: hold {format_key(hold.key)} {bar} {hold.held:.1f} s"
 
 
 def proposal_text(now: DisplayState) -> str:

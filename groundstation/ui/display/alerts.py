@@ -90,7 +90,7 @@ def _reports(vehicle: VehicleView) -> str:
 
 def _hold(now: DisplayState) -> Iterator[Alert]:
     if now.hold is not None:
-        yield Alert(AlertLevel.QUESTION, hold_text(now.hold))
+        yield Alert(AlertLevel.QUESTION, hold_text(now.hold, now.snapshot.vehicle))
 
 
 def _proposal(now: DisplayState) -> Iterator[Alert]:
@@ -147,10 +147,17 @@ def _flight(now: DisplayState) -> Iterator[Alert]:
     for line in vehicle.health:
         if line.good is False and line.name == "estimate":
             yield Alert(AlertLevel.DANGER, f"{vehicle.name}: {line.name} {line.text}: land it")
+    yield from _drift(vehicle, now)
+
+
+def _drift(vehicle: VehicleView, now: DisplayState) -> Iterator[Alert]:
+    """Yield that it does not stay where it is: one mode does not hold the place, and in the others the wind wins."""
+    at = "" if vehicle.drift is None else f" at {vehicle.drift:.1f} m/s"
     if vehicle.mode in DRIFTING:
-        yield Alert(
-            AlertLevel.WARNING, f"{vehicle.mode} drifts with the wind: {now.key('vehicle.manual')} holds the place"
-        )
+        holds = f"{now.key('vehicle.manual')} holds the place"
+        yield Alert(AlertLevel.WARNING, f"{vehicle.mode} drifts with the wind{at}: {holds}")
+    elif at:
+        yield Alert(AlertLevel.DANGER, f"no key held, and it drifts{at}: it does not hold its place")
 
 
 def _failsafe(now: DisplayState) -> Iterator[Alert]:
@@ -164,8 +171,9 @@ def _breach(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.breach:
         level = AlertLevel.DANGER if vehicle.armed else AlertLevel.WARNING
-        how = "" if vehicle.drivable else f", {now.key('vehicle.manual')} changes to MANUAL"
-        yield Alert(level, f"{vehicle.name} is {vehicle.breach} ({vehicle.mode}): drive it back{how}")
+        how = "" if vehicle.drivable else f", {now.key('vehicle.manual')} changes to {vehicle.keys_mode}"
+        verb = "fly" if vehicle.flies else "drive"
+        yield Alert(level, f"{vehicle.name} is {vehicle.breach} ({vehicle.mode}): {verb} it back{how}")
 
 
 STATES = {5: "CRITICAL (a failsafe or fault)", 6: "EMERGENCY"}
@@ -225,7 +233,7 @@ def _limits(now: DisplayState) -> Iterator[Alert]:
 
 def _driven_by_keys(vehicle: VehicleView) -> bool:
     """Return whether our keys are what moves the vehicle: elsewhere their release changes nothing."""
-    return vehicle.in_control and vehicle.mode == "MANUAL"
+    return vehicle.in_control and vehicle.obeys_keys
 
 
 def _id_conflict(now: DisplayState) -> Iterator[Alert]:

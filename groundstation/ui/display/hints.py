@@ -20,7 +20,7 @@ def _gamepad_hint(now: DisplayState) -> str:
     vehicle = now.snapshot.vehicle
     if now.gamepad is None or vehicle is None or vehicle.undriven or now.snapshot.lease.driver:
         return ""
-    drivable = vehicle.in_control and vehicle.mode == "MANUAL" and not vehicle.obeys
+    drivable = vehicle.in_control and vehicle.obeys_keys and not vehicle.obeys
     pad = now.gamepad.hint(armed=vehicle.armed) if drivable or not vehicle.armed else ""
     return f" · {pad}" if pad else ""
 
@@ -63,7 +63,7 @@ def _flight_hint(vehicle: VehicleView, now: DisplayState) -> str:
     """Return what a pilot can do next: the stops of what flies are its landing, and the key after which it falls."""
     emergency, cut = now.key("stop.emergency"), now.key("stop.cut")
     if not vehicle.may_fall:
-        return f"on the ground: hold {now.key('vehicle.take_off')} to take off · {emergency} disarms"
+        return f"on the ground: {_take_off_hint(vehicle, now)} · {emergency} disarms"
     stops = f"SPACE hovers, {emergency} lands, {cut} held 2 s: IT FALLS"
     if vehicle.obeys:
         return stops
@@ -73,6 +73,15 @@ def _flight_hint(vehicle: VehicleView, now: DisplayState) -> str:
         return f"{vehicle.mode}: {now.key('vehicle.manual')} changes to {vehicle.keys_mode} · {stops}"
     climbs = f"{now.key('drive.climb')} {now.key('drive.descend')} climb"
     return f"{stops} · {now.key('drive.forward')} flies, {climbs}"
+
+
+def _take_off_hint(vehicle: VehicleView, now: DisplayState) -> str:
+    key, altitude, fence = now.key("vehicle.take_off"), vehicle.take_off, vehicle.altitude_fence
+    if altitude is None:
+        return f"hold {key} to take off"
+    if fence is not None and altitude > fence:
+        return f"no take-off to {altitude:g} m, its fence is at {fence:g} m"
+    return f"hold {key} to take off to {altitude:g} m"
 
 
 def _arming_hint(vehicle: VehicleView, now: DisplayState) -> str:

@@ -16,6 +16,7 @@ from groundstation.snapshot import LogLine
 from groundstation.ui.display.display_state import DisplayState
 from groundstation.ui.drive.camera_feed import CameraFeed, CameraValue
 from groundstation.ui.drive.instruments.camera import CameraPicture
+from groundstation.ui.drive.instruments.horizon import Horizon, HorizonValue
 from groundstation.ui.drive.instruments.links import LinksPanel
 from groundstation.ui.drive.instruments.rates import RatesPanel
 from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
@@ -133,6 +134,7 @@ PANES: tuple[Pane, ...] = (
     _pane("messages", RatesPanel, lambda given: given.view(MessagesPage), MessagesRequest(count=ROWS)),
     _pane("log", LogPanel, _log),
     _pane("links", LinksPanel, lambda given: given.now.snapshot.links),
+    _pane("horizon", Horizon, lambda given: HorizonValue.from_vehicle(given.now.snapshot.vehicle), period=FAST),
     _pane("camera", CameraPicture, _camera, CameraRequest(), period=FAST),
 )
 """In the order in which the key shows them; the first one is shown at the start."""

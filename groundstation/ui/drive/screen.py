@@ -314,6 +314,7 @@ def _conditions(now: DisplayState) -> dict[str, bool]:
         "-waiting": vehicle is None,
         "-no-legs": no_legs,
         "-links": len(vehicle_links(now.snapshot.links)) > 1,
+        "-flight": vehicle is not None and vehicle.flies,
         "-alert": bool(active_alerts(now)),
     }
 

@@ -34,6 +34,10 @@ FOOTER_ITEMS: tuple[FooterItem, ...] = (
 )
 """The most important first: the last ones may not fit."""
 
+TAKE_OFF: FooterItem = ("Take off", ("vehicle.take_off",))
+LAND: FooterItem = ("Land", ("vehicle.land",))
+FLY_HOME: FooterItem = ("Home", ("vehicle.home",))
+
 Item = tuple[list[Part], str]
 """A key with its label, and the key that the mouse presses there, "" for none."""
 
@@ -51,6 +55,9 @@ class FooterValue(msgspec.Struct, frozen=True):
     screen: ScreenInfo = DRIVE_INFO
     replay: bool = False
     """A log is shown: keys command nothing."""
+    keys_mode: str = ""
+    """The mode for keys of what flies; "" for what does not fly."""
+    in_air: bool = False
 
     @classmethod
     def from_state(cls, now: DisplayState) -> FooterValue:
@@ -61,7 +68,8 @@ class FooterValue(msgspec.Struct, frozen=True):
             return cls(now.keymap, screen=now.screen, replay=replay)
         several = len(systems) > 1 and vehicle.system in systems
         place = f"{systems.index(vehicle.system) + 1}/{len(systems)}" if several else ""
-        return cls(now.keymap, vehicle.armed, place, now.screen)
+        keys_mode = vehicle.keys_mode if vehicle.flies else ""
+        return cls(now.keymap, vehicle.armed, place, now.screen, keys_mode=keys_mode, in_air=vehicle.may_fall)
 
 
 class KeyFooter(Instrument[FooterValue]):
@@ -114,10 +122,22 @@ class KeyFooter(Instrument[FooterValue]):
         """Return the table; with several vehicles the key that selects the next one takes the place of the speed."""
         if self.value.replay:
             return [("Pause", ("drive.stop",)), *((None, (name,)) for name in REPLAY_ACTIONS)]
+        items = self._flight_items() if self.value.keys_mode else list(FOOTER_ITEMS)
         if not self.value.place:
-            return list(FOOTER_ITEMS)
+            return items
         following: FooterItem = (f"Vehicle {self.value.place}", ("vehicle.next",))
-        return [*(following if item == SPEED else item for item in FOOTER_ITEMS), SPEED]
+        return [*(following if item == SPEED else item for item in items), SPEED]
+
+    def _flight_items(self) -> list[FooterItem]:
+        """Return the table with what the keys mean to a copter: in the air its emergency stop lands it."""
+        in_air = self.value.in_air
+        ends = (LAND, FLY_HOME) if in_air else (("Arm" if not self.value.armed else "Disarm", ("vehicle.arm",)),)
+        emergency = "LAND" if in_air else "DISARM"
+        return [
+            ("Hover", ("drive.stop",)), (emergency, ("stop.emergency",)), *ends, *(() if in_air else (TAKE_OFF,)),
+            SPEED, (None, ("app.help",)), (None, ("app.quit",)), (self.value.keys_mode, ("vehicle.manual",)),
+            ("Hold", ("vehicle.hold",)), (None, ("view.pane",)), (None, ("vehicle.control",)),
+        ]  # fmt: skip
 
     def _stop_key(self) -> str:
         """Return a stop key that works now: a text field takes the keys that are characters."""

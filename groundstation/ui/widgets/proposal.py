@@ -39,7 +39,7 @@ class ProposalBarValue(msgspec.Struct, frozen=True):
         proposal = now.snapshot.proposal
         if proposal is None:
             return cls()
-        return cls(proposal, proposal_text(now) if now.hold is None else hold_text(now.hold))
+        return cls(proposal, proposal_text(now) if now.hold is None else hold_text(now.hold, now.snapshot.vehicle))
 
 
 class ProposalBar(Instrument[ProposalBarValue]):

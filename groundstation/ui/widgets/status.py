@@ -104,7 +104,7 @@ class StatusBar(Instrument[StatusBarValue]):
         if vehicle is None:
             return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
         parts = [(f" {vehicle.name} ", badge(BLUE)), mode_badge(vehicle)]
-        stands = not value.drives and vehicle.in_control and vehicle.armed and vehicle.mode == "MANUAL"
+        stands = not value.drives and vehicle.in_control and vehicle.armed and vehicle.obeys_keys
         watches = bool(value.snapshot.lease.driver)
         who = driver_part(vehicle, station_runs=value.station_runs, watches=watches)
         if stands and not watches and vehicle.alive and value.station_runs:
@@ -292,7 +292,9 @@ def _health(vehicle: VehicleView | None) -> list[StatusField]:
     if volts is not None:
         colour = GREEN if left is None or left > 0.3 else AMBER if left > 0.15 else RED
         rest = "" if left is None else f" {100 * left:.0f}%"
-        fields.append(_field(1, "batt", f"{volts:.1f} V{rest}", colour))
+        lasts = vehicle.battery_left if vehicle.flies else None
+        amount = f"{volts:.1f} V" if lasts is None else f"{lasts / 60:.0f} min"
+        fields.append(_field(1, "batt", f"{amount}{rest}", colour))
     return fields
 
 

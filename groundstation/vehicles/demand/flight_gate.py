@@ -9,11 +9,14 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects import rover
 from dialects.axes import FULL_DEFLECTION, HOVER, LOWEST_THROTTLE
+from dialects.enums import Autopilot
 from dialects.messages import UINT16_MAX
 from dialects.modes import custom_mode_of
 from groundstation.vehicles.demand.demand_neutrals import VELOCITY_ONLY
 from groundstation.vehicles.demand.drive_gate import GUIDED_ITEMS, MOVING_COMMANDS
+from groundstation.vehicles.demand.take_off import find_fence_refusal
 from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.vehicles.stops.altitude_fence import AltitudeFence
 
 _COMMANDS = (m.CommandLong, m.CommandInt)
 _ITEMS = (m.MissionItem, m.MissionItemInt)
@@ -33,10 +36,12 @@ def is_checked(message: m.Message) -> bool:
     return type(message) in _CHECKED
 
 
-def flight_refusal(message: m.Message, state: VehicleState, unsafe: str) -> str | None:
+def flight_refusal(
+    message: m.Message, state: VehicleState, unsafe: str, fence: AltitudeFence | None = None
+) -> str | None:
     """Return why a message may not be sent to this vehicle, or None.
 
-    `unsafe`: why it may not take off, as Contact.take_off_refusal says; "" if it may.
+    `unsafe`: why it may not take off, as Contact.take_off_refusal says; "" if it may. `fence`: its altitude fence.
     """
     if not state.model.flies:
         return None
@@ -54,17 +59,32 @@ def flight_refusal(message: m.Message, state: VehicleState, unsafe: str) -> str 
         return "a place to fly to is not sent: keys fly it" if message.current in GUIDED_ITEMS else None
     if isinstance(message, m.SetMode):
         return _mode_refusal(message.custom_mode, state)
-    return _command_refusal(message, state, unsafe) if isinstance(message, _COMMANDS) else None
+    return _command_refusal(message, state, unsafe, fence) if isinstance(message, _COMMANDS) else None
 
 
-def _command_refusal(message: m.CommandLong | m.CommandInt, state: VehicleState, unsafe: str) -> str | None:
+def _fence_refusal(
+    message: m.CommandLong | m.CommandInt, state: VehicleState, fence: AltitudeFence | None
+) -> str | None:
+    """Return why a take-off may not go so high; PX4 takes the altitude above mean sea level."""
+    if message.command not in _TAKE_OFFS:
+        return None
+    ground = (state.sea_level or 0.0) if state.autopilot == Autopilot.PX4 else 0.0
+    height = (message.param7 if isinstance(message, m.CommandLong) else message.z) - ground
+    return find_fence_refusal(round(height, 1), fence) or None
+
+
+def _command_refusal(
+    message: m.CommandLong | m.CommandInt, state: VehicleState, unsafe: str, fence: AltitudeFence | None
+) -> str | None:
     if message.command in _NOT_BY_US:
         return "this command is not sent to what flies: keys fly it"
     if message.command == rover.MAV_CMD_DO_SET_MODE:
         number = custom_mode_of(message.param1, message.param2, message.param3, state.autopilot)
         return _mode_refusal(number, state)
     arms = message.command == rover.MAV_CMD_COMPONENT_ARM_DISARM and message.param1 == 1
-    return f"no take-off: {unsafe}" if unsafe and (arms or message.command in _TAKE_OFFS) else None
+    if unsafe and (arms or message.command in _TAKE_OFFS):
+        return f"no take-off: {unsafe}"
+    return _fence_refusal(message, state, fence)
 
 
 def _demand_refusal(message: m.ManualControl, state: VehicleState) -> str | None:

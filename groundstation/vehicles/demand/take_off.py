@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dialects.enums import Autopilot
+from groundstation.intents.vehicle import HIGHEST_TAKE_OFF, LOWEST_TAKE_OFF
 from groundstation.vehicles.state.vehicle_state import VehicleState
-
-LOWEST, HIGHEST = 1.0, 30.0
-"""m above the ground to which keys take off."""
+from groundstation.vehicles.stops.altitude_fence import AltitudeFence
 
 
 def find_refusal(vehicle: VehicleState, unsafe: str, now: float) -> str:
@@ -26,9 +25,17 @@ def find_refusal(vehicle: VehicleState, unsafe: str, now: float) -> str:
     return ""
 
 
+def find_fence_refusal(altitude: float, fence: AltitudeFence | None) -> str:
+    """Return why a vehicle may not take off to an altitude above the ground, m, or ""."""
+    if fence is None or altitude <= fence.highest:
+        return ""
+    limit = f"{fence.source} {fence.highest:g}"
+    return f"{altitude:g} m is above its altitude fence, {limit}: take off lower, or raise the fence"
+
+
 def take_off_params(vehicle: VehicleState, altitude: float) -> tuple[float, ...]:
     """Return the parameters for an altitude above the ground, m: PX4 takes it above mean sea level."""
-    height = max(LOWEST, min(HIGHEST, altitude))
+    height = max(LOWEST_TAKE_OFF, min(HIGHEST_TAKE_OFF, altitude))
     ground = vehicle.sea_level if vehicle.autopilot == Autopilot.PX4 else 0.0
     nan = float("nan") if vehicle.autopilot == Autopilot.PX4 else 0.0
     return 0.0, 0.0, 0.0, nan, nan, nan, (ground or 0.0) + height

@@ -10,6 +10,7 @@ from dialects.enums import Autopilot
 from dialects.kinds import SpeedParam
 from groundstation.vehicles.health.health import HealthReadings
 from groundstation.vehicles.readings.battery_use import BatteryUse
+from groundstation.vehicles.readings.drift import Drift
 from groundstation.vehicles.readings.foreign_drive import drive_params
 from groundstation.vehicles.readings.speed_series import SpeedSeries
 from groundstation.vehicles.readings.step_meter import StepMeter
@@ -38,6 +39,7 @@ class DriveReadings:
         self.mission = MissionMessages()
         self.speeds = SpeedSeries()
         self.battery_use = BatteryUse()
+        self.drift = Drift()
         self.steps = StepMeter(state.key_timings)
         self.params = params
         self._state = state

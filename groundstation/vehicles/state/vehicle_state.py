@@ -187,6 +187,11 @@ class VehicleState:
         return self.armed and self._landed in (LandedState.IN_AIR, LandedState.TAKEOFF, LandedState.LANDING)
 
     @property
+    def speed_over_ground(self) -> float | None:
+        """m/s in any direction."""
+        return None if self._velocity is None else math.hypot(*self._velocity)
+
+    @property
     def failsafes(self) -> tuple[str, ...]:
         """Names of the failsafes that are active."""
         return flag_words(Failsafe, self._failsafe.active) if self._failsafe else ()
@@ -239,7 +244,7 @@ class VehicleState:
             undriven=self.model.refusal,
             may_fall=self.may_fall,
             flies=self.model.flies,
-            speed_over_ground=None if self._velocity is None else math.hypot(*self._velocity),
+            speed_over_ground=self.speed_over_ground,
             keys_mode=self.model.drive_mode,
             status=self.status,
             alive=self.monitor.is_alive(now),

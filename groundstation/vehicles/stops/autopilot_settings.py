@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 
 import msgspec
 
+from groundstation.vehicles.stops.altitude_fence import AltitudeFence
+
 ParamCheck = Callable[[float, int], str | None]
 """Takes the value and our system id; returns a warning that names the remedy, or None."""
 
@@ -19,6 +21,10 @@ class AutopilotSettings(msgspec.Struct, frozen=True):
     """Takes the known values; returns what the vehicle does when it loses us, or None if that is not known."""
     former_names: Mapping[str, str] = msgspec.field(default_factory=dict)
     """Parameter -> its name in older versions; a vehicle has one of them. Both are in `checks`."""
+    fence: tuple[str, ...] = ()
+    """Parameters of the altitude fence. A vehicle without a fence has none of them, and may take off all the same."""
+    find_fence: Callable[[Mapping[str, float]], AltitudeFence | None] = lambda values: None
+    """Takes the known values; returns the altitude fence, or None if it is off."""
     obeyed: tuple[str, ...] = ()
     """Parameters with the ground station that the vehicle obeys; their warning goes before all others."""
     bytewise: bool = False

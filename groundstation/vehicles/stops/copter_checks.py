@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from groundstation.vehicles.stops.altitude_fence import ardupilot_fence, px4_fence
 from groundstation.vehicles.stops.ardupilot_checks import FORMER_NAMES, station_system
 from groundstation.vehicles.stops.autopilot_settings import AutopilotSettings
 from groundstation.vehicles.stops.px4_checks import LONGEST_LOSS_TIME, SOURCES, described
@@ -84,6 +85,8 @@ ARDUPILOT_COPTER = AutopilotSettings(
     },
     former_names=FORMER_NAMES,
     link_loss_action=_ardupilot_link_loss,
+    fence=("FENCE_ENABLE", "FENCE_AUTOENABLE", "FENCE_TYPE", "FENCE_ALT_MAX"),
+    find_fence=ardupilot_fence,
     obeyed=("MAV_GCS_SYSID", "SYSID_MYGCS"),
 )
 
@@ -126,5 +129,7 @@ PX4_COPTER = AutopilotSettings(
         "COM_DL_LOSS_T": lambda value, system: None,
     },
     link_loss_action=_px4_link_loss,
+    fence=("GF_ACTION", "GF_MAX_VER_DIST"),
+    find_fence=px4_fence,
     bytewise=True,
 )

@@ -7,10 +7,11 @@ SETTINGS.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from dialects.enums import Autopilot
 from dialects.messages import ParamValue
+from groundstation.vehicles.stops.altitude_fence import AltitudeFence
 from groundstation.vehicles.stops.ardupilot_checks import ARDUPILOT
 from groundstation.vehicles.stops.autopilot_settings import AutopilotSettings
 from groundstation.vehicles.stops.copter_checks import ARDUPILOT_COPTER, PX4_COPTER
@@ -49,6 +50,7 @@ class SettingsCheck:
         self._system = system
         self._component = component
         self._target = target
+        self._names = (*settings.checks, *settings.fence)
         self.restart()
 
     def restart(self) -> None:
@@ -70,6 +72,8 @@ class SettingsCheck:
         """When the first round of requests ends."""
         self._missing: tuple[str, ...] = ()
         """Parameters that were not answered in a whole round."""
+        self._asked_fence = False
+        """What was not answered of the fence does not exist."""
         self._unreported = True
 
     @property
@@ -81,7 +85,8 @@ class SettingsCheck:
     @property
     def findings(self) -> tuple[tuple[str, float, str], ...]:
         """Name, value and warning ("" for none) of each parameter that is known."""
-        return tuple((name, value, self._found.get(name) or "") for name, value in self._values.items())
+        judged = ((name, value) for name, value in self._values.items() if name not in self._settings.fence)
+        return tuple((name, value, self._found.get(name) or "") for name, value in judged)
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -106,7 +111,14 @@ class SettingsCheck:
         """Why what flies may not take off: a lost link would let it fall or fly on, or it is not known; "" if not."""
         if warning := next(iter(self.warnings), ""):
             return warning
-        return "what it does without a link is being read" if self._unread() else ""
+        if self._unread(self._settings.checks):
+            return "what it does without a link is being read"
+        return "" if self._asked_fence or not self._unread(self._settings.fence) else "its altitude fence is being read"
+
+    @property
+    def altitude_fence(self) -> AltitudeFence | None:
+        """How high the vehicle's own fence lets it fly; None: there is no such fence."""
+        return self._settings.find_fence(self._values)
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -127,27 +139,28 @@ class SettingsCheck:
     def receive(self, received: Received, now: float) -> list[str]:
         """Check a PARAM_VALUE and return new warnings; other messages and other parameters are ignored."""
         message = received.message
-        if not isinstance(message, ParamValue) or message.param_id not in self._settings.checks:
+        if not isinstance(message, ParamValue) or message.param_id not in self._names:
             return []
         self._params.receive(received, now)
         return self._check(message.param_id)
 
     def tick(self, now: float) -> list[Outgoing]:
         """Return the read requests that are due: one for each parameter, repeated a few times, then less often."""
-        if now >= self._round_due and self._unread():
+        unread = self._unread(self._settings.checks if self._asked_fence else self._names)
+        if now >= self._round_due and unread:
             self._round_due = now + TRIES * REPEAT_AFTER + RETRY_PERIOD
             self._given_up_at = min(self._given_up_at, now + TRIES * REPEAT_AFTER)
-            for name in self._unread():
+            for name in unread:
                 self._request(name, now)
         if now >= self._given_up_at:
-            self._missing = self._unread()
+            self._missing, self._asked_fence = self._unread(self._settings.checks), True
         self._params.tick(now)
         return self._params.messages_to_send()
 
-    def _unread(self) -> tuple[str, ...]:
+    def _unread(self, among: Iterable[str]) -> tuple[str, ...]:
         """Return the parameters that are not known by their present or former name."""
         former = self._settings.former_names
-        names = (name for name in self._settings.checks if name not in former.values())
+        names = (name for name in among if name not in former.values())
         return tuple(name for name in names if not {name, former.get(name)} & self._found.keys())
 
     def _request(self, name: str, now: float) -> None:
@@ -162,7 +175,8 @@ class SettingsCheck:
         param = self._params.params.get(name)
         if param is None or not math.isfinite(param.value):
             return []
-        before, warning = self._found.get(name), self._settings.checks[name](param.value, self._system)
+        check = self._settings.checks.get(name)
+        before, warning = self._found.get(name), check(param.value, self._system) if check else None
         self._values[name], self._found[name] = param.value, warning
-        self._missing = tuple(each for each in self._missing if each in self._unread())
+        self._missing = tuple(each for each in self._missing if each in self._unread(self._settings.checks))
         return [warning] if warning is not None and warning != before else []

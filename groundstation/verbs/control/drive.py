@@ -14,6 +14,7 @@ import os
 import msgspec
 
 from dialects.axes import NEUTRAL, Axes
+from dialects.kinds import VehicleKind
 from groundstation.input.keymap import Keymap
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
@@ -36,7 +37,7 @@ from groundstation.verbs.control.driving import (
     need_accepted,
     need_control,
 )
-from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, parse_script
+from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, can_play, parse_script
 from groundstation.verbs.control.stop_jobs import emergency_job
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import finish, need_driven
@@ -71,11 +72,18 @@ class GivenCourse(msgspec.Struct, frozen=True):
     keymap: Keymap = Keymap("none")
     speed: float = 0.0
 
-    def build(self) -> KeyScript | SteadyDemand:
-        """Return what plays it."""
+    def build(self, model: VehicleKind) -> KeyScript | SteadyDemand:
+        """Return what plays it on a vehicle of this kind. Raises VerbError for what it cannot do."""
         if not self.lines:
+            if (self.axes.side or self.axes.climb) and not model.flies:
+                raise VerbError(ExitCode.REFUSED, f"a {model.word} does not move sideways and does not climb")
             return SteadyDemand(self.axes, self.seconds)
-        return KeyScript(self.lines, self.keymap, Sticks(Style.HOLD, self.speed))
+        keymap = self.keymap.in_flight() if model.flies else self.keymap
+        wrong = next((each for each in self.lines if not can_play(keymap.get_action(each.event.key))), None)
+        if wrong is not None:
+            text = f"line {wrong.number} of the script: {wrong.event.key} is no key that moves a {model.word}"
+            raise VerbError(ExitCode.REFUSED, text)
+        return KeyScript(self.lines, keymap, Sticks(Style.HOLD, self.speed))
 
 
 def prepare(options: argparse.Namespace) -> object:
@@ -84,17 +92,17 @@ def prepare(options: argparse.Namespace) -> object:
 
 
 def _read_course(options: argparse.Namespace) -> GivenCourse:
-    steady = [options.throttle, options.steering, options.seconds]
+    demands = (options.throttle, options.steering, options.side, options.climb)
+    steady = [*demands, options.seconds]
     if options.script is not None:
         if any(each is not None for each in steady):
-            raise VerbError(ExitCode.USAGE, "--script cannot be combined with --throttle, --steering or --for")
+            raise VerbError(ExitCode.USAGE, "--script cannot be combined with a demand or --for")
         return _read_script(options)
-    if options.seconds is None or not (options.throttle or options.steering):
+    if options.seconds is None or not any(demands):
         raise VerbError(ExitCode.USAGE, "write --throttle or --steering PERCENT with --for S, or --script FILE")
     if options.seconds > LONGEST_HOLD:
         raise VerbError(ExitCode.USAGE, f"--for: {LONGEST_HOLD:g} s at most; --script drives longer")
-    axes = Axes((options.throttle or 0.0) / 100, (options.steering or 0.0) / 100)
-    return GivenCourse(axes, options.seconds)
+    return GivenCourse(Axes(*((each or 0.0) / 100 for each in demands)), options.seconds)
 
 
 def _read_script(options: argparse.Namespace) -> GivenCourse:
@@ -111,6 +119,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     await session.need_only_vehicle(options.vehicle)
     state, armed_here = session.vehicle, False
     need_driven(state)
+    course = msgspec.convert(options.given, GivenCourse).build(state.model)
     need_control(session)
     if not state.armed:
         failed = await arm_first(session, options, output, "`drive --arm` arms it, and disarms it again")
@@ -118,7 +127,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
             return finish(session, failed, output)
         armed_here = not options.stay_armed
     try:
-        driven = await _drive(session, msgspec.convert(options.given, GivenCourse).build())
+        driven = await _drive(session, course)
     finally:
         report = await leave(session, disarm=armed_here)
     if report is not None and report.state is not RequestState.ACCEPTED:

@@ -7,8 +7,9 @@ import asyncio
 
 from dialects import messages as m
 from dialects.enums import Command
+from groundstation.intents.vehicle import HIGHEST_TAKE_OFF, LOWEST_TAKE_OFF
 from groundstation.vehicles.demand.repeated_stop import StopTimes, mode_stop
-from groundstation.vehicles.demand.take_off import HIGHEST, LOWEST, find_refusal, take_off_params
+from groundstation.vehicles.demand.take_off import find_fence_refusal, find_refusal, take_off_params
 from groundstation.verbs.common.arguments import finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
@@ -35,8 +36,8 @@ SLOWEST, SPIN_UP = 0.3, 10.0
 def altitude(text: str) -> float:
     """Parse an altitude of a take-off. Raises ArgumentTypeError."""
     value = finite(text)
-    if not LOWEST <= value <= HIGHEST:
-        raise argparse.ArgumentTypeError(f"{text!r} is not from {LOWEST:g} to {HIGHEST:g} m")
+    if not LOWEST_TAKE_OFF <= value <= HIGHEST_TAKE_OFF:
+        raise argparse.ArgumentTypeError(f"{text!r} is not from {LOWEST_TAKE_OFF:g} to {HIGHEST_TAKE_OFF:g} m")
     return value
 
 
@@ -82,7 +83,8 @@ async def _take_off(session: VerbSession, height: float) -> None:
     await request_interval(session, m.ExtendedSysState, 1e6 / REPORTS)
     await begin_driving(session)
     await session.wait_for(lambda: not find_refusal(state, "", session.now), LANDED_WITHIN)
-    if why := find_refusal(state, "", session.now):
+    fence = session.contact.contact.altitude_fence
+    if why := find_refusal(state, "", session.now) or find_fence_refusal(height, fence):
         raise VerbError(ExitCode.REFUSED, f"{state.name}: take-off: {why}")
     where = take_off_params(state, height)
     need_accepted(

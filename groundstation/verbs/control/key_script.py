@@ -75,16 +75,24 @@ def _parse_line(words: Sequence[str], number: int, keymap: Keymap) -> KeyLine:
     if not (math.isfinite(at) and at >= 0):
         raise FileFormatError(f"{shown(words[0])} is not a time in s from the start")
     key = parse_key(words[2])
-    _check_key(words[2], keymap.get_action(key), keymap)
+    if not can_play(keymap.in_flight().get_action(key)):
+        _check_key(words[2], keymap.get_action(key), keymap)
     return KeyLine(at, KeyEvent(key, release=words[1] == "release"), number)
+
+
+def can_play(action: OperatorAction | None) -> bool:
+    """Return whether a script may press a key with this action."""
+    return (
+        action is not None
+        and isinstance(action.when_armed or action.intent, (*_PLAYED, Disarm))
+        and (not action.confirm or action.when_armed is not None)
+    )
 
 
 def _check_key(text: str, action: OperatorAction | None, keymap: Keymap) -> None:
     if action is None:
         raise FileFormatError(f"the key map {keymap.name} has no key {shown(text)}")
-    if not isinstance(action.when_armed or action.intent, (*_PLAYED, Disarm)) or (
-        action.confirm and not action.when_armed
-    ):
+    if not can_play(action):
         raise FileFormatError(f"{shown(text)} is {action.label!r}, which a script cannot do")
 
 

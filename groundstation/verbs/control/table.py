@@ -72,6 +72,8 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("drive by hand for a time, or as a script of keys says, then neutral", drive.run,
         (("--throttle", {"type": drive.percent, "metavar": "PERCENT", "help": "negative for backward"}),
          ("--steering", {"type": drive.percent, "metavar": "PERCENT", "help": "positive to the right"}),
+         ("--side", {"type": drive.percent, "metavar": "PERCENT", "help": "of a copter: positive to the right"}),
+         ("--climb", {"type": drive.percent, "metavar": "PERCENT", "help": "of a copter: negative for down"}),
          ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": f"up to {LONGEST_HOLD:g} s"}),
          ("--script", {"metavar": "FILE", "help": "lines such as '0.5 press i': s from the start, then a key"}),
          ("--speed", {"type": drive.limit, "metavar": "LIMIT", "help": "of the keys, 0.1 to 1, as for the screen"}),

@@ -127,7 +127,8 @@ class Ros1:
         if topic == "command":
             self._driver.push_word(key, values["data"])
         else:
-            self._driver.push_twist(key, values["linear"]["x"], values["angular"]["z"])
+            linear = values["linear"]
+            self._driver.push_twist(key, (linear["x"], linear["y"], linear["z"]), values["angular"]["z"])
 
     def _forget(self, topic: str | None = None) -> None:
         """Forget the publishers of a topic, or all."""

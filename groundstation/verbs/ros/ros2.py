@@ -246,7 +246,8 @@ class _Node:
             self._calls.pop(number).set_result(reply)
 
     def _take_twist(self, gid: bytes, twist: Any) -> None:
-        self._tell(TWIST, CMD_VEL, gid, twist.linear.x, twist.angular.z)
+        linear = (twist.linear.x, twist.linear.y, twist.linear.z)
+        self._tell(TWIST, CMD_VEL, gid, linear, twist.angular.z)
 
     async def _call(self, service: str, request: Any) -> Values:
         number, reply = next(self._numbers), asyncio.get_running_loop().create_future()

@@ -43,10 +43,10 @@ class RosDriver:
 
     # ---- what arrives ----
 
-    def push_twist(self, source: Hashable, linear_x: float, angular_z: float) -> None:
-        """Handle the velocities of a Twist: m/s, rad/s."""
+    def push_twist(self, source: Hashable, linear: tuple[float, float, float], angular_z: float) -> None:
+        """Handle the velocities of a Twist: m/s forward, left and up, rad/s."""
         try:
-            axes = self._scale.of_twist(linear_x, angular_z)
+            axes = self._scale.of_twist(linear, angular_z)
         except RefusedDemandError as error:
             self._refuse(source, str(error))
         else:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import math
 
-from groundstation.ros.demand import DEFAULT_SPEED, DEFAULT_TURN, Scale
+from dialects.kinds import AxisLimits, SpeedParam
+from groundstation.ros.demand import DEFAULT_CLIMB, DEFAULT_SPEED, DEFAULT_TURN, Scale
 from groundstation.verbs.common.arguments import Argument, finite, metres_per_second
 from groundstation.verbs.session.session import VerbSession
 
-SPEED_PARAMETER, TURN_PARAMETER = "SPEED_MAX", "ACRO_TURN_RATE"
-"""m/s at full throttle, and deg/s at full steering: of our vehicle and of ArduPilot Rover."""
+GROUND_LIMITS = AxisLimits(speed=(SpeedParam("SPEED_MAX"),), turn=(SpeedParam("ACRO_TURN_RATE"),))
+"""Of our vehicle and of ArduPilot Rover."""
 FASTEST_TURN = 4 * math.pi
 """rad/s, two turns a second."""
 
@@ -25,9 +26,9 @@ def radians_per_second(text: str) -> float:
 
 ARGUMENTS: tuple[Argument, ...] = (
     ("--max-speed", {"type": metres_per_second, "metavar": "M/S",
-                     "help": "linear.x that is full throttle (default: SPEED_MAX of the vehicle, else 1)"}),
+                     "help": "linear.x that is full throttle (default: as the vehicle's parameters say, else 1)"}),
     ("--max-turn", {"type": radians_per_second, "metavar": "RAD/S",
-                    "help": "angular.z that is full steering (default: ACRO_TURN_RATE of the vehicle, else 1)"}),
+                    "help": "angular.z that is full steering (default: as the vehicle's parameters say, else 1)"}),
     ("--arm", {"action": "store_true", "help": "arm at the start, and disarm at the end"}),
 )  # fmt: skip
 """Arguments of every program that drives by messages of ROS."""
@@ -35,13 +36,23 @@ ARGUMENTS: tuple[Argument, ...] = (
 
 async def learn_scale(session: VerbSession, options: argparse.Namespace) -> Scale:
     """Return the scale; ask the vehicle for what the user has not said."""
-    speed = options.max_speed or await _read(session, SPEED_PARAMETER) or DEFAULT_SPEED
-    turn = options.max_turn or math.radians(await _read(session, TURN_PARAMETER) or 0.0) or DEFAULT_TURN
-    return Scale(speed=speed, turn=turn)
+    model = session.vehicle.model
+    limits = model.limits if model.flies else GROUND_LIMITS
+    speed = options.max_speed or await _read(session, limits.speed) or DEFAULT_SPEED
+    turn = options.max_turn or math.radians(await _read(session, limits.turn) or 0.0) or DEFAULT_TURN
+    climb = (await _read(session, limits.climb) or DEFAULT_CLIMB) if model.flies else DEFAULT_CLIMB
+    return Scale(speed=speed, turn=turn, climb=climb, flies=model.flies)
 
 
-async def _read(session: VerbSession, name: str) -> float | None:
-    """Return a parameter that is a positive number, or None."""
+async def _read(session: VerbSession, choices: tuple[SpeedParam, ...]) -> float | None:
+    """Return the first parameter that the vehicle has, if it is a positive number, or None."""
+    for each in choices:
+        if (value := await _read_one(session, each.name)) is not None:
+            return value * each.scale
+    return None
+
+
+async def _read_one(session: VerbSession, name: str) -> float | None:
     params = session.services.params
     await session.request(lambda number, now: params.read(number, name, now))
     known = params.client.params.get(name)

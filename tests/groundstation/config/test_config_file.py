@@ -76,6 +76,8 @@ def test_a_dialect_beside_the_file_or_with_a_folder_is_a_path(tmp_path: Path) ->
     [
         ("sped = 0.3", "1: sped: unknown setting; did you mean speed or speak?"),
         ("\n\nspeed = 2", "3: speed: 2 is not a number from 0.1 to 1"),
+        ("take_off = 0.5", "1: take_off: 0.5 is not a number from 1 to 30 m"),
+        ("take_off = 100", "1: take_off: 100 is not a number from 1 to 30 m"),
         ("speed = nan", "1: speed: NaN is not a number from 0.1 to 1"),
         ("speed = true", "1: speed: true is not a number from 0.1 to 1"),
         ("system = 0", "1: system: 0 is not a number from 1 to 255"),

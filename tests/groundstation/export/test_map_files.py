@@ -119,6 +119,18 @@ def test_kml_has_longitude_latitude_and_height(kml: ET.Element) -> None:
     assert found == [(longitude / 1e7, latitude / 1e7, 584.0) for latitude, longitude in POINTS]
 
 
+@pytest.mark.parametrize("late", [False, True], ids=["kind first", "kind last"])
+def test_what_flies_has_its_line_at_its_altitude(tmp_path: Path, late: bool) -> None:
+    beat = sent(0 if not late else 300, m.Heartbeat(2, 3, 0x81, 5, 4, 3))
+    places = b"".join(sent(moment, gps(*PLACE)) for moment in (1, 2, 200, 201))
+    (tmp_path / "log.tlog").write_bytes(places + beat if late else beat + places)
+    run(tmp_path / "log.tlog", ("kml", tmp_path / "log.kml"))
+    lines = list(parse(tmp_path / "log.kml").iter(f"{{{KML}}}LineString"))
+    assert [names(line) for line in lines] == [["extrude", "altitudeMode", "coordinates"]] * 2
+    assert [line[1].text for line in lines] == ["absolute"] * 2
+    assert all((line[2].text or "").split()[0].endswith(",584.000") for line in lines)
+
+
 def test_a_warning_in_chunks_is_one_remark(tmp_path: Path) -> None:
     raw = b"x" * 49 + "ü and the end".encode()
     chunks = [sent(15, m.StatusText(3, each, 9, number)) for number, each in enumerate((raw[:50], raw[50:]))]

@@ -199,6 +199,15 @@ def test_the_demand_is_part_of_full_deflection_left_positive(driven: Path) -> No
     assert (twist.linear.x, twist.angular.z) == (0.5, -0.25)  # ArduRover: z throttle, y steering to the right
 
 
+@pytest.mark.parametrize(("autopilot", "z"), [(3, 400 - 100), (12, 450 - 125)], ids=["ArduCopter", "PX4"])
+def test_the_demand_of_a_copter_has_sideways_and_climb(tmp_path: Path, autopilot: int, z: int) -> None:
+    beat = sent(0, m.Heartbeat(2, autopilot, 0x81, 5, 4, 3))
+    demand = sent(1, m.ManualControl(1, 500, 400, z, -250, 0), 255, 190)
+    twist = of(exported(tmp_path, beat + demand), "/cmd_vel")[0]
+    assert (twist.linear.x, twist.linear.y, twist.linear.z) == (0.5, -0.4, -0.5)
+    assert twist.angular.z == 0.25
+
+
 def test_battery_discharges_with_a_negative_current(driven: Path) -> None:
     state = of(driven, "/battery_state")[0]
     assert (state.voltage, state.current, state.percentage) == pytest.approx((12.0, -12.34, 0.55))

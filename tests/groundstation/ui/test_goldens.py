@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
@@ -98,7 +99,8 @@ COPTER = snapshot(
     vehicle=vehicle(
         name="ArduPilot copter 1", autopilot=3, mode="LOITER", flies=True, keys_mode="LOITER", may_fall=True,
         altitude=12.3, climb=0.5, speed=3.2, speed_over_ground=3.4, battery_left=744.0, full_speed=12.5,
-        full_turn=202.5, full_climb=2.5, demand=None, outputs=(), limits=(), speed_demand=None, mission=None,
+        full_turn=202.5, full_climb=1.25, take_off=3.0, altitude_fence=100.0,
+        demand=None, outputs=(), limits=(), speed_demand=None, mission=None,
         stops=(
             StopBound("no command", "RC input", "RC_OVERRIDE_TIME", 3.0, 0.042),
             StopBound("... no RC", "RTL", "FS_THR_ENABLE", 3.5, 0.042),
@@ -107,6 +109,15 @@ COPTER = snapshot(
     ),
     operator=helm(held=("i", "pageup"), steering=0.0, climb=0.6),
 )  # fmt: skip
+
+GROUNDED = snapshot(
+    vehicle=replace(COPTER.vehicle, may_fall=False, altitude=0.0, climb=0.0, speed_over_ground=0.0, position=(0, 0),
+                    altitude_fence=2.0),
+    operator=helm(held=(), throttle=0.0, steering=0.0),
+) if COPTER.vehicle else COPTER  # fmt: skip
+DRIFTING = snapshot(
+    vehicle=replace(COPTER.vehicle, drift=1.6), operator=helm(held=(), throttle=0.0, steering=0.0)
+) if COPTER.vehicle else COPTER  # fmt: skip
 
 SETUP_FRAMES = setup_frames(STANDING, waiting())
 
@@ -117,6 +128,8 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_200x60": (LARGE, snapshot(signing=SIGNED), ()),
     "flight_80x24": (SMALL, COPTER, ()),
     "flight_140x45": (WIDE, COPTER, ()),
+    "flight_ground_80x24": (SMALL, GROUNDED, ()),
+    "flight_drift_80x24": (SMALL, DRIFTING, ("v",) * 6),
     "pane_speed_80x24": (SMALL, snapshot(), ("v",)),
     "pane_rates_80x24": (SMALL, snapshot(), ("v", "v")),
     "warned_140x45": (WIDE, WARNED, ()),

@@ -31,9 +31,6 @@ FLIGHT_GRID = (
 )
 """The same of what flies: left and right turn the nose, the fourth column climbs, the last row begins and ends it."""
 
-CLIMB_SHARE = 0.6
-"""Of the way of the throttle stick that a key asks for at full limit (dialects/axes.py, CLIMB_SPAN)."""
-
 STYLES: dict[str, tuple[str, Callable[[], Style]]] = {
     "hold": ("HOLD to drive", partial(style, GREEN, bold=True)),
     "latch": (" LATCHED: drives on ", partial(badge, RED)),
@@ -80,6 +77,8 @@ class KeycapsValue(msgspec.Struct, frozen=True):
     flies: bool = False
     full: tuple[float | None, float | None, float | None] = (None, None, None)
     """What full deflection asks for, of what flies: m/s, deg/s, m/s up."""
+    take_off: float | None = None
+    """m to which its key takes off now; None: it is in the air, or not armed."""
     recorded: tuple[str, ...] | None = None
     """In a replay the keys that were held; None: no replay."""
 
@@ -91,6 +90,7 @@ class KeycapsValue(msgspec.Struct, frozen=True):
         return cls(
             flies=flies,
             full=(vehicle.full_speed, vehicle.full_turn, vehicle.full_climb) if vehicle and flies else (None,) * 3,
+            take_off=vehicle.take_off if vehicle and vehicle.armed and not vehicle.may_fall else None,
             keymap=now.keymap,
             lit=lit_actions(frozenset(operator.held) | now.pressed, now.keymap),
             style=operator.style,
@@ -179,13 +179,19 @@ def nearest_text(nearest: tuple[float, float] | None, *, ascii: bool = False) ->
 
 
 def flight_limit_parts(value: KeycapsValue) -> list[Part]:
-    """Return what the keys ask for at most, of what flies: in its units where they are known, else in percent."""
+    """Return how high its key takes off, and in the air what the keys ask for at most.
+
+    That is in its units where they are known, else in percent.
+    """
+    if value.take_off is not None:
+        key = main_key(value.keymap, "vehicle.take_off")
+        return [(f"{key} takes off to ", style(DIM)), (f"{value.take_off:g} m", style(TEXT))]
     speed, turn, climb = value.full
     share, turning = value.throttle_limit / 100, value.steering_limit / 100
     texts = (
         f"{value.throttle_limit}%" if speed is None else f"{speed * share:.1f} m/s",
         f"{value.steering_limit}%" if turn is None else f"{turn * turning:.0f}°/s",
-        "" if climb is None else f" up {climb * share * CLIMB_SHARE:.1f}",
+        "" if climb is None else f" up {climb * share:.1f}",
     )
     return [("≤", style(DIM)), (" ".join(texts[:2]) + texts[2], style(TEXT))]
 

@@ -99,6 +99,13 @@ class MissionStrip(Instrument[MissionValue]):
 
     BORDER_TITLE = "mission"
 
+    def show(self, value: MissionValue) -> None:
+        """Show another value, and what it is of in the title."""
+        super().show(value)
+        title = "flight" if value.flight is not None and value.mission is None else "mission"
+        if self.border_title != title:
+            self.border_title = title
+
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw what is known; figures that do not fit are left out from the end."""
         figures = strip(*_fitting(self._figures(whole=width >= ROOMY), width)).crop(0, width)
