@@ -12,6 +12,7 @@ import pytest
 from dialects import messages as m
 from dialects.axes import HOVER
 from dialects.enums import Command
+from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, DrivePad, EmergencyStop, ReleasePad, Stop
 from groundstation.intents.links import CloseLink
 from groundstation.intents.session import Quit, SetKeyGate
@@ -230,6 +231,24 @@ def test_the_emergency_stop_lands_and_never_falls(build: Build) -> None:
     assert copter.hit_ground_at < 1.0
     forced = [each for each in copter.commands(Command.COMPONENT_ARM_DISARM) if each.param2]
     assert forced == []
+
+
+@COPTERS
+@pytest.mark.parametrize("mode", ["RTL", "HOLD"])
+def test_the_key_lands_it_from_a_mode_that_flies_by_itself(build: Build, mode: str) -> None:
+    cockpit = hovering_cockpit(build())
+    cockpit.copter.north = 100.0
+    cockpit.do(SetMode(mode=mode))
+    cockpit.run(2.0)
+    assert cockpit.copter.mode_name in (*copter_home(cockpit.copter), "BRAKE", "HOLD")
+    keymap = Keymap("standard", KEYMAPS["standard"]).in_flight()
+    cockpit.do(*keymap.build_intents([KeyEvent("exclamation_mark")], armed=True, driving=True))
+    cockpit.run(2.5)
+    assert cockpit.copter.mode_name in ("LAND", "AUTO_LAND")
+    assert cockpit.copter.climb < -0.5
+    cockpit.do(Stop())
+    cockpit.run(2.0)
+    assert cockpit.copter.mode_name in ("BRAKE", "HOLD")
 
 
 def unheard_cockpit(build: Build) -> FlightCockpit:

@@ -46,6 +46,8 @@ from groundstation.station.driving.permission import Permission
 from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.vehicles.state.vehicle_state import VehicleState
 
+EMERGENCY_WINS = 0.5
+"""s after an emergency stop for which a stop key does not end the landing of what flies."""
 SECOND_STOP_WITHIN = 3.0
 """s after an emergency stop within which another one goes to every vehicle, not only to ours."""
 
@@ -152,8 +154,11 @@ class IntentHandler:
         if intent.reason == STOP_KEY:
             self._verbs.stop(now)
         selected = self._fleet.selected
-        if intent.reason == STOP_KEY and selected is not None and selected.state.may_move:
-            self._commander.set_mode(selected.state, HOLD, now)  # neutral sticks do not stop a mission
+        if intent.reason != STOP_KEY or selected is None or not selected.state.may_move:
+            return
+        if selected.state.model.flies and now - self._emergency_at <= EMERGENCY_WINS:
+            return  # it is to land: one read of keys has the stop beside the emergency stop
+        self._commander.set_mode(selected.state, HOLD, now)  # neutral sticks do not stop a mission
 
     def _emergency_stop(self, intent: EmergencyStop, now: float) -> None:
         """Stop the selected vehicle and those that we armed or drove; the second request in a row stops all.

@@ -463,7 +463,7 @@ class ConsoleApp(App[int]):
         self._pressed.press(key, self._clock())
         self._adapt_ticks()
         if self.screen is self.drive:
-            self._key_hint.press(key, self._clock())
+            self._key_hint.press(key, self._clock(), self.gate.keymap)
             self.drive.light_keycaps(self._pressed.names)
 
     # ---- actions ----

@@ -29,8 +29,9 @@ class KeyHint:
         self._split = self._bursts = 0
         self._noted_at = -math.inf
 
-    def press(self, key: str, now: float) -> None:
-        """Handle a key, by Textual's name."""
+    def press(self, key: str, now: float, keymap: Keymap | None = None) -> None:
+        """Handle a key, by Textual's name. `keymap`: that of the vehicle, where it has another one."""
+        self._keymap = keymap or self._keymap
         if now - self._noted_at < NOTED_FOR:
             return
         self._text = None if self._keymap.get_action(key) else self._explain(key)

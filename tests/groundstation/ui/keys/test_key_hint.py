@@ -33,3 +33,11 @@ def test_several_keys_at_once_are_named_until_a_later_key() -> None:
     hint.note_burst(1, 1.2)
     hint.press("i", 2.0)
     assert hint.text(2.0) is None
+
+
+def test_the_keys_of_a_copter_are_no_capital_letters_by_mistake() -> None:
+    hint = KeyHint(STANDARD)
+    hint.press("T", 1.0)
+    assert hint.text(1.0) == "T is not bound, t is Clear e-stop: is Caps Lock on?"
+    hint.press("T", 2.0, STANDARD.in_flight())
+    assert hint.text(2.0) is None
