@@ -238,7 +238,8 @@ def record_options(settings: Settings, log_file: Path | None) -> RecordOptions |
     folder = _folder(settings.folder, log_file)
     if settings.record_folder is not None:
         folder = _make_folder("--record-to", settings.record_folder)
-    return RecordOptions(folder, settings.record_file_size, settings.record_folder_size)
+    video = settings.record_video, settings.record_video_folder_size
+    return RecordOptions(folder, settings.record_file_size, settings.record_folder_size, *video)
 
 
 def _make_folder(what: str, requested: str) -> Path:

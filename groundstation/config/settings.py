@@ -97,6 +97,10 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """MB after which a recording goes on in the next file."""
     record_folder_size: Annotated[int, msgspec.Meta(ge=1, le=1_000_000)] = 2000
     """MB of all recordings in the folder; the oldest are removed."""
+    record_video: Annotated[bool, Option("--record-video")] = True
+    """Record the pictures of the camera beside them, while a screen shows them."""
+    record_video_folder_size: Annotated[int, msgspec.Meta(ge=10, le=1_000_000)] = 2000
+    """MB of all recorded pictures in the folder; the oldest are removed."""
     endpoints: dict[str, str | tuple[str, ...]] = {}
     """Names for endpoints: `mavhelm field` opens what `field` names, one endpoint or a list."""
     groups: dict[str, str | tuple[str, ...]] = {}

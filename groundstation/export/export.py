@@ -12,8 +12,10 @@ from typing import BinaryIO
 
 import msgspec
 
-from groundstation.export.exporter import Exporter, ExportError, LogInfo, NothingToExportError
+from groundstation.export.exporter import Exporter, ExportError, LogInfo, NothingToExportError, PictureExporter
 from groundstation.export.log_time import LogTime
+from groundstation.export.pictures import NAME as PICTURES
+from groundstation.export.pictures import PictureSource
 from groundstation.export.sample import Sample
 from groundstation.export.table import FORMATS
 from link.tlog.scan import MAX_RECORD, Gap, LogFrame, foreign_log
@@ -27,6 +29,11 @@ class ExportChoice(msgspec.Struct, frozen=True):
     end: LogTime | None = None
     patterns: tuple[str, ...] = ()
     system: int | None = None
+
+    def takes(self, name: str, system: int | None) -> bool:
+        """Return whether messages of a name, of a system, are chosen."""
+        named = not self.patterns or any(fnmatch.fnmatchcase(name, each) for each in self.patterns if name)
+        return named and self.system in (None, system)
 
     @property
     def only(self) -> str:
@@ -68,13 +75,17 @@ class ExportResult(msgspec.Struct):
     """The first of them."""
     damaged_parts: int = 0
     damaged_bytes: int = 0
+    pictures: int = 0
+    """Recorded pictures that were written."""
+    damaged_pictures: int = 0
+    """Bytes of their files that belong to no whole picture."""
     unknown: Counter[int] = msgspec.field(default_factory=Counter)
     """Id that is in no dialect known here -> messages that were left out."""
 
     @property
     def whole(self) -> bool:
         """Whether nothing is missing."""
-        return not (self.empty or self.damaged_parts or self.unknown)
+        return not (self.empty or self.damaged_parts or self.damaged_pictures or self.unknown)
 
 
 KEPT_DAMAGE = 20
@@ -103,9 +114,18 @@ class Export:
                 exporter = FORMATS[output.format].create(output.path, work.log)
                 stack.callback(exporter.discard)
                 exporters.append(exporter)
+            self._add_pictures(stack, work, exporters)
             keeps = all(FORMATS[output.format].keeps_unknown for output in self._outputs)
             yield from work.run(file, exporters, count_unknown=not keeps)
             self._end(exporters)
+
+    def _add_pictures(self, stack: ExitStack, work: _Pass, exporters: Sequence[Exporter]) -> None:
+        """Have recorded pictures written where a format takes them, and nobody chose other things."""
+        taking = [each for each in exporters if isinstance(each, PictureExporter)]
+        if taking and self._choice.takes(PICTURES, None):
+            source = PictureSource(Path(self._path), work.begin, work.end)
+            stack.callback(source.close)
+            work.pictures, work.taking = source, taking
 
     def _end(self, exporters: Sequence[Exporter]) -> None:
         for output, exporter in zip(self._outputs, exporters, strict=True):
@@ -132,13 +152,15 @@ class _Pass:
             raise ExportError(f"{path}: this is not a telemetry log: it has no MAVLink frame")
         self.log = LogInfo(Path(path).name, begin, choice.only)
         self._choice = choice
-        self._from = choice.begin.resolve(begin) if choice.begin else 0
-        self._to = choice.end.resolve(begin) if choice.end else 1 << 64
-        if self._to <= self._from:
+        self.begin = choice.begin.resolve(begin) if choice.begin else 0
+        self.end = choice.end.resolve(begin) if choice.end else 1 << 64
+        if self.end <= self.begin:
             raise ExportError("--to is not after --from")
         self._result = result
         self._time = begin
         self._wanted: dict[tuple[int, str], bool] = {}
+        self.pictures: PictureSource | None = None
+        self.taking: Sequence[PictureExporter] = ()
 
     def run(self, file: BinaryIO, exporters: Sequence[Exporter], *, count_unknown: bool) -> Iterator[int]:
         """Give all samples to the exporters that want them."""
@@ -157,25 +179,35 @@ class _Pass:
                         self._result.unknown[sample.id] += 1
                     for exporter in plain:
                         exporter.add(sample)
+            self._add_pictures(self._time)
             yield file.tell()
+        self._add_pictures(self.end)
+
+    def _add_pictures(self, until: int) -> None:
+        """Give the recorded pictures up to a time to those that take them."""
+        if self.pictures is None:
+            return
+        for unit in self.pictures.pop(until):
+            self._result.pictures += 1
+            for exporter in self.taking:
+                exporter.add_picture(unit)
+        self._result.damaged_pictures = self.pictures.damaged
 
     def _sample(self, frame: LogFrame) -> Sample:
         sample = Sample(frame)
         self._time = frame.stamp
-        sample.chosen = self._from <= self._time < self._to and self._is_wanted(sample)
+        sample.chosen = self.begin <= self._time < self.end and self._is_wanted(sample)
         return sample
 
     def _is_wanted(self, sample: Sample) -> bool:
         key = sample.system, sample.name
         known = self._wanted.get(key)
         if known is None:
-            patterns = self._choice.patterns
-            matches = not patterns or any(fnmatch.fnmatchcase(sample.name, each) for each in patterns if sample.name)
-            known = self._wanted[key] = matches and self._choice.system in (None, sample.system)
+            known = self._wanted[key] = self._choice.takes(sample.name, sample.system)
         return known
 
     def _count_gap(self, gap: Gap) -> None:
-        if not self._from <= self._time < self._to:
+        if not self.begin <= self._time < self.end:
             return
         self._result.damaged_parts += 1
         self._result.damaged_bytes += gap.size

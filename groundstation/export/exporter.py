@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import msgspec
 
 from groundstation.export.sample import Sample
+from groundstation.stream.recorded_video import RecordedUnit
 
 
 class ExportError(Exception):
@@ -48,6 +49,14 @@ class Exporter(Protocol):
 
     def discard(self) -> None:
         """Close everything, and remove what is not in its place."""
+
+
+@runtime_checkable
+class PictureExporter(Exporter, Protocol):
+    """One with a place for recorded pictures."""
+
+    def add_picture(self, unit: RecordedUnit) -> None:
+        """Write a picture. Raises OSError."""
 
 
 class LogInfo(msgspec.Struct, frozen=True):

@@ -21,10 +21,16 @@ from groundstation.export.log_time import iso_time
 from groundstation.export.sample import Sample
 from groundstation.ros.types import RosTypes
 from groundstation.ros.vehicle import ODOMETRY, ROWS, RosVehicle, Values, transforms
+from groundstation.stream.recorded_video import RecordedUnit
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle, replaces
 
 _TYPES = RosTypes()
 """Standard types, and those made so far."""
+
+VIDEO = "foxglove_msgs/msg/CompressedVideo"
+"""https://docs.foxglove.dev/docs/sdk/schemas/compressed-video: Annex B, one picture a message, no B frames."""
+VIDEO_DEFINITION = "builtin_interfaces/Time timestamp\nstring frame_id\nuint8[] data\nstring format\n"
+CAMERA_TOPIC, CAMERA_FRAME = "/camera", "camera"
 
 
 class McapExport:
@@ -50,6 +56,11 @@ class McapExport:
             self._topics.write_message(sample, self._kind(sample.kind))
             self.count += 1
         self._add_standard(sample)
+
+    def add_picture(self, unit: RecordedUnit) -> None:
+        """Write a recorded picture, as it is."""
+        self._topics.write_picture(unit)
+        self.count += 1
 
     def finish(self) -> None:
         """Write the index."""
@@ -130,6 +141,19 @@ class _Topics:
         if channel is None:
             channel = self._open(topic, kind, self._store.generate_msgdef(kind, ros_version=2)[0])
         self._write(channel, sample, kind, _TYPES.build(kind, values))
+
+    def write_picture(self, unit: RecordedUnit) -> None:
+        """Write a picture as Foxglove has it."""
+        channel = self._channels.get((CAMERA_TOPIC, VIDEO))
+        if channel is None:
+            self._store.register(get_types_from_msg(VIDEO_DEFINITION, VIDEO))
+            definition = self._store.generate_msgdef(VIDEO, ros_version=2)[0]
+            channel = self._open(CAMERA_TOPIC, VIDEO, definition)
+        types = self._store.types
+        stamp = types["builtin_interfaces/msg/Time"](unit.time // 1_000_000, unit.time % 1_000_000 * 1000)
+        value = types[VIDEO](stamp, CAMERA_FRAME, np.frombuffer(unit.data, np.uint8), "h264")
+        at = unit.time * 1000
+        self.writer.add_message(channel, at, bytes(self._store.serialize_cdr(value, VIDEO)), at)
 
     def _write(self, channel: int, sample: Sample, kind: str, value: object) -> None:
         at = sample.microseconds * 1000

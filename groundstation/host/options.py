@@ -74,6 +74,7 @@ def station_parser() -> argparse.ArgumentParser:
     parser.add_argument("--record-to", type=Path, metavar="FOLDER", help="record the session there")
     parser.add_argument("--record-file-size", type=int, default=100, metavar="MB")
     parser.add_argument("--record-folder-size", type=int, default=2000, metavar="MB")
+    parser.add_argument("--record-video-folder-size", type=int, default=2000, metavar="MB", help="0: no pictures")
     parser.add_argument("--terminal", help="path of the screen's terminal, which is reset if the screen is killed")
     parser.add_argument("endpoints", nargs="*")
     return parser

@@ -14,6 +14,7 @@ from dialects.printable import printable
 from groundstation.connect.link_manager import LinkManager
 from groundstation.connect.signing import StationSigning
 from groundstation.disk.file_jobs import FileJobs
+from groundstation.host.camera_receiver import CameraReceiver
 from groundstation.host.programs import ProgramSet
 from groundstation.host.screens import Lifetime, ScreenSet
 from groundstation.host.snapshot_sender import SlotTimer, SnapshotSender
@@ -58,8 +59,12 @@ class StationHost:
         recording: StationRecording | None = None,
         signing: StationSigning | None = None,
         simulators: SimulatorControl | None = None,
+        video_limit: int = 0,
     ) -> None:
-        """`pipe` leads to the screen that has started this process, `screen` is its name; None: there is none."""
+        """`pipe` leads to the screen that has started this process, `screen` is its name; None: there is none.
+
+        `video_limit`: MB of recorded pictures, 0 for none.
+        """
         self._station = station
         self._pipe, self._screen = pipe, screen
         self.screens = ScreenSet(station, self, lifetime)
@@ -79,6 +84,7 @@ class StationHost:
         )
         self._programs = ProgramSet(station, self.screens, self._runner.flush)
         self._disk = FileJobs(station, self._runner.flush)
+        self._camera = CameraReceiver(station, recording, video_limit)
         self.connect = LinkManager(self._runner, station, ids, sent, simulators)
         self._slots = SlotTimer(self._keep_up, self._snapshots.call_period)
         self._broken = self._ending = False
@@ -108,6 +114,7 @@ class StationHost:
             self.connect.close()
             self._disk.close()
             self._watchdog.close()
+            self._camera.close()
             if self._signing:
                 self._signing.close()
             if self._recording:
@@ -152,6 +159,7 @@ class StationHost:
         if self._recording:
             self._recording.tick(now)
         self._disk.run()
+        self._camera.tick(now)
         self._snapshots.send_due(now)
 
     def _poll_keys(self, now: float) -> None:

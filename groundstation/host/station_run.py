@@ -56,6 +56,7 @@ def run(
         screen=f"screen on {options.terminal.removeprefix('/dev/')}" if options.terminal else "first screen",
         signing=started.signing,
         simulators=started.simulators,
+        video_limit=options.record_video_folder_size,
     )
     LineLoader(station, host.flush)
     for note in started.notes:

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from groundstation.stream.names import find_parts
 from link.runtime.whole_file import sync_folder
 from link.tlog.raw_file import RawFile
 from link.tlog.split_file import SplitFile
@@ -127,7 +128,8 @@ class LogFolder:
             if sum(sizes.values()) <= room:
                 break
             if not _is_locked(path):
-                path.unlink(missing_ok=True)
+                for each in (*find_parts(path), path):  # its pictures, too
+                    each.unlink(missing_ok=True)
                 del sizes[path]
 
     def _logs(self) -> Iterator[Path]:

@@ -13,9 +13,13 @@ class RecordOptions(msgspec.Struct, frozen=True):
     folder: Path
     file_size: int
     folder_size: int
+    video: bool = True
+    """Pictures of the camera, too."""
+    video_folder_size: int = 2000
 
     @property
     def arguments(self) -> list[str]:
         """Options of the station process."""
         sizes = (f"--record-file-size={self.file_size}", f"--record-folder-size={self.folder_size}")
-        return [f"--record-to={self.folder}", *sizes]
+        video = (f"--record-video-folder-size={self.video_folder_size if self.video else 0}",)
+        return [f"--record-to={self.folder}", *sizes, *video]

@@ -22,6 +22,7 @@ class StationRecording:
     """What the links bring and take goes to `log_tap`. `ids` are our system and component id."""
 
     def __init__(self, station: Station, folder: LogFolder, ids: tuple[int, int], sent: SentFrames) -> None:
+        self.folder = folder
         self._station = station
         self._session = SessionRecorder(folder)
         self.log_tap = LogTap(
@@ -35,6 +36,11 @@ class StationRecording:
             log.log(logging.WARNING if news.severity <= Severity.WARNING else logging.INFO, news.text)
             self._station.log.add(now, "station", news.text, news.severity)
         self._station.station_info.recording = self._session.view(now)
+
+    @property
+    def offset(self) -> int:
+        """The us to add to the monotonic clock for the times in the log."""
+        return self._session.recorder.since
 
     def close(self) -> None:
         """Write the rest; a log without this note was ended by a kill."""

@@ -25,6 +25,7 @@ from groundstation.replay.time_text import TimeError, parse_time
 from groundstation.snapshot import ReplayStatus, Snapshot
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.views.base import View, ViewRequest
+from groundstation.views.camera import CameraRequest, CameraView
 from groundstation.views.replay import ReplayRequest, ReplayView
 
 VIEW_PERIOD = 0.1
@@ -50,7 +51,12 @@ class LogReplay:
         """A time to go to once the index has it."""
         self._shown = False
         self._time: float | None = None
-        self._feed = ViewFeed({ReplayRequest: ViewSource(self._build_view, VIEW_PERIOD)})
+        self._feed = ViewFeed(
+            {
+                ReplayRequest: ViewSource(self._build_view, VIEW_PERIOD),
+                CameraRequest: ViewSource(self._build_camera, VIEW_PERIOD),
+            }
+        )
         self._snapshots = self._refused = 0
 
     # ---- work ----
@@ -161,9 +167,13 @@ class LogReplay:
     def _build_view(self, request: ReplayRequest, now: float, wall: float) -> ReplayView:
         return build_view(self, request)
 
+    def _build_camera(self, request: CameraRequest, now: float, wall: float) -> CameraView | None:
+        selected = self.player.station.fleet.selected
+        return None if selected is None else CameraView(selected.state.system, log=self.path, at=wall)
+
     def _watch(self, requests: tuple[ViewRequest, ...]) -> None:
         self._feed.watch(requests)
-        self.player.watch(requests)
+        self.player.watch(tuple(each for each in requests if not isinstance(each, CameraRequest)))
 
     # ---- moving ----
 

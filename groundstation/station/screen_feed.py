@@ -34,11 +34,11 @@ class ScreenFeed(DoctorFeed):
         self._traffic = MessageTraffic(*parts.ids)
         self._detail = MessageInspector(self._traffic)
         self._charts = ChartRecorder(fleet, self._traffic, links)
-        self._camera = CameraWatch(fleet, parts.commander, links.timesync)
+        self.camera = CameraWatch(fleet, parts.commander, links.timesync)
         self.notes = StationNotes(parts.operator, fleet)
         parts.log.listener = self.notes.add_line
         parts.proposals.take_note = lambda now, text: self.notes.add(now, Kind.REQUEST, text)
-        shown = (self._charts, self._detail, self.doctor, self._display, self._camera)
+        shown = (self._charts, self._detail, self.doctor, self._display, self.camera)
         self.views = build_view_feed(parts, texts.files, *(each.sources for each in shown))
 
     @property
@@ -70,14 +70,14 @@ class ScreenFeed(DoctorFeed):
     def receive(self, contact: Contact, received: Received, now: float) -> None:
         """Handle a message of a vehicle for its display and its camera."""
         super().receive(contact, received, now)
-        self._camera.receive(contact, received)
+        self.camera.receive(contact, received)
 
     def end_tick(self, now: float) -> None:
         """Count and record what is shown, and examine the chain."""
         self._traffic.tick(now)
         self._charts.tick(now)
         self._detail.tick(now)
-        self._camera.tick(now)
+        self.camera.tick(now)
         super().end_tick(now)
 
     def begin_intent(self, intent: AnyIntent, permission: Permission, now: float) -> None:

@@ -30,6 +30,8 @@ MAX_ERRORS = 4096
 MAX_LINE = 200
 """Characters of it that are shown."""
 READ = 1 << 16
+WRITE_AGAIN = 0.005
+"""s before a pipe that is full is written to again."""
 END_WITHIN, END_LOOKS = 1.0, 100
 """s for a killed process to end, and how often it is looked at in that time."""
 VERSION_WITHIN = 5.0
@@ -47,6 +49,8 @@ class DecoderProgram(msgspec.Struct, frozen=True):
 
     path: str
     build: Callable[[str, VideoSource, Shape], list[str]]
+    reads_stamps: bool = True
+    """It obeys Shape.stamped."""
 
 
 @cache
@@ -55,7 +59,7 @@ def find_program() -> DecoderProgram:
     if path := shutil.which("ffmpeg"):
         return DecoderProgram(path, _build_old if _is_old(path) else build_ffmpeg_command)
     if path := shutil.which("gst-launch-1.0"):
-        return DecoderProgram(path, build_gst_command)
+        return DecoderProgram(path, build_gst_command, reads_stamps=False)
     raise SourceError(NOTHING_INSTALLED)
 
 
@@ -107,13 +111,26 @@ class Decoder:
         said = self._words.last_line()
         raise DecoderEndedError("" if not code and not said else said or f"the decoder has ended ({code})")
 
+    async def write(self, data: bytes) -> None:
+        """Give the program data, as fast as it reads them. Raises DecoderEndedError."""
+        assert self._process.stdin is not None
+        descriptor, rest = self._process.stdin.fileno(), memoryview(data)
+        os.set_blocking(descriptor, False)
+        while rest:
+            try:
+                rest = rest[os.write(descriptor, rest) :]
+            except BlockingIOError:
+                await asyncio.sleep(WRITE_AGAIN)
+            except OSError as error:
+                raise DecoderEndedError(f"the decoder has ended: {error.strerror}") from error
+
     async def close(self) -> None:
         """Kill the process, also one that stands still, and close its pipes."""
         self._process.kill()
         await self._end()
         for reader in self._pipes:
             reader.close()
-        for pipe in (self._process.stdout, self._process.stderr):
+        for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             if pipe is not None:
                 pipe.close()
 
@@ -197,19 +214,22 @@ class _Words:
 
 
 @asynccontextmanager
-async def running_decoder(words: Sequence[str], shape: Shape) -> AsyncIterator[Decoder]:
-    """Start a program that writes pictures of this shape; it ends with the block. Raises OSError."""
-    decoder = Decoder(_start(words), shape)
+async def running_decoder(words: Sequence[str], shape: Shape, *, fed: bool = False) -> AsyncIterator[Decoder]:
+    """Start a program that writes pictures of this shape; it ends with the block. Raises OSError.
+
+    `fed`: it reads what Decoder.write gets.
+    """
+    decoder = Decoder(_start(words, fed=fed), shape)
     try:
         yield decoder
     finally:
         await asyncio.shield(decoder.close())
 
 
-def _start(words: Sequence[str]) -> subprocess.Popen[bytes]:
+def _start(words: Sequence[str], *, fed: bool) -> subprocess.Popen[bytes]:
     pipe = subprocess.PIPE
     process = subprocess.Popen(
-        words, stdin=subprocess.DEVNULL, stdout=pipe, stderr=pipe, env=_environment(),
+        words, stdin=pipe if fed else subprocess.DEVNULL, stdout=pipe, stderr=pipe, env=_environment(),
         preexec_fn=end_with_us(signal.SIGKILL), start_new_session=True,
     )  # fmt: skip
     _limit(process.pid)

@@ -40,6 +40,10 @@ class Shape(msgspec.Struct, frozen=True):
     stamped: bool = False
     """The top rows of the source are a time (link/services/video_stamp.py): STAMP_ROWS below the picture have it."""
 
+    def with_stamp(self) -> Shape:
+        """Return the shape of pictures with a stamp, as wide at least as that needs."""
+        return Shape(max(self.width, MIN_STAMPED_WIDTH), self.height, self.rate, stamped=True)
+
     @property
     def size(self) -> int:
         """Return the bytes of a picture."""
@@ -136,6 +140,13 @@ def _file(source: VideoSource) -> list[str]:
     return [*allowed, "-re", "-i", f"file:{source.where}"]
 
 
+def _recorded(source: VideoSource) -> list[str]:
+    """Each unit gives its picture at once: nothing is probed, and no thread waits for the next one."""
+    allowed = ["-protocol_whitelist", "pipe", "-format_whitelist", "h264"]
+    at_once = ["-flags", "low_delay", "-probesize", "32", "-fpsprobesize", "0", "-threads", "1"]
+    return [*allowed, *at_once, "-f", "h264", "-i", source.where]
+
+
 _INPUTS = {
     SourceKind.RTP: _rtp,
     SourceKind.UDP: _udp,
@@ -143,5 +154,6 @@ _INPUTS = {
     SourceKind.HTTP: _http,
     SourceKind.V4L2: _v4l2,
     SourceKind.FILE: _file,
+    SourceKind.RECORDED: _recorded,
 }
 """Kind -> what returns the options of the input."""

@@ -72,5 +72,6 @@ _INPUTS: dict[SourceKind, Callable[[VideoSource], list[str]]] = {
     SourceKind.HTTP: _http,
     SourceKind.V4L2: _v4l2,
     SourceKind.FILE: _file,
+    SourceKind.RECORDED: lambda source: ["fdsrc", "fd=0", "!", "h264parse", *_DECODE],
 }
 """Kind -> what returns the elements of the input."""

@@ -29,6 +29,8 @@ class SourceKind(StrEnum):
     HTTP = "http"
     V4L2 = "v4l2"
     FILE = "file"
+    RECORDED = "recorded"
+    """H.264 that we write to the decoder's standard input; nobody can name it."""
 
 
 class VideoSource(msgspec.Struct, frozen=True):
@@ -48,6 +50,7 @@ class VideoSource(msgspec.Struct, frozen=True):
         return self.kind is SourceKind.FILE
 
 
+RECORDED = VideoSource(SourceKind.RECORDED, "pipe:0", name="recorded pictures")
 MAX_LENGTH = 2000
 """Characters of a source."""
 SHAPES = "rtp:PORT, udp:PORT, rtsp://HOST/PATH, http://HOST/PATH, v4l2:/dev/videoN or a file"

@@ -8,6 +8,9 @@ from groundstation.views.base import View, ViewRequest
 class CameraRequest(ViewRequest, frozen=True):
     """The stream of the selected vehicle's camera, which runs as long as this is requested."""
 
+    port: int = 0
+    """UDP port of loopback at which a decoder of the screen listens; 0: none does."""
+
 
 class CameraView(View, frozen=True):
     """What the vehicle has announced."""
@@ -23,3 +26,7 @@ class CameraView(View, frozen=True):
     """s by which the clock of the vehicle is ahead of ours; None: not known."""
     offset_error: float = 0.0
     """s by which that may be wrong."""
+    log: str = ""
+    """In a replay: path of the telemetry log, beside which pictures may be recorded; no stream comes then."""
+    at: float = 0.0
+    """In a replay: the moment that is shown, by the recorded clock, s since 1970."""

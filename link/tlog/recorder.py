@@ -68,6 +68,11 @@ class Recorder:
         self._file: TlogFile | None = None
 
     @property
+    def since(self) -> int:
+        """The us to add to the monotonic clock for the times in the file."""
+        return self._since
+
+    @property
     def failure(self) -> str | None:
         """Why nothing is recorded, in one line."""
         return self._failure

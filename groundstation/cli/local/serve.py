@@ -137,6 +137,7 @@ def _station_options(settings: Settings, endpoints: Sequence[str], *, sitl: bool
         record_to=record.folder if record else None,
         record_file_size=settings.record_file_size,
         record_folder_size=settings.record_folder_size,
+        record_video_folder_size=settings.record_video_folder_size if settings.record_video else 0,
     )
 
 

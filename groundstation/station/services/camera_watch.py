@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import msgspec
 
@@ -40,6 +41,17 @@ class _Stream(msgspec.Struct):
     started: bool = False
 
 
+class WantedStream(NamedTuple):
+    """What is to be received."""
+
+    port: int
+    """UDP port of this machine; 0: nothing."""
+    stamped: bool
+
+
+NOTHING = WantedStream(0, stamped=False)
+
+
 class CameraWatch:
     """Asks and starts by commands that are not logged."""
 
@@ -47,6 +59,16 @@ class CameraWatch:
         self._fleet, self._commander, self._timesync = fleet, commander, timesync
         self._streams: dict[int, _Stream] = {}
         self._wanted_until = -math.inf
+        self.receiver_problem = ""
+        """Why the stream cannot be received here, in one line."""
+
+    def wanted(self, now: float) -> WantedStream:
+        """Return the stream that a screen shows."""
+        selected = self._fleet.selected
+        stream = None if selected is None else self._streams.get(selected.state.system)
+        if stream is None or now >= self._wanted_until:
+            return NOTHING
+        return WantedStream(stream.port, stream.stamped)
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -102,6 +124,6 @@ class CameraWatch:
             return None
         stream = self._streams.get(selected.state.system, _Stream())
         return CameraView(
-            selected.state.system, stream.port, stream.stamped, stream.problem,
+            selected.state.system, stream.port, stream.stamped, stream.problem or self.receiver_problem,
             self._timesync.offset if stream.stamped else None, self._timesync.offset_error,
         )  # fmt: skip

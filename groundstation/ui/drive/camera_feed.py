@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
+import socket
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -16,9 +18,10 @@ from groundstation.pictures.freshness import Freshness, PictureState
 from groundstation.pictures.picture import Picture
 from groundstation.video.decoder import find_program
 from groundstation.video.feed import Feed
-from groundstation.video.ffmpeg_command import MIN_STAMPED_WIDTH, Shape
+from groundstation.video.ffmpeg_command import Shape
+from groundstation.video.recorded_feed import RecordedFeed
 from groundstation.video.source import SourceError, parse_source
-from groundstation.views.camera import CameraView
+from groundstation.views.camera import CameraRequest, CameraView
 
 RATE = 30.0
 """Pictures a second at most that are decoded: each tells how old the picture is. Fewer are drawn."""
@@ -28,6 +31,10 @@ CELL_BYTES = 25
 """Bytes of a cell of a picture, all of whose cells have changed."""
 WRAP = 2**32 / 1000
 """s after which a stamp begins again at 0."""
+RECORDED_RATE = 1000.0
+"""Recorded pictures a second: all of them, also where many are decoded for one moment."""
+LOOPBACK = "127.0.0.1"
+PORT_TRIES = 50
 
 
 class CameraValue(msgspec.Struct, frozen=True):
@@ -39,15 +46,27 @@ class CameraValue(msgspec.Struct, frozen=True):
     ascii: bool = False
 
 
+class _Wanted(msgspec.Struct, frozen=True):
+    """What is to be decoded."""
+
+    system: int
+    log: str
+    """"": the stream that the station receives."""
+    stamped: bool
+    size: tuple[int, int]
+
+
 class CameraFeed:
-    """One stream at a time. Times are those of the monotonic clock that station and screen have in common."""
+    """One stream or recording at a time. Times are those of the monotonic clock that station and screen share."""
 
     def __init__(self, on_picture: Callable[[], None]) -> None:
         self._on_picture = on_picture
         self._view: CameraView | None = None
         self._feed: Feed | None = None
+        self._recorded: RecordedFeed | None = None
         self._task: asyncio.Task[None] | None = None
-        self._wanted: tuple[int, Shape] | None = None
+        self._wanted: _Wanted | None = None
+        self._port = 0
         self._picture: Picture | None = None
         self._problem = ""
         self._draw_at = 0.0
@@ -57,13 +76,21 @@ class CameraFeed:
         """Show the stream of a view at this size in pixels; both are even. Without a view nothing runs."""
         self._view = view
         wanted = None
-        if view is not None and view.port and min(size) >= 2:
-            wanted = view.port, Shape(*size, RATE, view.stamped and size[0] >= MIN_STAMPED_WIDTH)
+        if view is not None and (view.port or view.log) and min(size) >= 2:
+            wanted = _Wanted(view.system, view.log, view.stamped, size)
         if wanted != self._wanted:
             self.stop()
             self._wanted = wanted
             if wanted is not None:
-                self._start(*wanted)
+                self._problem = ""
+                self._task = asyncio.get_running_loop().create_task(self._run(wanted))
+        if view is not None and self._recorded is not None:
+            self._recorded.show(view.at)
+
+    @property
+    def request(self) -> CameraRequest:
+        """Return what the station is asked for."""
+        return CameraRequest(self._port)
 
     def is_draw_due(self, cells: int) -> bool:
         """Return whether a picture of so many cells may be drawn now: bytes a second to the terminal are bounded."""
@@ -75,20 +102,27 @@ class CameraFeed:
 
     def stop(self) -> None:
         """End the decoder."""
-        self._wanted = self._feed = self._picture = None
+        self._wanted = self._feed = self._recorded = self._picture = None
         if self._task is not None:
             self._task.cancel()
             self._task = None
 
-    def _start(self, port: int, shape: Shape) -> None:
-        self._problem = ""
+    async def _run(self, wanted: _Wanted) -> None:
+        """Decode until it is cancelled."""
         try:
-            source, program = parse_source(f"rtp:{port}", Path()), find_program()
+            program = await asyncio.to_thread(find_program)  # it asks ffmpeg for its version, which takes a while
         except SourceError as error:
             self._problem = str(error)
             return
-        self._feed = Feed(source, program, self._take)
-        self._task = asyncio.get_running_loop().create_task(self._feed.run(shape))
+        if wanted.log:
+            self._recorded = RecordedFeed(Path(wanted.log), program, self._take, self._on_picture)
+            self._recorded.show(self._view.at if self._view is not None else 0.0)
+            await self._recorded.run(Shape(*wanted.size, RECORDED_RATE))
+        else:
+            self._port = _free_port()
+            self._feed = Feed(parse_source(f"rtp:{LOOPBACK}:{self._port}", Path()), program, self._take)
+            shape = Shape(*wanted.size, RATE)
+            await self._feed.run(shape.with_stamp() if wanted.stamped and program.reads_stamps else shape)
 
     def _take(self, picture: Picture) -> None:
         self._picture = picture
@@ -109,6 +143,9 @@ class CameraFeed:
 
     def state(self) -> PictureState:
         """Return what the newest picture is worth."""
+        if self._recorded is not None and self._picture is not None and self._recorded.age < math.inf:
+            age = self._recorded.age
+            return PictureState(Freshness.FRESH if age <= OLDEST_PICTURE else Freshness.LATE, age)
         if self._feed is None or self._picture is None:
             return PictureState(Freshness.NONE)
         came, age = self._feed.state(), max(0.0, time.monotonic() - self.taken_at)
@@ -120,12 +157,16 @@ class CameraFeed:
         """Return what the pane shows now."""
         state = self.state()
         if state.freshness is Freshness.NONE or self._picture is None:
-            return CameraValue(None, f"NO PICTURE YET: {self._why()}", ascii=ascii)
+            word = "NO PICTURE" if self._recorded is not None else "NO PICTURE YET"
+            return CameraValue(None, f"{word}: {self._why()}", ascii=ascii)
         word = {Freshness.LATE: "OLD: ", Freshness.FROZEN: "FROZEN: "}.get(state.freshness, "")
         command = "" if command_age is None else f", command {_seconds(command_age)}"
         return CameraValue(self._picture, f"{word}picture {self._age(state.age)}{command}", not state.fresh, ascii)
 
     def _age(self, age: float) -> str:
+        if self._recorded is not None:
+            note = f"; {self._recorded.problem}" if self._recorded.problem else ""
+            return f"recorded {_seconds(age)} before this moment{note}"
         exact = self._feed is not None and self._feed.stamp is not None
         if exact and self._view is not None and self._view.offset is not None:
             return f"{_seconds(age)} ±{max(1, round(1000 * self._view.offset_error))} ms"
@@ -136,6 +177,8 @@ class CameraFeed:
             return "waiting for the station"
         if problem := self._problem or self._view.problem:
             return problem
+        if self._view.log:
+            return (self._recorded.problem if self._recorded is not None else "") or "looking for its pictures"
         if not self._view.port:
             return "asking the vehicle for its camera"
         problem = self._feed.problem if self._feed is not None else ""
@@ -144,3 +187,23 @@ class CameraFeed:
 
 def _seconds(value: float) -> str:
     return f"{min(value, 99.9):.1f} s"
+
+
+def _free_port() -> int:
+    """Return a port of loopback that is free at present, as is the one after it, which decoders open for RTCP."""
+    for _ in range(PORT_TRIES):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as first:
+            first.bind((LOOPBACK, 0))
+            port: int = first.getsockname()[1]
+            if port % 2 == 0 and _is_free(port + 1):
+                return port
+    return port
+
+
+def _is_free(port: int) -> bool:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind((LOOPBACK, port))
+        except OSError:
+            return False
+    return True

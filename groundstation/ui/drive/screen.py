@@ -17,7 +17,7 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState
-from groundstation.ui.drive.camera_feed import CameraFeed
+from groundstation.ui.drive.camera_feed import DRAW_PERIOD, CameraFeed
 from groundstation.ui.drive.instrument_table import INSTRUMENTS
 from groundstation.ui.drive.instruments.links import LinksPanel, vehicle_links
 from groundstation.ui.drive.instruments.stops import StopsPanel
@@ -37,7 +37,7 @@ from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.chart import ChartValue
 from groundstation.views.base import View, ViewRequest
-from groundstation.views.camera import CameraView
+from groundstation.views.camera import CameraRequest, CameraView
 from groundstation.views.drive import SpeedRequest, SpeedView
 
 BORDERS = 2
@@ -70,6 +70,8 @@ class DriveScreen(ConsoleScreen):
         )
         self._chart = SPEED_CHART(ChartValue(), id="speeds")
         self._views: dict[type[View], View] = {}
+        self._draws_later = False
+        """A picture waits until the terminal may have it."""
         self._reported = False
         """The station was told that the driver drives by the picture."""
         # Before the first style update, which would have to be made again.
@@ -178,15 +180,20 @@ class DriveScreen(ConsoleScreen):
         """Return the views of what is shown."""
         if self._small or self.snapshot.vehicle is None:
             return ()
-        wanted = [request for pane in self._shown_panes for request in pane.requests]
+        wanted = [self._with_port(request) for pane in self._shown_panes for request in pane.requests]
         chart = [SpeedRequest()] if self.has_class("-chart") else []
         return tuple(dict.fromkeys([*wanted, *chart]))
+
+    def _with_port(self, request: ViewRequest) -> ViewRequest:
+        return self._camera.request if isinstance(request, CameraRequest) else request
 
     def show_view(self, view: View) -> None:
         """Show what the station sent for a pane or the chart."""
         self._plans.show_view(view)
         first = type(view) not in self._views
         self._views[type(view)] = view
+        if isinstance(view, CameraView):
+            self._follow_camera()  # in a replay that stands still no other state comes
         if isinstance(view, SpeedView):
             self._chart.show(speed_samples(PaneInput(self._state, self._views)))
         if first:  # else it waits for the next update of the pane
@@ -223,9 +230,18 @@ class DriveScreen(ConsoleScreen):
         if self._pane_before is not None:
             self._report_picture()
         shown = [(pane, size) for pane in self._shown_panes if (size := pane.camera_pixels) is not None]
-        if shown and self._camera.is_draw_due(sum(width * height // 2 for _, (width, height) in shown)):
+        if not shown or self._draws_later:
+            return
+        if self._camera.is_draw_due(sum(width * height // 2 for _, (width, height) in shown)):
             for pane, _ in shown:
                 pane.redraw()
+        else:  # the last one before the stream stands still is drawn, too
+            self._draws_later = True
+            self.set_timer(DRAW_PERIOD, self._draw_late)
+
+    def _draw_late(self) -> None:
+        self._draws_later = False
+        self._show_picture()
 
     def _follow_camera(self) -> None:
         """Let the decoder run while a pane shows the camera."""

@@ -17,6 +17,8 @@ from groundstation.ui.base.local_files import LocalFile, short_path
 from groundstation.ui.base.screen import LIST_ARROWS, ConsoleScreen, ScreenContext
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.display.wrap import plain
+from groundstation.ui.drive.camera_feed import CameraFeed, CameraValue
+from groundstation.ui.drive.instruments.camera import CameraPicture
 from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
@@ -32,6 +34,7 @@ from groundstation.ui.widgets.chart import ChartValue
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.ui.widgets.row_table import RowTable
 from groundstation.views.base import View, ViewRequest
+from groundstation.views.camera import CameraView
 from groundstation.views.drive import SpeedRequest, SpeedView, TrackRequest, TrackView
 from groundstation.views.replay import ReplayView
 
@@ -60,6 +63,7 @@ class ReplayScreen(ConsoleScreen):
         ScreenKey("r", "Backwards", "Play in the other direction"),
         ScreenKey("m", "Mark", "Mark A, then B"),
         ScreenKey("l", "Loop", "Play from A to B again and again"),
+        ScreenKey("v", "View", "The recorded picture of the camera in place of the track, and back"),
         ScreenKey("E", "Export", "Write this log, or its part from A to B, for other programs; x stops it"),
     )
 
@@ -69,6 +73,8 @@ class ReplayScreen(ConsoleScreen):
         exports = context.keep(Exports, context.dialect)
         self._export = FileExport(self, self._chosen_log, context.folder, exports, context.numbers.take)
         self._track = TrackMap(TrackValue(), id="track")
+        self._picture = CameraPicture(CameraValue(), id="picture")
+        self._camera = CameraFeed(self._show_picture)
         self._bars = StickBars((), id="bars")
         self._caps = Keycaps(KeycapsValue(context.keymap), id="caps")
         self._chart = SPEED_CHART(ChartValue(), id="chart")
@@ -89,7 +95,8 @@ class ReplayScreen(ConsoleScreen):
         middle = Vertical(
             self.build_panel(drive, "drive then"), self.build_panel(self._chart, "speed then"), id="middle"
         )
-        yield Horizontal(track, middle, self.build_panel(self._events, "events"), id="then")
+        picture = self.build_panel(self._picture, "camera then")
+        yield Horizontal(track, picture, middle, self.build_panel(self._events, "events"), id="then")
         yield self.build_panel(self._timeline, "timeline")
         yield self.build_panel(self._logs, "logs here")
 
@@ -110,7 +117,8 @@ class ReplayScreen(ConsoleScreen):
         if not self._open:
             return ()
         request = self._model.request(self._timeline.size.width - AXIS, self._events.size.height)
-        return request, TrackRequest(), SpeedRequest()
+        shown = self._camera.request if self._shows_picture else TrackRequest()
+        return request, shown, SpeedRequest()
 
     def show_view(self, view: View) -> None:
         """Show a view."""
@@ -119,6 +127,22 @@ class ReplayScreen(ConsoleScreen):
             self.say(self._model.show_view(view))
         self.show_body(self._state)
 
+    @property
+    def _shows_picture(self) -> bool:
+        return self.has_class("-picture")
+
+    def _switch_picture(self) -> None:
+        self.set_class(not self._shows_picture, "-picture")
+        self.show_body(self._state)
+
+    def _show_picture(self) -> None:
+        if self._shows_picture:
+            self._picture.show(self._camera.value(ascii=self._state.ascii, command_age=None))
+
+    def leave(self) -> None:
+        """End the decoder: another screen is on top."""
+        self._camera.stop()
+
     def show_body(self, now: DisplayState) -> None:
         """Show the log and its moment, or the logs that are here."""
         self.set_class(not self._open, "-empty")
@@ -126,6 +150,8 @@ class ReplayScreen(ConsoleScreen):
         track = given.view(TrackView)
         points = track.points if track is not None else ()
         self._track.show(TrackValue.from_vehicle(now.snapshot.vehicle, points, ascii=now.ascii))
+        self._camera.update(given.view(CameraView) if self._shows_picture else None, self._picture.pixels)
+        self._show_picture()
         self._bars.show(build_bars(now.snapshot))
         self._caps.show(KeycapsValue.from_state(now))
         if given.view(SpeedView) is not None:
@@ -279,6 +305,7 @@ _ACTIONS: dict[str, Callable[[ReplayScreen], object]] = {
     "enter": ReplayScreen._show_event,
     "slash": ReplayScreen._ask_search,
     "colon": ReplayScreen._ask_time,
+    "v": ReplayScreen._switch_picture,
     "E": lambda screen: screen._export.ask(),
     "x": lambda screen: screen._export.cancel(),
 }

@@ -102,6 +102,8 @@ def _report(result: ExportResult, output: Output) -> int:
         output.note(f"{each.count} {FORMATS[each.format].counts} in {each.path}")
     for empty in result.empty:
         output.error(f"{empty.path} is not written: no {FORMATS[empty.format].counts} for it")
+    if result.pictures:
+        output.note(f"{result.pictures} of them are pictures of the camera")
     _print_losses(result, output)
     output.result(
         result.whole,
@@ -109,6 +111,8 @@ def _report(result: ExportResult, output: Output) -> int:
         files=[{"format": each.format, "file": each.path, "count": each.count} for each in result.written],
         damaged_parts=result.damaged_parts,
         damaged_bytes=result.damaged_bytes,
+        pictures=result.pictures,
+        damaged_picture_bytes=result.damaged_pictures,
         damage=[{"offset": each.offset, "size": each.size, "seconds": each.after / 1e6} for each in result.damage],
         unknown={str(number): count for number, count in sorted(result.unknown.items())},
     )
@@ -121,6 +125,8 @@ def _print_losses(result: ExportResult, output: Output) -> None:
         parts = "1 damaged part" if result.damaged_parts == 1 else f"{result.damaged_parts} damaged parts"
         place = f"{describe_offset(first.after)} from the start, at byte {first.offset}"
         output.error(f"{parts} of the log, {result.damaged_bytes} bytes, left out; the first {place}")
+    if result.damaged_pictures:
+        output.error(f"{result.damaged_pictures} bytes of the recorded pictures are no whole picture, and left out")
     if result.unknown:
         count = sum(result.unknown.values())
         what = f"{count} messages of unknown ids left out ({_ids(sorted(result.unknown))})"

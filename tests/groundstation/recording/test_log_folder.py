@@ -145,3 +145,12 @@ def test_a_folder_that_is_a_file_is_an_error_of_the_log(tmp_path: Path) -> None:
     (tmp_path / "logs").write_text("")
     with pytest.raises(OSError, match="exists"):
         folder(tmp_path / "logs").open()
+
+
+def test_pictures_go_with_their_log(tmp_path: Path) -> None:
+    for number, name in enumerate(("2026-11-21_12-00-00", "2026-11-21_12-00-00-2")):
+        for suffix in (".tlog", ".h264", ".2.h264"):
+            (tmp_path / f"{name}{suffix}").write_bytes(b"x" * (100 + number))
+    folder(tmp_path, file=100, limit=250).open()
+    left = sorted(each.name for each in tmp_path.iterdir())[:3]
+    assert left == [f"2026-11-21_12-00-00-2{suffix}" for suffix in (".2.h264", ".h264", ".tlog")]

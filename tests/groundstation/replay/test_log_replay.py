@@ -18,6 +18,7 @@ from groundstation.replay.log_replay import LogReplay
 from groundstation.snapshot import VehicleView
 from groundstation.station.station import Station
 from groundstation.views.base import View
+from groundstation.views.camera import CameraRequest, CameraView
 from groundstation.views.charts import FieldId, SeriesPage, SeriesRequest
 from groundstation.views.log import LogPage, LogRequest
 from groundstation.views.replay import ReplayRequest, ReplayView
@@ -300,3 +301,20 @@ def test_cut_and_flipped_bytes_never_raise_and_losses_are_named() -> None:
             frame.message_id not in codec.CRC_EXTRA for frame in flipped.index.read_interval(0).frames
         )
         assert in_stamp or named or strange, at
+
+
+def test_the_camera_gets_the_log_and_its_moment(desk: LogReplay) -> None:
+    views: list[View] = []
+
+    def take(view: View) -> bool:
+        views.append(view)
+        return True
+
+    press(desk, r.ReplayGoTo("35"), Watch((CameraRequest(5600),)))
+    desk.send_views(take, 1.0)
+    press(desk, r.ReplayMove(2.5))
+    desk.send_views(take, 2.0)
+    found = [each for each in views if isinstance(each, CameraView)]
+    assert [each.log for each in found] == [desk.path] * 2
+    assert [each.at for each in found] == pytest.approx([NOON + 35, NOON + 37.5], abs=0.2)
+    assert [each.port for each in found] == [0, 0], "no stream is asked for"

@@ -68,7 +68,7 @@ def test_show_says_where_each_value_is_from(home: Path, capsys: pytest.CaptureFi
     assert ["style", "--style", "latch"] in rows
     assert ["system", "default", "255"] in rows
     assert rows[0][:2] + rows[0][2].split() == ["open", "command", "line", '["field"]']
-    assert len(rows) == 28
+    assert len(rows) == 30
 
 
 def test_show_names_what_is_no_endpoint(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,6 +14,8 @@ from msgspec.structs import replace
 from groundstation.intents.driving import OLDEST_PICTURE, DriveByPicture
 from groundstation.pictures.freshness import Freshness
 from groundstation.station.driving.picture_lock import PictureLock
+from groundstation.stream.orders import StreamOrders
+from groundstation.stream.receiver_link import ReceiverLink
 from groundstation.ui.drive.camera_feed import CameraFeed
 from groundstation.views.camera import CameraView
 from link.core import Peer
@@ -37,6 +39,7 @@ class Drive:
     def __init__(self) -> None:
         self.camera = Camera(replace(SIMULATED_CAMERA, port=free_port()))
         self.link = CameraLink(self.camera)
+        self.receiver = ReceiverLink(100)
         self.feed = CameraFeed(self._report)
         self.lock = PictureLock()
         self.view = CameraView(1, self.camera.settings.port, stamped=True, offset=0.0, offset_error=0.001)
@@ -49,6 +52,8 @@ class Drive:
         self.camera.hear(WATCHER, now)
         self.link.update(now)
         self.feed.update(self.view, (80, 44))
+        screens = (self.feed.request.port,) if self.feed.request.port else ()
+        self.receiver.update(StreamOrders(self.view.port, screens, stamped=True), now)
 
     def drives(self) -> bool:
         self._live()
@@ -61,6 +66,11 @@ class Drive:
     def encoder(self) -> int:
         [found] = programs_of(self.link.pid)
         return found
+
+    @property
+    def receiving(self) -> int:
+        assert self.receiver.pid is not None
+        return self.receiver.pid
 
     @property
     def decoder(self) -> int:
@@ -99,7 +109,8 @@ def test_what_stops_the_pictures_locks_the_keys() -> None:
             await stand_still(drive, drive.link.pid)
             await stand_still(drive, drive.encoder)
             await stand_still(drive, drive.decoder)
-            for name in ("encoder", "decoder"):
+            await stand_still(drive, drive.receiving)
+            for name in ("encoder", "decoder", "receiving"):
                 os.kill(getattr(drive, name), signal.SIGKILL)
                 await until(drive.locked)
                 await lasts(drive)
@@ -110,6 +121,7 @@ def test_what_stops_the_pictures_locks_the_keys() -> None:
             decoding = drive.feed._task
             drive.feed.stop()
             drive.link.close()
+            drive.receiver.close()
             if decoding is not None:
                 await asyncio.gather(decoding, return_exceptions=True)
 
