@@ -16,6 +16,8 @@ WATCHERS_MAX = 4
 """Stations that get pictures: each costs the bit rate."""
 SILENCE = 5.0
 """s without a HEARTBEAT after which a station is gone: it sends one a second."""
+NEWS_MAX = 3
+"""Texts that wait until a ground station is there; older ones are dropped."""
 REPORT_SILENCE = 3.0
 """s without a report after which the process does not run."""
 
@@ -41,6 +43,7 @@ class Camera:
         self.settings = settings
         self.report = CameraReport()
         self._reported_at = 0.0
+        self._news: list[str] = []
         self._watchers: dict[Peer, tuple[str, float]] = {}
         """Station -> its address, and when it was heard last."""
 
@@ -70,7 +73,18 @@ class Camera:
 
     def note_report(self, report: CameraReport, now: float) -> None:
         """Store what the process says."""
+        if report.problem and report.problem != self.report.problem:
+            self.tell(f"Camera: {report.problem}")
         self.report, self._reported_at = report, now
+
+    def tell(self, text: str) -> None:
+        """Have the ground stations told."""
+        self._news = [*self._news, text][-NEWS_MAX:]
+
+    def pop_news(self) -> list[str]:
+        """Return what the ground stations are to be told, once."""
+        news, self._news = self._news, []
+        return news
 
     def runs(self, now: float) -> bool:
         """Return whether pictures are being sent."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.enums import Command, Result
+from dialects.enums import Command, Result, Severity
 from link.core import Outgoing, Received
 from link.services.command.request import CommandRequest, value_or_default
 from link.services.command.server import CommandReply
@@ -56,9 +56,16 @@ class CameraCommands:
         )  # fmt: skip
 
     def observe(self, received: Received, now: float) -> None:
-        """Note who is there."""
+        """Note who is there, and tell what is wrong with the camera."""
         if self._camera is not None and isinstance(received.message, m.Heartbeat):
             self._camera.hear(received.peer, now)
+            for text in self._camera.pop_news():
+                self._texts.send_event(Severity.WARNING, text, now)
+
+    def note_request(self, message_id: int, request: CommandRequest, now: float) -> None:
+        """Send pictures to who asks for the stream: QGroundControl asks, and starts no stream but a second one."""
+        if self._camera is not None and message_id == m.VideoStreamInformation.id and request.introduced:
+            self._camera.start(request.peer, now)
 
     def message_builders(self) -> dict[int, Builder]:
         """Return builders of what REQUEST_MESSAGE may ask for, by message id."""
@@ -97,6 +104,7 @@ class CameraCommands:
             camera = self._find(request)
             if not isinstance(camera, Camera):
                 return camera
+            self.note_request(message.id, request, now)
             found = self.message_builders()[message.id](self._build_view(now))
             return CommandReply(Result.ACCEPTED, (Outgoing(found, request.peer),))
 

@@ -67,7 +67,7 @@ class Dispatcher:
         self._files = FileServices(context, self.logbook, self._mission.folder())
         self.camera = CameraCommands(context, reporting)
         builders = {**self._files.message_builders(), **self.camera.message_builders()}
-        requests = MessageRequestHandler(reporting, builders)
+        requests = MessageRequestHandler(reporting, builders, self.camera.note_request)
         storage = PreflightStorage(context, self._params, self._mission)
 
         self.commands: CommandTable = (

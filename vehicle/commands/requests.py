@@ -33,8 +33,14 @@ MessageBuilders = Mapping[int, Callable[[TelemetryView], m.Message]]
 class MessageRequestHandler:
     """Answers requests for messages and rates."""
 
-    def __init__(self, reporting: Reporting, builders: MessageBuilders) -> None:
-        """`builders` build the messages that are not a stream, by message id."""
+    def __init__(
+        self,
+        reporting: Reporting,
+        builders: MessageBuilders,
+        note: Callable[[int, CommandRequest, float], None] = lambda message_id, request, now: None,
+    ) -> None:
+        """`builders` build the messages that are not a stream, by message id. `note` is told what was requested."""
+        self._note = note
         self._telemetry = reporting.telemetry
         self._build_view = reporting.build_view
         self._links = reporting.links
@@ -67,6 +73,7 @@ class MessageRequestHandler:
             return _reply(request, self._links.build_status(request.peer.link))
         if number not in self._builders:
             return Result.UNSUPPORTED
+        self._note(number, request, now)
         return _reply(request, self._builders[number](self._build_view(now)))
 
     def _available_modes(self, request: CommandRequest, now: float) -> CommandResult:

@@ -84,6 +84,7 @@ class CameraWatch:
         port = int(message.uri) if message.uri.isascii() and message.uri.isdigit() else 0
         if message.type == RTP_UDP and 0 < port < 65536:
             stream.port, stream.stamped, stream.problem = port, message.name == STAMPED, ""
+            stream.started = True  # who has asked our vehicle gets pictures already
         else:
             stream.problem = "its stream is of a kind that is not shown here: `mavhelm video` with its URL"
 

@@ -94,6 +94,10 @@ def test_pictures_come_while_somebody_watches_whatever_is_killed() -> None:
             await until(own.has_stopped)
             own.camera.start(WATCHER, time.monotonic() + own.ahead)
             await until(lambda: own.is_seen() and programs_of(own.link.pid))
+            killed = own.link.pid
+            os.kill(killed, signal.SIGKILL)
+            await until(lambda: own.is_seen() and own.link.pid != killed and bool(programs_of(own.link.pid)))
+            assert own.camera.pop_news()[-1] == "Camera process ended (-9), restart in 1 s"
             (encoder,) = programs_of(own.link.pid)
         finally:
             own.link.close()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from dialects import messages as m
 from dialects.enums import Command, Result
 from link.core import Peer
@@ -84,3 +86,22 @@ def test_only_links_with_an_ip_address_lead_to_a_picture() -> None:
     assert find_host(Peer(0, "udpout:10.0.0.2:14550")) == "10.0.0.2"
     assert find_host(Peer(0, ("::1", 14550, 0, 0))) == "::1"
     assert find_host(Peer(0, "serial:/dev/ttyUSB0:57600")) is find_host(Peer(0, "gcs 255")) is find_host(Peer(0, 3))
+
+
+def test_who_asks_for_the_stream_gets_it_and_faults_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Filming()
+    bench.meet(OTHER)
+    started: list[Peer] = []
+    monkeypatch.setattr(bench.camera, "start", lambda peer, now: started.append(peer))
+    for command, parameter in ((Command.REQUEST_MESSAGE, m.VideoStreamInformation.id), (OLD[1][0], 1)):
+        assert bench.command(command, parameter, system=OTHER) is Result.ACCEPTED
+    assert bench.command(Command.REQUEST_MESSAGE, m.CameraInformation.id, system=OTHER) is Result.ACCEPTED
+    assert len(started) == 2
+    bench.camera.note_report(CameraReport(problem="rpicam-vid is not installed"), bench.now)
+    bench.camera.note_report(CameraReport(problem="rpicam-vid is not installed"), bench.now)
+    bench.meet(OTHER)
+    bench.meet(OTHER)
+    bench.heartbeat(OTHER)
+    bench.wait(2.0)
+    texts = [each for each in bench.texts if each.startswith("Camera")]
+    assert texts == ["Camera: rpicam-vid is not installed"]
