@@ -43,11 +43,11 @@ class CameraCommands:
 
     def commands(self) -> CommandTable:
         """Return the rows of the commands handled here."""
-        connected, introduced, watch = Access.CONNECTED, Access.INTRODUCED, SigningRole.WATCH
+        connected, watch = Access.CONNECTED, SigningRole.WATCH  # a screen that only watches sends no HEARTBEAT
         return (
-            CommandSpec(Command.VIDEO_START_STREAMING, self._start, introduced,
-                        "1: stream, 0 all; sends pictures to the address of the sender while it is heard", role=watch),
-            CommandSpec(Command.VIDEO_STOP_STREAMING, self._stop, introduced, "1: stream, 0 all", role=watch),
+            CommandSpec(Command.VIDEO_START_STREAMING, self._start, connected,
+                        "1: stream, 0 all; sent for 5 s and while its HEARTBEAT comes", role=watch),
+            CommandSpec(Command.VIDEO_STOP_STREAMING, self._stop, connected, "1: stream, 0 all", role=watch),
             CommandSpec(Command.REQUEST_CAMERA_INFORMATION, self._legacy(m.CameraInformation), connected, "1: 1"),
             CommandSpec(Command.REQUEST_VIDEO_STREAM_INFORMATION, self._legacy(m.VideoStreamInformation), connected,
                         "1: stream, 0 all"),
@@ -64,7 +64,7 @@ class CameraCommands:
 
     def note_request(self, message_id: int, request: CommandRequest, now: float) -> None:
         """Send pictures to who asks for the stream: QGroundControl asks, and starts no stream but a second one."""
-        if self._camera is not None and message_id == m.VideoStreamInformation.id and request.introduced:
+        if self._camera is not None and message_id == m.VideoStreamInformation.id:
             self._camera.start(request.peer, now)
 
     def message_builders(self) -> dict[int, Builder]:
