@@ -5,6 +5,9 @@ Each test first sees the wheels turn. The age of a demand is the true one: both 
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+from typing import Any
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,7 +17,10 @@ from dialects.enums import Command
 from dialects.modes import Mode
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, SetMode
+from link.core import Core, Outgoing, Received
+from link.protocol.signing_guard import SigningGuard
 from tests.fakes.rover import FakeArduPilot
+from tests.link.signing.signed import DRIVER, SIGNED_ONLY, keep
 from tests.links_world import LinksDrive, Path
 from vehicle.safety.states import SafetyState
 
@@ -177,3 +183,79 @@ def test_demands_of_a_foreign_vehicle_change_links_neutral_first(first: int) -> 
     drive.held = "i"
     drive.run(1.0)
     assert {(1 - first, True)} == set(axes_by_link(drive, drive.now - 0.5))
+
+
+# ---- somebody who has the vehicle's id ----
+
+
+class Thief:
+    """A core in place of the vehicle that hears link 1 in its stead: it answers all commands, and carries out none."""
+
+    def __init__(self, vehicle: Core) -> None:
+        self._vehicle = vehicle
+        self._answers: list[Outgoing] = []
+        self.stole: list[int] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._vehicle, name)
+
+    def receive(self, received: Received, now: float) -> None:
+        message = received.message
+        if received.peer.link == 0:
+            self._vehicle.receive(received, now)
+        elif isinstance(message, m.CommandLong | m.CommandInt):
+            self.stole.append(message.command)
+            self._answers.append(Outgoing(m.CommandAck(message.command, 0), received.peer))
+        elif isinstance(message, m.Timesync) and not message.tc1:
+            self._answers.append(Outgoing(m.Timesync(int(now * 1e9), message.ts1, 255, 190), received.peer))
+
+    def messages_to_send(self) -> list[Outgoing]:
+        answers, self._answers = self._answers, []
+        return [*answers, *self._vehicle.messages_to_send()]
+
+
+def robbed(*, signs: bool) -> tuple[LinksDrive, Thief]:
+    """Return a driven rover on a slow link, and a thief on a fast one who copies each frame of the rover at once."""
+    drive = LinksDrive(Path(0.1), Path(0.001))
+    drive.paths[1].cut = True
+    thief = Thief(drive.far.core)
+    drive.far.core = thief
+    if signs:
+        now = drive.now
+        drive.far.channels[0].guard = SigningGuard(keep(DRIVER, now=now), SIGNED_ONLY, 0)
+        ours = keep(DRIVER, now=now)
+        for index, channel in enumerate(drive.near.channels):
+            channel.guard = SigningGuard(ours, SIGNED_ONLY, index)
+    drive.get_going()
+    drive.paths[1].cut = False
+    hear = drive.near.receive
+
+    def copy(link: int, data: bytes, address: Hashable, now: float) -> None:
+        hear(link, data, address, now)
+        if link == 0:
+            hear(1, data, address, now)
+
+    drive.near.receive = copy  # type: ignore[method-assign]
+    drive.run(6.0)
+    return drive, thief
+
+
+def test_a_copied_id_swallows_a_command_but_neither_demands_nor_stops() -> None:
+    drive, thief = robbed(signs=False)
+    assert drive.power > 0.5
+    drive.tell(SetMode(Mode.GUIDED.name))
+    drive.run(2.0)
+    assert Command.DO_SET_MODE in thief.stole
+    assert drive.rover._safety.mode is Mode.MANUAL
+    assert drive.power > 0.5
+    drive.held = None
+    drive.tell(EmergencyStop())
+    drive.until(lambda: drive.power == 0.0, 0.6)
+    drive.until(lambda: drive.rover.state is not SafetyState.ARMED, 0.3)
+
+
+def test_signing_ends_what_a_copied_id_can_do() -> None:
+    drive, _ = robbed(signs=True)
+    assert drive.power > 0.5
+    drive.tell(SetMode(Mode.GUIDED.name))
+    drive.until(lambda: drive.rover._safety.mode is Mode.GUIDED, 1.5)
