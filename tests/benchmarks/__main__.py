@@ -44,6 +44,7 @@ with needing("test"):
         stations,
         strangers,
         tenth_core,
+        two_links,
         verb,
         video_frames,
     )
@@ -63,6 +64,7 @@ BENCHMARKS: dict[str, tuple[Benchmark, str]] = {
     "hops": (hops.run, "where the time of a key goes, with each pane of Drive, beside a bare pair"),
     "screens": (screens.run, "how long a screen takes to open, and key to motor with each pane of Drive"),
     "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),
+    "two_links": (two_links.run, "driving over two links while one is cut, late, lossy, reordered or frozen; root"),
     "serial_key": (serial_key.run, "key to motor over a serial cable at 57600 and 921600 baud, also with noise"),
     "tenth_core": (tenth_core.run, "the vehicle with a tenth of a core: control cycles, keys, failsafes"),
     "loop_lateness": (loop_lateness.run, "how late the vehicle's control cycles are, idle and on a busy machine"),
