@@ -19,7 +19,7 @@ import time
 from link.transport.memory import LossyPipe
 
 STEP = 0.0005
-"""s between two polls of the delayed datagrams: short beside the delay, and only while there are any."""
+"""s at least between two looks at delayed datagrams: short beside the delay."""
 
 LOCALHOST = "127.0.0.1"
 
@@ -37,13 +37,13 @@ class Relay:
         self._ground.connect(ground)
         self._up, self._down = pipes
         self._vehicle_address: tuple[str, int] | None = None
-        self._busy_until = 0.0
 
     def run(self) -> None:
         """Run until killed."""
         while True:
             now = time.monotonic()
-            timeout = STEP if now < self._busy_until else None
+            due = [at for at in (self._up.next_arrival, self._down.next_arrival) if at is not None]
+            timeout = max(STEP, min(due) - now) if due else None
             ready, _, _ = select.select([self._vehicle, self._ground], [], [], timeout)
             self._take(ready, time.monotonic())
             self._pass_on(time.monotonic())
@@ -55,8 +55,6 @@ class Relay:
         if self._ground in ready:
             with contextlib.suppress(ConnectionRefusedError):  # the ground station is not there yet
                 self._up.send(self._ground.recv(65536), now)
-        if ready:
-            self._busy_until = now + 2 * (self._up.delay + self._up.jitter) + STEP
 
     def _pass_on(self, now: float) -> None:
         for data in self._down.receive(now):
@@ -75,6 +73,11 @@ class ReorderingPipe(LossyPipe[bytes]):
         self._chance = random.Random(seed)
         self._flying: list[tuple[float, int, bytes]] = []
         self._count = 0
+
+    @property
+    def next_arrival(self) -> float | None:
+        """When the next datagram arrives; None while none is under way."""
+        return self._flying[0][0] if self._flying else None
 
     def send(self, data: bytes, now: float) -> None:
         """Send `data`, or lose it."""

@@ -14,12 +14,13 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from itertools import pairwise
 from statistics import median
 from typing import NamedTuple
 from unittest.mock import patch
 
 from tests.benchmarks.figures import BenchmarkError, BenchmarkSkippedError, Goal, Options, Report, Row, Table, quantile
-from tests.benchmarks.key_to_motor import Rig
+from tests.benchmarks.key_to_motor import LET_GO, Rig
 from tests.benchmarks.motor_feed import MotorFeed
 from tests.benchmarks.procfs import cpu_seconds, family
 from tests.benchmarks.programs import Program, on_pipe, on_terminal, python, scratch
@@ -35,11 +36,17 @@ CHANGES = (0.25, 0.45)
 """s between two changes of the speed, at random: longer than a command may be on its way."""
 REST = 0.8
 """s between two drives: longer than a key counts as held."""
-STOPPED_WITHIN = 0.5
-"""s from the stop key to motors without power, else the key counts as lost."""
+STOPPED_WITHIN = 1.0
+"""s from the stop key to motors without power, else the key counts as lost: the ramp down takes 0.4 s."""
+STEP, NEAR = 0.01, 0.04
+"""Of the power: what counts as a change, and as equal; two speeds are 0.1 apart."""
+FROZE = ("not responding", "was frozen", "stood still")
+"""What the screen says when a busy machine has held it up."""
 OBEYED, CPU_SHARE = 0.1, 0.15
 """s of age of the oldest command that is obeyed while one link is sound, and added CPU of the second link."""
 CPU_ROUNDS, QUICK_CPU_ROUNDS = 5, 1
+TRIES = 5
+"""Times that both speeds are tried before a drive."""
 CALIBRATION = 0.6
 """s for which each speed is held before it counts as reached."""
 CPU_WINDOW = 8.0
@@ -81,12 +88,16 @@ class Outcome:
     """What was seen in one network."""
 
     ages: list[float] = field(default_factory=list)
-    """s: of each command when the motors obeyed it last."""
+    """s: of the newest command that explains a change of the motors; 0 for the one in force."""
+    delays: list[float] = field(default_factory=list)
+    """s from a key to the first change toward what it asks for: so long the command before it was obeyed."""
     stops: int = 0
     """Stops while a key was held."""
     stop_times: list[float] = field(default_factory=list)
     """s from the stop key to motors without power."""
     lost_stops: int = 0
+    froze: int = 0
+    """Drives in which the screen froze, on a busy machine: then it goes neutral, whatever the links do."""
 
 
 class Driven:
@@ -100,20 +111,23 @@ class Driven:
         """Faster -> power."""
 
     def calibrate(self) -> None:
-        """Learn the power of both speeds, before anything is wrong."""
-        for faster, key in ((False, b"i"), (True, b"+")):
-            self._rig.ground.type(key)
+        """Learn the power of both speeds, before anything is wrong. On a late machine a key may have to be let go."""
+        for _ in range(TRIES):
+            for faster, key in ((False, b"i"), (True, b"+")):
+                self._rig.ground.type(key)
+                self._hold(CALIBRATION)
+                self._levels[faster] = self._power
+            self._rig.ground.type(b"-")
             self._hold(CALIBRATION)
-            self._levels[faster] = self._power
-        self._rig.ground.type(b"-")
-        self._rig.ground.type(b" ")
-        self._rig.watch.pause(REST)
-        if not 0.0 < self._levels[False] < self._levels[True]:
-            raise BenchmarkError(f"two speeds were asked for, the motors had {self._levels}")
+            self._rig.ground.type(b" ")
+            self._rig.watch.pause(LET_GO)
+            if 0.0 < self._levels[False] < self._levels[True]:
+                return
+        raise BenchmarkError(f"two speeds were asked for, the motors had {self._levels}")
 
     def drive(self, outcome: Outcome) -> None:
         """Drive once, change the speed meanwhile, and stop."""
-        began = len(self._rig.feed.changes)
+        began, drawn = len(self._rig.feed.changes), self._rig.ground.received
         self._commands = [(self._rig.ground.type(b"i"), self._levels[False])]
         faster, ends = False, time.monotonic() + self._chance.uniform(*DRIVE)
         while time.monotonic() < ends:
@@ -123,14 +137,33 @@ class Driven:
         self._hold(self._chance.uniform(*CHANGES))
         stamp = self._rig.ground.type(b" ")
         self._commands.append((stamp, 0.0))
+        self._note_delays(outcome, began)
         stopped = self._rig.watch.until(lambda: self._power == 0.0, STOPPED_WITHIN)
         if stopped:
             outcome.stop_times.append((self._rig.feed.changes[-1].at - stamp) / 1e9)
         outcome.lost_stops += not stopped
         self._rest()
-        self._judge(outcome, began)
+        if any(word in self._rig.ground.text_since(drawn) for word in FROZE):
+            outcome.froze += 1
+        else:
+            self._judge(outcome, began)
         if faster:
             self._rig.ground.type(b"-")
+
+    def _note_delays(self, outcome: Outcome, began: int) -> None:
+        """Note how long the motors obeyed the command before each one: until they first change toward it."""
+        self._rig.watch.pause(OBEYED)
+        for (stamp, asked), (end, _) in pairwise([*self._commands, (time.monotonic_ns(), 0.0)]):
+            before = [each for each in self._rig.feed.changes if each.at <= stamp]
+            power = max(map(abs, before[-1].throttles)) if before else 0.0
+            if abs(power - asked) < NEAR:
+                continue
+            toward = (
+                each.at
+                for each in self._rig.feed.changes[began:]
+                if stamp < each.at < end and (max(map(abs, each.throttles)) > power) == (asked > power)
+            )
+            outcome.delays.append((next(toward, end) - stamp) / 1e9)
 
     @property
     def _power(self) -> float:
@@ -163,25 +196,24 @@ class Driven:
         return share
 
     def _judge(self, outcome: Outcome, began: int) -> None:
-        """Compare the power of each moment with the commands before it."""
+        """Compare each change of the power with the commands before it."""
+        first = self._commands[0][0], self._commands[-1][0]
         changes = self._rig.feed.changes[began:]
-        ends = [*(each.at for each in changes[1:]), time.monotonic_ns()]
-        for change, end in zip(changes, ends, strict=True):
-            level = self._nearest(max(map(abs, change.throttles)))
-            outcome.ages.append(self._age(level, end) / 1e9)
-            at_work = self._commands[0][0] < change.at < self._commands[-1][0]
-            outcome.stops += level == 0.0 and at_work
+        power = 0.0
+        for change in changes:
+            before, power = power, max(map(abs, change.throttles))
+            if abs(power - before) < STEP:
+                continue
+            outcome.ages.append(self._age(change.at, power, up=power > before) / 1e9)
+            outcome.stops += power == 0.0 and first[0] < change.at < first[1]
 
-    def _nearest(self, power: float) -> float:
-        return min((0.0, *self._levels.values()), key=lambda each: abs(each - power))
-
-    def _age(self, level: float, at: int) -> int:
-        """Return how long ago, ns, a power was asked for last; 0 if it is now."""
+    def _age(self, at: int, power: float, *, up: bool) -> int:
+        """Return how long ago, ns, a power was asked for last toward which the motors change; 0 if it is now."""
         replaced = at
         for stamp, asked in reversed(self._commands):
             if stamp > at:
                 continue
-            if asked == level:
+            if asked >= power - NEAR if up else asked <= power + NEAR:
                 break
             replaced = stamp
         return at - replaced
@@ -282,9 +314,9 @@ def _report(outcomes: dict[str, Outcome], cpu: dict[int, list[float]]) -> Report
          for links, shares in cpu.items()],
     )  # fmt: skip
     every = list(outcomes.values())
+    oldest = max(max(*each.ages, *each.delays) for each in every)
     goals = [
-        Goal("oldest command that is obeyed while one link is sound", 1000 * max(max(each.ages) for each in every),
-             1000 * OBEYED, "ms"),
+        Goal("oldest command that is obeyed while one link is sound", 1000 * oldest, 1000 * OBEYED, "ms"),
         Goal("stops while a key is held", sum(each.stops for each in every), 0, "stops"),
         Goal("stop keys that were lost", sum(each.lost_stops for each in every), 0, "keys"),
         Goal("CPU that the second link adds", 100 * (two / one - 1.0), 100 * CPU_SHARE, "%"),
@@ -293,7 +325,7 @@ def _report(outcomes: dict[str, Outcome], cpu: dict[int, list[float]]) -> Report
 
 
 def _row(name: str, outcome: Outcome) -> Row:
-    ages = sorted(1000 * each for each in outcome.ages)
+    ages = sorted(1000 * each for each in (*outcome.ages, *outcome.delays))
     stops = sorted(1000 * each for each in outcome.stop_times)
     return {
         "network": name,
@@ -303,5 +335,6 @@ def _row(name: str, outcome: Outcome) -> Row:
         "stops": outcome.stops,
         "stop keys": len(stops) + outcome.lost_stops,
         "lost": outcome.lost_stops,
+        "screen froze": outcome.froze,
         "stop": stops[-1] if stops else None,
     }
