@@ -17,13 +17,17 @@ _DECODE = ["!", "decodebin"]
 
 def build_gst_command(program: str, source: VideoSource, shape: Shape) -> list[str]:
     """Return the words of the command."""
-    rate = max(1, round(shape.rate))
     caps = f"video/x-raw,format=RGB,width={shape.width},height={shape.height},pixel-aspect-ratio=1/1"
     drawn = [
-        "!", "queue", "leaky=downstream", "max-size-buffers=2", "!", "videorate", "drop-only=true", f"max-rate={rate}",
+        "!", "queue", "leaky=downstream", "max-size-buffers=2", *_rate(source, shape),
         "!", "videoconvert", "!", "videoscale", "add-borders=true", "!", caps, "!", "fdsink", "fd=1", _sync(source),
     ]  # fmt: skip
     return [program, "-q", *_INPUTS[source.kind](source), *drawn]
+
+
+def _rate(source: VideoSource, shape: Shape) -> list[str]:
+    """Return what leaves pictures out. videorate aborts at those without a duration, as cameras send them."""
+    return ["!", "videorate", "drop-only=true", f"max-rate={max(1, round(shape.rate))}"] if source.ends else []
 
 
 def _sync(source: VideoSource) -> str:
@@ -49,7 +53,8 @@ def _rtsp(source: VideoSource) -> list[str]:
 
 
 def _http(source: VideoSource) -> list[str]:
-    return ["souphttpsrc", f"location={_quoted(source)}", "timeout=10", *_DECODE]
+    """MJPEG: decodebin does not find the parts of its multipart stream."""
+    return ["souphttpsrc", f"location={_quoted(source)}", "timeout=10", "!", "multipartdemux", "!", "jpegdec"]
 
 
 def _v4l2(source: VideoSource) -> list[str]:
