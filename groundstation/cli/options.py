@@ -12,6 +12,7 @@ import msgspec
 from groundstation.cli.help_page import HelpPage
 from groundstation.config.defaults import DEFAULT_ENDPOINT
 from groundstation.config.settings import ROWS, SettingRow, Settings
+from groundstation.web.launch import DEFAULT_PORT
 from link.endpoint import endpoint_help
 from link.runtime.command_line import CommandLineParser
 
@@ -123,6 +124,17 @@ def build_parser() -> tuple[CommandLineParser, list[str]]:
 def add_config(parser: argparse.ArgumentParser) -> argparse.Action:
     """Add --config."""
     return parser.add_argument("--config", metavar="FILE", help="config file (`mavhelm config path` prints it)")
+
+
+def add_port(parser: argparse.ArgumentParser) -> None:
+    """Add the option for the port of `--web`."""
+    parser.add_argument("--port", type=_port, default=DEFAULT_PORT, help=f"of --web (default: {DEFAULT_PORT})")
+
+
+def _port(text: str) -> int:
+    if not text.isascii() or not text.isdecimal() or not 1 <= int(text) <= 65535:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 65535")
+    return int(text)
 
 
 def add_settings(parser: argparse.ArgumentParser, names: Collection[str] = tuple(ROWS)) -> list[argparse.Action]:

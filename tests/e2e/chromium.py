@@ -46,6 +46,8 @@ class Browser:
         self._answers: dict[int, asyncio.Future[dict[str, Any]]] = {}
         self.requests: list[str] = []
         """Addresses that the page has asked for."""
+        self.on_frame: Callable[[str, str], None] = lambda received, sent: None
+        """Called with the text of each frame of a WebSocket, in base64 if it is binary: received, or sent."""
         self.problems: list[str] = []
         """Requests that failed or were forbidden, and exceptions."""
 
@@ -106,6 +108,10 @@ class Browser:
         async with asyncio.timeout(PATIENCE):
             while not await self.evaluate("document.body && document.body.classList.contains('-first-byte')"):
                 await pause(0.05)
+
+    async def send_key(self, kind: str, **event: Any) -> None:
+        """Send a "keyDown" or "keyUp" of any key."""
+        await self._send("Input.dispatchKeyEvent", {"type": kind, **event})
 
     async def press(self, key: str, *, repeat: bool = False) -> None:
         """Press a key of a character, or let it repeat. A page that draws slowly answers late: nobody waits for it."""
@@ -184,18 +190,25 @@ class Browser:
             if "id" in packet:
                 self._answers.pop(packet["id"]).set_result(packet.get("result", {}))
                 continue
-            told = packet["params"]
-            match packet["method"]:
-                case "Network.requestWillBeSent":
-                    self.requests.append(told["request"]["url"])
-                case "Network.webSocketCreated":
-                    self.requests.append(told["url"])
-                case "Network.loadingFailed":
-                    self.problems.append(str(told))
-                case "Runtime.exceptionThrown":
-                    self.problems.append(str(told["exceptionDetails"]))
-                case "Log.entryAdded" if told["entry"]["level"] == "error":
-                    self.problems.append(f"{told['entry'].get('url')}: {told['entry']['text']}")
+            self._note(packet["method"], packet["params"])
+
+    def _note(self, method: str, told: dict[str, Any]) -> None:
+        """Note an event of the page."""
+        if method.startswith("Network.webSocketFrame"):
+            data = told["response"]["payloadData"] if "response" in told else ""
+            self.on_frame(*((data, "") if method.endswith("Received") else ("", data)))
+            return
+        match method:
+            case "Network.requestWillBeSent":
+                self.requests.append(told["request"]["url"])
+            case "Network.webSocketCreated":
+                self.requests.append(told["url"])
+            case "Network.loadingFailed":
+                self.problems.append(str(told))
+            case "Runtime.exceptionThrown":
+                self.problems.append(str(told["exceptionDetails"]))
+            case "Log.entryAdded" if told["entry"]["level"] == "error":
+                self.problems.append(f"{told['entry'].get('url')}: {told['entry']['text']}")
 
 
 def _descendants(pid: int) -> list[int]:

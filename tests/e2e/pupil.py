@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import takewhile
 from typing import NamedTuple
@@ -22,6 +23,17 @@ HOLD, UNTIL = 2.0, 15.0
 """s for which a key is held: without a time in the task, and until something has happened."""
 PAGES = 8
 """Turns of the page after which the task must have been seen."""
+
+
+SEEN = 1.0
+"""s for a page to show its task, if it has one."""
+REDRAWN = 0.3
+"""s after another size of the terminal before its text is read."""
+ARMS = "r"
+"""The key that arms; when armed it disarms."""
+
+Size = tuple[int, int]
+"""Columns and lines."""
 
 
 class Deed(NamedTuple):
@@ -71,8 +83,12 @@ def _find_deeds(task: str) -> Iterator[Deed]:
 class Pupil:
     """Reads the pane and acts."""
 
-    def __init__(self, terminal: Tmux, columns: int, others: OtherTerminals | None = None) -> None:
+    def __init__(
+        self, terminal: Tmux, columns: int, others: OtherTerminals | None = None, sizes: Sequence[Size] = ()
+    ) -> None:
+        """`sizes`: those of the terminal, which takes the next one for each task."""
         self.terminal, self._columns, self._others = terminal, columns, others
+        self._sizes = deque(sizes)
         self._text: list[str] = []
         """The pages before the first task, for what is typed into other terminals."""
         self._command = ""
@@ -108,8 +124,8 @@ class Pupil:
     def read_task(self) -> str:
         """Turn pages until the task is shown, and return it."""
         for _ in range(PAGES):
-            if task := self.marked(self.terminal.screen(), "›"):
-                return task
+            with suppress(AssertionError):
+                return self.marked(self.terminal.until(lambda screen: self.marked(screen, "›") != "", SEEN), "›")
             before = "\n".join(self.pane(self.terminal.screen()))
             self.terminal.press("C-l")
             self.terminal.until(lambda screen, before=before: "\n".join(self.pane(screen)) != before, PATIENCE)  # type: ignore[misc]
@@ -140,11 +156,15 @@ class Pupil:
 
     def _do(self, step: int) -> str:
         """Do one task, again where a late machine did not see it; return the screen when another one is due."""
-        patience, tries = Patience(2 * PATIENCE), 0
+        patience, tries, heeded = Patience(2 * PATIENCE), 0, ""
+        self._take_next_size()
         while True:
             assert not patience.ended, "\n".join([*self.log, self.terminal.screen()])
+            if self.step(screen := self.terminal.screen()) not in (step, -1):
+                return screen  # by itself, or later than a late machine was waited for
             task, hint = self.read_task(), self.marked(self.terminal.screen(), "!")
             self.log.append(f"{step}: {hint or task}")
+            heeded, hint = hint, "" if hint == heeded else hint  # one that was followed is followed by the task
             for deed in read_deeds(hint) or read_deeds(task):
                 self._perform(deed, step)
             if tries and "Run it again" in task and self._others is not None:
@@ -154,8 +174,18 @@ class Pupil:
                 return self.terminal.until(lambda screen: self.step(screen) not in (step, -1), UNTIL)
             self.terminal.until(lambda screen: self.step(screen) != -1, PATIENCE)  # another program has the terminal
 
+    def _take_next_size(self) -> None:
+        if self._sizes:
+            self._columns = self._sizes[0][0]
+            self.terminal.resize(*self._sizes[0])
+            self._sizes.rotate()
+            self.terminal.pause(REDRAWN)
+            self.terminal.until(lambda screen: self.step(screen) != -1, PATIENCE)
+
     def _perform(self, deed: Deed, step: int) -> None:
         key = self._tmux_name(deed.key)
+        if deed.what == "hold" and key == ARMS and " ARMED " in self.terminal.screen().split("\n", 1)[0]:
+            return  # as the first line says
         if deed.what == "type":
             self.terminal.press(*("Space" if each == " " else each for each in deed.key))
         elif deed.what == "press":

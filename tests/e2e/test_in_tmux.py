@@ -14,7 +14,7 @@ import subprocess
 import sys
 import termios
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -43,14 +43,20 @@ PAUSE = 0.04
 class Tmux:
     """A tmux server of its own with one window."""
 
-    def __init__(self, folder: Path, columns: int, lines: int, *arguments: str) -> None:
+    def __init__(self, folder: Path, columns: int, lines: int, *arguments: str, shows: Path | None = None) -> None:
+        """Run `mavhelm` with these arguments; or show what arrives at the end of a file, as a terminal does."""
         self._socket = str(folder / "tmux")
+        self.send_keys: Callable[[Sequence[str], bool], object] = lambda keys, held: self._run("send-keys", *keys)
+        """Where keys go: to the program, or to that of which this is a picture. `held`: they are not let go."""
         self.longest_pause = 0.0
         """s between two presses, the longest since a test has set it to 0."""
         self._pressed_at = math.inf
         program = [sys.executable, "-m", "groundstation", *arguments, "--log-file", str(folder / "station.log")]
         size = ["-x", str(columns), "-y", str(lines)]
-        self._run("-f", "/dev/null", "new-session", "-d", *size, f"{shlex.join(program)}; echo EXIT CODE $?; exec cat")
+        runs = f"{shlex.join(program)}; echo EXIT CODE $?; exec cat"
+        if shows is not None:
+            runs = f"stty raw -echo; exec tail -c +1 -f {shlex.quote(str(shows))}"
+        self._run("-f", "/dev/null", "new-session", "-d", *size, runs)
 
     def _run(self, *words: str) -> str:
         done = subprocess.run(["tmux", "-S", self._socket, *words], capture_output=True, text=True, timeout=60)
@@ -70,9 +76,9 @@ class Tmux:
         """Path of the terminal."""
         return self._run("display-message", "-p", "#{pane_tty}").strip()
 
-    def press(self, *keys: str) -> None:
-        """Press keys, by tmux's names."""
-        self._run("send-keys", *keys)
+    def press(self, *keys: str, held: bool = False) -> None:
+        """Press keys, by tmux's names; or press, and repeat, one that is held."""
+        self.send_keys(keys, held)
         now = time.monotonic()
         self.longest_pause = max(self.longest_pause, now - self._pressed_at)
         self._pressed_at = now
@@ -83,7 +89,7 @@ class Tmux:
         while not condition(screen := self.screen()):
             assert not patience.ended, f"not within {within} s:\n{screen}"
             if holding:
-                self.press(holding)
+                self.press(holding, held=True)
             select.select([], [], [], PAUSE)
         return screen
 
@@ -108,7 +114,7 @@ class Tmux:
             begun = time.monotonic()
             for at in event_times(2.0):
                 select.select([], [], [], max(0.0, begun + at - time.monotonic()))
-                self.press(key)
+                self.press(key, held=True)
             select.select([], [], [], LET_GO)
 
     def drive_until(self, condition: Callable[[str], bool]) -> None:
@@ -121,6 +127,10 @@ class Tmux:
             assert not patience.ended, self.screen()
             select.select([], [], [], LET_GO)
             self.press("1")
+
+    def resize(self, columns: int, lines: int) -> None:
+        """Change the size of the terminal."""
+        self._run("resize-window", "-x", str(columns), "-y", str(lines))
 
     def end(self) -> None:
         """Close the terminal and everything in it."""

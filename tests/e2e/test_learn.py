@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from groundstation.learn.progress import Progress
+from groundstation.web.launch import missing_package
+from tests.e2e.browser_terminal import tab_of
+from tests.e2e.chromium import PROGRAM
 from tests.e2e.other_terminals import OtherTerminals
 from tests.e2e.programs import LET_GO
 from tests.e2e.pupil import Pupil
 from tests.e2e.ros1.marks import NEEDS_ROS
 from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.tmux_marks import IN_TMUX
+from tests.ports import free_port
 from tests.waits import PATIENCE, wait_until
 
 __all__ = ["tmux"]
@@ -21,8 +29,9 @@ __all__ = ["tmux"]
 pytestmark = IN_TMUX
 
 SMALL, LARGE = (80, 24), (140, 45)
-SIZES = [*((number, SMALL) for number in range(1, 11)), (1, LARGE), (7, LARGE)]
-LESSONS = [pytest.param(each, *size, marks=[NEEDS_ROS] if each == 9 else []) for each, size in SIZES]
+LESSONS = [pytest.param(each, marks=[NEEDS_ROS] if each == 9 else []) for each in range(1, 11)]
+IN_A_TAB = (2, 10)
+"""Lessons that are learnt in a browser: what is driven, found and typed there, and the keys that are given up."""
 
 
 @pytest.fixture(autouse=True)
@@ -41,12 +50,14 @@ def others(tmp_path: Path) -> Iterator[OtherTerminals]:
     opened.end()
 
 
-@pytest.mark.parametrize(("number", "columns", "lines"), LESSONS)
+@pytest.mark.parametrize("number", LESSONS)
 def test_a_lesson_is_passed_by_its_text_alone(
-    tmux: Callable[..., Tmux], tmp_path: Path, others: OtherTerminals, number: int, columns: int, lines: int
+    tmux: Callable[..., Tmux], tmp_path: Path, others: OtherTerminals, number: int
 ) -> None:
-    terminal = tmux(columns, lines, "learn", str(number))
-    pupil = Pupil(terminal, columns, others if number > 8 else None)
+    """The tasks are read and done in two sizes of the terminal in turn."""
+    sizes = [SMALL, LARGE] if number % 2 else [LARGE, SMALL]
+    terminal = tmux(*SMALL, "learn", str(number))
+    pupil = Pupil(terminal, SMALL[0], others if number > 8 else None, sizes)
     last = pupil.learn()
     assert pupil.step(last) == 0
     wait_until(lambda: Progress(tmp_path / "state" / "mavhelm" / "learn.json").done == (str(number),), "it is saved")
@@ -57,6 +68,24 @@ def test_a_lesson_is_passed_by_its_text_alone(
     ended = terminal.until(lambda screen: "EXIT CODE" in screen, PATIENCE)
     assert "EXIT CODE 0" in ended
     assert "Traceback" not in ended
+
+
+@pytest.mark.skipif(missing_package() is not None, reason="the extra [web] is not installed")
+@pytest.mark.skipif(PROGRAM is None and "MAVHELM_CI" not in os.environ, reason="chromium is not installed")
+@pytest.mark.parametrize("number", IN_A_TAB)
+def test_a_lesson_is_passed_in_a_tab_of_a_browser(tmp_path: Path, others: OtherTerminals, number: int) -> None:
+    command = [sys.executable, "-m", "groundstation", "learn", str(number), "--web", f"--port={free_port()}"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as server:
+        assert server.stderr is not None
+        try:
+            url = re.search(r"http://\S+", server.stderr.readline() + server.stderr.readline())
+            assert url is not None
+            with tab_of(tmp_path, url[0]) as tab:
+                pupil = Pupil(tab, SMALL[0], others if number > 8 else None)
+                assert pupil.step(pupil.learn()) == 0
+        finally:
+            server.terminate()
+        assert server.wait(PATIENCE) == 0
 
 
 WRONG_DEEDS = (("i", "the rover is disarmed"), (",", "That was backward"), ("j", "That was a turn"))

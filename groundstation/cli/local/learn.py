@@ -11,7 +11,7 @@ from pathlib import Path
 from groundstation.cli.console import import_screen, open_screen, record_options, terminal_path
 from groundstation.cli.local.lesson_options import find_lesson, lesson_words, open_lesson
 from groundstation.cli.local.runner import UsageError, load_settings, run_local
-from groundstation.cli.options import add_config, add_settings
+from groundstation.cli.options import add_config, add_port, add_settings
 from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationClient
 from groundstation.config.settings import Settings
@@ -19,7 +19,6 @@ from groundstation.learn.course import CourseLesson, load_course
 from groundstation.learn.lesson_file import LessonError
 from groundstation.learn.progress import Progress
 from groundstation.learn.requirements import find_missing
-from groundstation.web.launch import DEFAULT_PORT
 from link.runtime.command_line import CommandLineParser
 
 LIST, RESET = "list", "reset"
@@ -56,6 +55,7 @@ def build_parser() -> CommandLineParser:
         "without it the first that is not done",
     )
     parser.add_argument("--web", action="store_true", help="in browsers of this machine; docs/browser.md")
+    add_port(parser)
     add_settings(parser, SETTINGS)
     add_config(parser)
     return parser
@@ -74,7 +74,7 @@ def _learn(options: argparse.Namespace) -> int:
     settings = load_settings(options).settings
     chosen = _choose(options.lesson)
     if options.web:
-        return _serve(settings, chosen)
+        return _serve(settings, chosen, options.port)
     lesson: CourseLesson | None = chosen
     code = 0
     while lesson is not None:
@@ -143,12 +143,13 @@ def _teach(settings: Settings, lesson: CourseLesson) -> tuple[int, CourseLesson 
     return code, after if dock.goes_on else None
 
 
-def _serve(settings: Settings, lesson: CourseLesson) -> int:
+def _serve(settings: Settings, lesson: CourseLesson, port: int) -> int:
+    """Serve a lesson; its first tab drives, because the lesson does not say how to take the keys."""
     from groundstation.cli.local.serve import serve
 
     rovers = [each.options for each in lesson.lesson.simulators]
     tabs = lesson_words(lesson, 0)
-    return serve(settings, [], sitl=True, simulators=rovers, port=DEFAULT_PORT, tab_options=tabs)
+    return serve(settings, [], sitl=True, simulators=rovers, port=port, tab_options=tabs)
 
 
 def _list() -> int:

@@ -9,20 +9,22 @@ from collections.abc import Sequence
 
 from groundstation.cli.console import docs_file, find_log_file, record_options
 from groundstation.cli.local.runner import UsageError, load_settings, run_local
-from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_settings, option_words
+from groundstation.cli.options import REPLAY_SETTINGS, add_config, add_port, add_settings, option_words
 from groundstation.cli.verb_help import local_examples
 from groundstation.client import StationError
 from groundstation.config.effective import resolve_endpoints
 from groundstation.config.settings import Settings
 from groundstation.station_socket.folder import FolderError, make_folder
-from groundstation.web.launch import DEFAULT_PORT, WebLaunch, missing_package
+from groundstation.web.launch import WebLaunch, missing_package
 from link.runtime.command_line import CommandLineParser
 
 TAB_SETTINGS = tuple(name for name in REPLAY_SETTINGS if name != "ascii")
 """Settings that the screens of the tabs take over."""
 
-TAB_OPTIONS = ("--watch", "--no-ascii", "--gamepad=off")
+TAB_OPTIONS = ("--no-ascii", "--gamepad=off")
 """Of each tab. A gamepad is at this machine, and the tab may not be."""
+WATCH = "--watch"
+"""Of the tabs of real vehicles: one that a browser opens again must not drive by itself."""
 
 EPILOG = """\
 It drives nothing by itself: without a screen it sends no demand and no heartbeat, so that the failsafes of a vehicle
@@ -45,7 +47,7 @@ def build_parser() -> CommandLineParser:
     parser.add_argument("endpoints", nargs="*", metavar="ENDPOINT|NAME", help="where vehicles are")
     parser.add_argument("--headless", action="store_true", help="without a screen")
     parser.add_argument("--web", action="store_true", help="with screens in browsers of this machine; docs/browser.md")
-    parser.add_argument("--port", type=_port, default=DEFAULT_PORT, help=f"of --web (default: {DEFAULT_PORT})")
+    add_port(parser)
     parser.add_argument("--sitl", action="store_true", help="start a simulated rover, and end it with the station")
     add_settings(parser)
     add_config(parser)
@@ -72,7 +74,7 @@ def serve(
     sitl: bool,
     simulators: Sequence[Sequence[str]] = (),
     port: int | None = None,
-    tab_options: Sequence[str] = (),
+    tab_options: Sequence[str] = (WATCH,),
 ) -> int:
     """Run a station to its end; return the exit code. `port`: for browsers, None for none. Raises StationError.
 
@@ -98,12 +100,6 @@ def serve(
     finally:
         if launch is not None:
             launch.stop()
-
-
-def _port(text: str) -> int:
-    if not text.isascii() or not text.isdecimal() or not 1 <= int(text) <= 65535:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 65535")
-    return int(text)
 
 
 def _listen(port: int) -> WebLaunch:
