@@ -107,7 +107,7 @@ def test_a_screen_gives_up_the_keys_and_takes_them_back() -> None:
     assert bridge.moves, "without another request: the vehicle was never released"
 
 
-def test_only_the_screen_that_gave_up_the_keys_counts_as_its_last_driver(bridge: Bridge) -> None:
+def test_the_screen_that_gave_up_the_keys_is_the_last_driver(bridge: Bridge) -> None:
     lease, first, second = bridge.lease, bridge.first, bridge.second
     assert (lease.is_last_driver(first), lease.is_last_driver(second)) == (True, False)
     bridge.do(second, GiveUpKeys())
