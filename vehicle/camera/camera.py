@@ -51,7 +51,7 @@ class Camera:
         """Send pictures to a station. Returns why not, or None."""
         host = find_host(peer)
         if host is None:
-            return "no IP address"
+            return "pictures need an IP link"
         if peer not in self._watchers and len(self.targets(now)) >= WATCHERS_MAX:
             return f"{WATCHERS_MAX} others watch"
         self._watchers[peer] = host, now

@@ -82,7 +82,12 @@ class CameraCommands:
         camera = self._find(request)
         if not isinstance(camera, Camera):
             return camera
-        return Result.ACCEPTED if camera.start(request.peer, now) is None else Result.FAILED
+        reason = camera.start(request.peer, now)
+        if reason is None:
+            return Result.ACCEPTED
+        key = f"camera {request.peer} {reason}"  # a station asks again and again
+        self._texts.reply_once(key, request, Severity.WARNING, f"Camera refused: {reason}", now)
+        return Result.FAILED
 
     def _stop(self, request: CommandRequest, now: float) -> Result:
         camera = self._find(request)

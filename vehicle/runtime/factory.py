@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 from msgspec import to_builtins
 from msgspec.structs import replace
@@ -166,7 +167,7 @@ def start_camera(
 ) -> CameraLink | None:
     """Start the process of the camera, which `opened` ends. The rover drives without one, too."""
     try:
-        link = CameraLink(camera, pose, _read_walls(settings.simulation))
+        link = CameraLink(camera, pose, _find_walls(settings.simulation))
     except OSError as error:
         log.warning("camera: its process did not start: %s", error.strerror)
         return None
@@ -194,14 +195,20 @@ def _build_simulation(simulation: Simulation, params: Params) -> tuple[Motors, S
 def _build_surroundings(simulation: Simulation, params: Params) -> Surroundings | None:
     if simulation.walls is None:
         return None
-    walls = Walls(_read_walls(simulation))
+    walls = Walls(_find_walls(simulation))
     return Surroundings(walls, simulation.seed, length=params["BODY_LENGTH"], width=params["BODY_WIDTH"])
 
 
-def _read_walls(simulation: Simulation | None) -> list[Segment]:
+def _find_walls(simulation: Simulation | None) -> Sequence[Segment]:
     if simulation is None or simulation.walls is None:
-        return []
-    return read_walls(simulation.walls, Origin(simulation.home.latitude, simulation.home.longitude))
+        return ()
+    return _read_walls(simulation.walls, simulation.home.latitude, simulation.home.longitude)
+
+
+@lru_cache(1)
+def _read_walls(path: str, latitude: float, longitude: float) -> tuple[Segment, ...]:
+    """Read the walls once for the range sensors and for the camera: a pipe cannot be read twice."""
+    return tuple(read_walls(path, Origin(latitude, longitude)))
 
 
 def _with_truth_log(body: SimulatedBody, path: str | None) -> Sensors:

@@ -61,6 +61,10 @@ def test_pictures_go_to_who_watches_until_he_stops() -> None:
     assert bench.camera.targets(bench.now) == ()
     assert bench.command(START, 2, system=OTHER) is bench.command(STOP, 2, system=OTHER) is Result.DENIED
     assert bench.command(START, 1, system=OTHER) is Result.FAILED, "its address on the bench is no IP address"
+    assert bench.command(START, 1, system=OTHER) is Result.FAILED
+    bench.heartbeat(OTHER)
+    bench.wait(1.0)
+    assert bench.texts.count("Camera refused: pictures need an IP link") == 1
     camera, watcher = bench.camera, Peer(0, ("10.0.0.2", 14550))
     assert camera.start(watcher, bench.now) is None
     assert camera.targets(bench.now) == (("10.0.0.2", 5600),)
