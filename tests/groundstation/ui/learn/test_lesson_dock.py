@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+from itertools import takewhile
+
+from msgspec.structs import replace
+
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.learn.attempt import Attempt
 from groundstation.learn.course import load_course
 from groundstation.ui.learn.layout import PanePlace
-from groundstation.ui.learn.lesson_dock import LessonDock
+from groundstation.ui.learn.lesson_dock import AT_TASK, LessonDock
 from groundstation.ui.learn.pane import DUE, WRONG, find_page, lay_out
 
 KEYS = Keymap("standard", KEYMAPS["standard"])
@@ -38,6 +43,22 @@ def test_every_lesson_fits_into_its_pages() -> None:
         assert "?" not in "".join(task.text for task in value.tasks).replace("stand?", "").replace("now?", "")
         if number not in (9, 10):  # their code has a page of its own there
             assert len(lay_out(dock(number).value(LARGE, KEYS), 40, 45)) == 1
+
+
+def test_each_task_is_whole_and_the_same_in_every_size() -> None:
+    for number in range(1, 11):
+        pane = dock(number)
+        for step, due in enumerate(pane.attempt.lesson.steps):
+            pane.attempt.step = step
+            for size in (SMALL, (82, 25), (120, 30), LARGE):
+                value = replace(pane.value(size, KEYS), page=AT_TASK)
+                pages = lay_out(value, *((40, size[1]) if pane.place(size) is PanePlace.RIGHT else (size[0], 6)))
+                shown = iter(pages[find_page(value, pages)])
+                first = next(text for mark, text in shown if mark == DUE)
+                rest = [text for _, text in takewhile(lambda line: line[0] == " ", shown)]
+                keys = re.split(r"`[^`]+`", due.task)
+                said = re.split(r"\[[^\[\]]+\]|\[\[\]|\[\]\]", " ".join([first, *rest]))
+                assert said == keys, (number, step, size)
 
 
 def test_the_key_turns_pages_then_hides_then_shows() -> None:
