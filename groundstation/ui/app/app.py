@@ -320,6 +320,7 @@ class ConsoleApp(App[int]):
             muted=self._without_looking.muted,
             gamepad=self._gamepad.state(self._clock()) if self._gamepad else None,
             kept=self._kept,
+            unseen_lesson="" if self._lesson is None else self._lesson.find_hidden(self.size),
         )
 
     def get_line_filters(self) -> Sequence[LineFilter]:

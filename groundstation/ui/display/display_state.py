@@ -72,6 +72,8 @@ class DisplayState(msgspec.Struct, frozen=True):
     promises_releases: bool = False
     """The terminal says that it reports key releases, which only the first one proves (OperatorView)."""
     screen: ScreenInfo = DRIVE_INFO
+    unseen_lesson: str = ""
+    """Why the lesson is not shown, and what to do; empty where there is none, or the pupil has hidden it."""
     ascii: bool = False
     """The terminal shows ASCII characters only."""
     still: bool = False

@@ -8,6 +8,8 @@ from groundstation.ui.display.display_state import DisplayState
 
 def hint(now: DisplayState) -> str:
     """Return what to do next."""
+    if now.unseen_lesson:
+        return now.unseen_lesson
     if not now.screen.drives:
         return now.screen.hint
     if now.snapshot.replay is not None:

@@ -9,7 +9,7 @@ from groundstation.learn.attempt import Attempt
 from groundstation.learn.lesson import print_keys
 from groundstation.snapshot import Snapshot
 from groundstation.ui.keys.keynames import format_key, main_key
-from groundstation.ui.learn.layout import HEIGHT, WIDTH, PanePlace, Size, choose_place, room_beside
+from groundstation.ui.learn.layout import BELOW_FROM, HEIGHT, WIDTH, PanePlace, Size, choose_place, room_beside
 from groundstation.ui.learn.pane import (
     DONE,
     DUE,
@@ -108,6 +108,13 @@ class LessonDock:
     def place(self, size: Size) -> PanePlace:
         """Return where the pane is in a terminal of this size."""
         return PanePlace.HIDDEN if self._hidden else choose_place(size)
+
+    def find_hidden(self, size: Size) -> str:
+        """Return what to do where the terminal is too small for the pane; "" where it is shown, or hidden by a key."""
+        too_small = not self._hidden and choose_place(size) is PanePlace.HIDDEN
+        return (
+            f"the lesson needs {BELOW_FROM[0]}x{BELOW_FROM[1]} characters: make the window larger" if too_small else ""
+        )
 
     def room(self, size: Size) -> Size:
         """Return what is left to the screen."""

@@ -31,6 +31,7 @@ def test_the_pane_leaves_room_for_the_screen() -> None:
         PanePlace.BELOW,
         PanePlace.HIDDEN,
     ]
+    assert [bool(pane.find_hidden(size)) for size in (LARGE, SMALL, (79, 24))] == [False, False, True]
     assert [pane.room(size) for size in (LARGE, SMALL, (79, 24))] == [(100, 45), (80, 18), (79, 24)]
 
 
