@@ -104,6 +104,7 @@ class Rover:
         self._monitor = SafetyMonitor(params, self._safety, self._control, self._texts, now)
         self._steady = SteadyDriving(self._safety, self._control, self._monitor, now)
         self._telemetry = Telemetry(self._control.system, now, logged=recording is not None)
+        self._telemetry.greet = self._activity.resume_full_rate  # it does not wait for the end of a rest
         self._bandwidth = Bandwidth(self._safety, lambda peer: self._telemetry.has_level(peer, DialectLevel.ROVER))
         self._links = LinkStatusReporter(self._control, self._texts, (self._control.system, COMPONENT))
         self._dispatcher = self._build_dispatcher(Stores(param_store, plan_store, recording, pairing), arming_note)

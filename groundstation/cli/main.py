@@ -40,9 +40,10 @@ def _run(arguments: Sequence[str]) -> int:
 
         if verb in VERBS:
             without_openssl.load()
-            from groundstation.verbs.main import run as run_verb  # loads the dialect, which the screen does without
+            with startup_gc.paused():
+                from groundstation.verbs.main import run as run_verb  # loads the dialect, which the screen does without
 
-            return run_verb(arguments)
+                return run_verb(arguments)
         if verb in LOCAL_VERBS:
             return _run_local(verb, arguments[1:])
     if PLAIN in arguments:

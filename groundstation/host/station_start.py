@@ -22,7 +22,6 @@ from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, Side, parse_endpoint
 from link.links import open_links
 from link.protocol.sent_frames import SentFrames
-from link.runtime.local_socket import open_pair
 from link.transport.transport import Link, LinkError
 
 
@@ -77,14 +76,12 @@ def start(options: argparse.Namespace, pipe: socket.socket | None, watchdog: soc
 def _start_watchdog(
     options: argparse.Namespace, pipe: socket.socket | None, watchdog: socket.socket | None, signing: StationSigning
 ) -> WatchdogFeed:
-    """Start the watchdog; without a screen its socket leads nowhere."""
+    """Start the watchdog, with a socket to the screen if there is one."""
     ids, keys = (options.system, COMPONENT), (signing.link_signing.signing, signing.reload)
     if watchdog is not None:
         with watchdog:
             return WatchdogFeed.start(watchdog, options.terminal, ids, *keys, of_station=pipe)
-    ours, theirs = open_pair()
-    with ours, theirs:
-        return WatchdogFeed.start(theirs, None, ids, *keys)
+    return WatchdogFeed.start(None, None, ids, *keys)
 
 
 def _one_line(error: Exception) -> str:

@@ -23,11 +23,11 @@ from groundstation.rover.errors import (
     Refused,
     RoverError,
 )
-from groundstation.rover.rover import Rover
 
 if TYPE_CHECKING:
     from groundstation.rover.async_rover import AsyncRover
     from groundstation.rover.mission import Fence, Mission, Rally
+    from groundstation.rover.rover import Rover
     from groundstation.rover.telemetry import Position, State
 
 __all__ = [
@@ -49,10 +49,11 @@ __all__ = [
     "State",
 ]
 _LATE = {
-    "AsyncRover": "async_rover", "Fence": "mission", "Mission": "mission", "Rally": "mission",
+    "AsyncRover": "async_rover", "Fence": "mission", "Mission": "mission", "Rally": "mission", "Rover": "rover",
     "Position": "telemetry", "State": "telemetry",
 }  # fmt: skip
-"""Names that load asyncio, the dialect or msgspec, which a Rover imports while its process starts -> module."""
+"""Names -> module. Some load asyncio, the dialect or msgspec, which a Rover imports while its process starts; and that
+process imports its protocol from here, and no Rover."""
 
 
 def __getattr__(name: str) -> Any:

@@ -8,9 +8,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from groundstation.config.defaults import ENDPOINT_VARIABLE
 from groundstation.rover.errors import RoverError
@@ -42,7 +41,8 @@ class ApiProcess:
         self._arguments += ["--stay-armed"] if stay_armed else []
         self._simulated = simulated
         self._simulator: SimulatorControl | None = None
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # not a pipe, which the watchdog of a killed one keeps open
+        self._errors: IO[bytes] | None = None
+        self._last_error = "no error was printed"
         self.running: subprocess.Popen[bytes] | None = None
         """The process, from `start` on."""
 
@@ -52,6 +52,7 @@ class ApiProcess:
         if self._simulated:
             environment[ENDPOINT_VARIABLE] = self._start_simulator()  # not -e, which is remembered as used last
             arguments += ["--station", "never"]
+        self._errors = _open_unnamed()  # not a pipe, which the watchdog of a killed one keeps open
         # -P: a folder named like one of our packages in the current directory must not be imported instead of ours.
         self.running = subprocess.Popen(
             [sys.executable, "-P", "-m", "groundstation", "api", *arguments],
@@ -60,14 +61,20 @@ class ApiProcess:
         )  # fmt: skip
         return self.running
 
-    def close_simulator(self) -> None:
-        """End the simulator, if there is one."""
+    def close(self) -> None:
+        """End the simulator, if there is one, and keep no file open. The process has ended."""
         if self._simulator is not None:
             self._simulator.close()
+        if self._errors is not None:
+            self._last_error = self.last_error
+            self._errors.close()
+            self._errors = None
 
     @property
     def last_error(self) -> str:
         """The last line that it has printed to stderr."""
+        if self._errors is None:
+            return self._last_error
         size = os.fstat(self._errors.fileno()).st_size
         tail = os.pread(self._errors.fileno(), TAIL_SIZE, max(0, size - TAIL_SIZE)).decode(errors="replace")
         return tail.strip().rpartition("\n")[2].removeprefix("mavhelm: ") or "no error was printed"
@@ -82,3 +89,12 @@ class ApiProcess:
         if problem := self._simulator.start([parse_endpoint(endpoint)]):
             raise RoverError(problem)
         return endpoint
+
+
+def _open_unnamed() -> IO[bytes]:
+    """Open a file without a name."""
+    if hasattr(os, "memfd_create"):
+        return os.fdopen(os.memfd_create("mavhelm-errors"), "w+b")
+    import tempfile  # where it must be: the start of a program waits for it
+
+    return tempfile.TemporaryFile()

@@ -81,7 +81,7 @@ class AsyncRover(StateValues):
         connection, self._connection = self._connection, None
         if connection is not None:
             await connection.close()
-        await asyncio.to_thread(self._process.close_simulator)
+        await asyncio.to_thread(self._process.close)
 
     async def settle(self) -> None:
         """Wait until calls that were cancelled have ended with neutral."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import logging
+import math
 import os
 import signal
 import sys
@@ -24,10 +25,10 @@ from groundstation.station_socket.verb_run import VERSION, AskedGroup, RunVerb
 from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.client.companion import RunCompanion, local_companion
 from groundstation.verbs.client.station_choice import AUTO, StationLink, find_station, station_choice
-from groundstation.verbs.client.verb_client import HANGS_AFTER, VerbClient
 from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyModule
+from groundstation.verbs.common.loading import load
 from groundstation.verbs.common.output import Output, ring_bell
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
@@ -35,13 +36,14 @@ from groundstation.verbs.session.vehicle_choice import choose_group
 from groundstation.verbs.table import VERBS
 from groundstation.verbs.verb import format_examples
 from link.endpoint import EndpointError
-from link.runtime import stdio
+from link.runtime import startup_gc, stdio
 from link.runtime.command_line import CommandLineParser
 from link.runtime.event_loop import run_loop
 
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
     from groundstation.speech.voice import Voice
+    from groundstation.verbs.common.channel import CompanionChannel
     from groundstation.verbs.session.core import VerbCore
     from groundstation.verbs.session.demand_guard import DemandGuard
     from groundstation.verbs.session.doctor_session import DoctorSession
@@ -149,6 +151,7 @@ async def _run_offline(action: VerbAction, options: argparse.Namespace, output: 
     """Run an action that needs no vehicle."""
     check_options(action, options)
     _cancel_on_signals(caught)
+    startup_gc.resume()
     return await action.run(None, options, output)
 
 
@@ -178,13 +181,16 @@ async def _run_once(
     output: Output,
     group: VehicleGroup | None,
     through: str,
-    patience: float = HANGS_AFTER,
+    patience: float = math.inf,
 ) -> int:
-    """Do so once, in a station, or in this process. A station may be silent for `patience` s."""
+    """Do so once, in a station, or in this process. A station may be silent for `patience` s, or for HANGS_AFTER."""
     station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))
     if station is None:
         return await _run_here(action, options, output, group, endpoints)
-    client = VerbClient(station, output, patience)
+    from groundstation.verbs.client.verb_client import HANGS_AFTER, VerbClient  # a verb with links does without
+
+    startup_gc.resume()
+    client = VerbClient(station, output, min(patience, HANGS_AFTER))
     ended = await client.run(ask_for_verb(options, group), _companion_of(action, options, output))
     if options.endpoints and ended.vehicle:
         remember(endpoints, ended.vehicle)
@@ -230,6 +236,7 @@ async def _run_here(
             work = perform(session, action, options, output, group, may_prove, found)
             return await (seat.run(work) if (seat := _take_seat(session, action, runner)) else work)
 
+    startup_gc.resume()
     try:
         async with asyncio.timeout(None if action.own_timeout or group is not None else options.timeout):
             return await run_over(
@@ -264,7 +271,14 @@ def _take_seat(session: VerbSession | DoctorSession, action: VerbAction, runner:
 
 def _companion_of(action: VerbAction, options: argparse.Namespace, output: Output) -> RunCompanion | None:
     companion = action.companion
-    return None if companion is None else lambda channel: companion(options, output, channel)
+    if companion is None:
+        return None
+
+    async def run(channel: CompanionChannel) -> None:
+        await load(companion)
+        await companion(options, output, channel)
+
+    return run
 
 
 def ask_for_verb(options: argparse.Namespace, group: VehicleGroup | None) -> RunVerb:

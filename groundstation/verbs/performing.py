@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from groundstation.verbs.common.lazy import LazyModule
+from groundstation.verbs.common.loading import load
 from groundstation.verbs.session.session import VerbSession
 
 if TYPE_CHECKING:
@@ -58,16 +59,20 @@ async def perform(
         return await action.run(session, options, output)
     if group is not None:
         return await _perform_for_group(session, action, options, output, group)
-    if action.finds:
-        await session.find_vehicle(options.wait, options.vehicle)
-    if action.needs_session:
-        await session.prove_session()
-    if action.shows_neutral:
-        await session.show_neutral()
-    if may_prove is not None and session.core.chosen is not None:
-        _keep(session, may_prove, output)
-    if action.finds:
-        found(session.vehicle.name)
+    loading = asyncio.ensure_future(load(action.run))  # meanwhile the vehicle answers
+    try:
+        if action.finds:
+            await session.find_vehicle(options.wait, options.vehicle)
+        if action.needs_session:
+            await session.prove_session()
+        if action.shows_neutral:
+            await session.show_neutral()
+        if may_prove is not None and session.core.chosen is not None:
+            _keep(session, may_prove, output)
+        if action.finds:
+            found(session.vehicle.name)
+    finally:
+        await loading
     return await action.run(session, options, output)
 
 

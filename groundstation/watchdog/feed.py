@@ -49,7 +49,7 @@ class WatchdogFeed:
     @classmethod
     def start(
         cls,
-        screen: socket.socket,
+        screen: socket.socket | None,
         terminal: str | None,
         ids: tuple[int, int],
         signing: Signing | None = None,
@@ -58,7 +58,7 @@ class WatchdogFeed:
     ) -> WatchdogFeed:
         """Start the watchdog, which signs with the same keys. Raises OSError.
 
-        `screen` leads to the screen for the watchdog alone, `of_station` for the station alone.
+        `screen` leads to the screen, if there is one, for the watchdog alone, `of_station` for the station alone.
         `read_keys` reads other keys into `signing` in the watchdog's process, when `set_flags(keys_version=)` says so.
         """
         return cls(*fork_watchdog(screen, terminal, signing, read_keys, of_station), ids)

@@ -6,7 +6,6 @@ waits for reports nearly all the time.
 
 from __future__ import annotations
 
-import contextlib
 import gc
 import os
 import select
@@ -14,12 +13,8 @@ import signal
 import socket
 import time
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
-import msgspec
-
-from groundstation.intents.session import Quit
-from groundstation.ipc import MAX_PACKET, decode_from_screen, encode
-from groundstation.snapshot import StationOutage
 from groundstation.watchdog.outlets import Outlets
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
 from groundstation.watchdog.terminal_reset import LAST_TRY, TerminalReset
@@ -27,14 +22,17 @@ from groundstation.watchdog.watchdog import Watchdog
 from link.runtime.local_socket import open_pair
 from link.signing.signing import Signing
 
+if TYPE_CHECKING:
+    from groundstation.watchdog.screen_end import ScreenEnd
+
 
 class WatchdogProcess:
-    """Runs the core. `station` is the socket to the station, `screen` that to the screen; neither blocks."""
+    """Runs the core. `station` is the socket to the station, which does not block; a verb has no `screen`."""
 
     def __init__(
         self,
         station: socket.socket,
-        screen: socket.socket,
+        screen: ScreenEnd | None,
         terminal: TerminalReset,
         signing: Signing | None = None,
         read_keys: Callable[[], None] | None = None,
@@ -46,8 +44,7 @@ class WatchdogProcess:
         self._watchdog = Watchdog(signing)
         self._read_keys, self._keys_version = read_keys, 0
         self._outlets = Outlets()
-        self._shown = StationOutage()
-        self._screen_gone = self._station_gone = self._screen_has_quit = False
+        self._station_gone = self._screen_has_quit = False
         self._reading: set[int] = set()
 
     def run(self) -> None:
@@ -62,8 +59,8 @@ class WatchdogProcess:
         waiting = select.poll()
         if not self._station_gone:
             waiting.register(self._station, select.POLLIN)
-        if not self._screen_gone:
-            waiting.register(self._screen, select.POLLIN)
+        if self._screen is not None and not self._screen.gone:
+            waiting.register(self._screen.fileno(), select.POLLIN)
         for descriptor in self._reading:
             waiting.register(descriptor, select.POLLIN)
         return [descriptor for descriptor, _ in waiting.poll(None if timeout is None else 1000 * timeout)]
@@ -78,21 +75,23 @@ class WatchdogProcess:
         for route, target, frame in self._watchdog.tick(now):
             self._watchdog.record_sent(target, self._outlets.write(route, frame))
         outage = self._watchdog.outage(now)
-        self._show(outage)
+        if self._screen is not None:
+            self._screen.show(outage)
         if outage.text:
             self._reset_terminal()
 
     def finish(self) -> None:
         """Reset the terminal if the screen is gone by now: both processes may have been killed together."""
-        self._read_screen()
+        if self._screen is not None:
+            self._screen.read()
         if self._needs_reset():
             self._terminal.insist(LAST_TRY)
 
     def _handle_event(self, descriptor: int, now: float) -> None:
         if descriptor == self._station.fileno():
             self._read_reports(now)
-        elif descriptor == self._screen.fileno():
-            self._read_screen()
+        elif self._screen is not None and descriptor == self._screen.fileno():
+            self._screen.read()
         else:
             self._read_vehicle(descriptor, now)
 
@@ -136,12 +135,6 @@ class WatchdogProcess:
         except (OSError, EOFError):
             self._reading.discard(descriptor)
 
-    def _show(self, outage: StationOutage) -> None:
-        if outage != self._shown:
-            with contextlib.suppress(OSError):  # a screen that does not read gets it later; one that is gone does not
-                self._screen.send(encode(outage))
-                self._shown = outage
-
     def _reset_terminal(self) -> None:
         """Reset the terminal once it has room; this process has no time to wait for that."""
         if self._needs_reset():
@@ -149,27 +142,12 @@ class WatchdogProcess:
 
     def _needs_reset(self) -> bool:
         """Return whether the screen is gone and has not left the terminal in order."""
-        return self._screen_gone and not self._screen_has_quit
-
-    def _read_screen(self) -> None:
-        """Read whether the screen quits, and whether its process has ended."""
-        while not self._screen_gone:
-            try:
-                packet = self._screen.recv(MAX_PACKET)
-            except BlockingIOError:
-                return
-            except ConnectionResetError:  # raised once, if it has not read all that it was sent
-                continue
-            except OSError:
-                packet = b""
-            self._screen_gone = not packet
-            with contextlib.suppress(msgspec.DecodeError):
-                if any(isinstance(each, Quit) for each in decode_from_screen(packet).intents):
-                    self._screen_has_quit = True
+        screen = self._screen
+        return screen is not None and screen.gone and not (screen.has_quit or self._screen_has_quit)
 
 
 def fork_watchdog(
-    screen: socket.socket,
+    screen: socket.socket | None,
     terminal: str | None,
     signing: Signing | None = None,
     read_keys: Callable[[], None] | None = None,
@@ -177,11 +155,13 @@ def fork_watchdog(
 ) -> tuple[int, socket.socket]:
     """Start the process; return its id and the socket to it. Call before there is any thread. Raises OSError.
 
+    `screen` leads to the screen; None: there is none.
     `of_station`, the station's own socket to the screen, is closed in the process: the screen sees the station's end.
     """
     ours, theirs = open_pair()
-    for half in (ours, theirs, screen):
+    for half in (ours, theirs):
         half.setblocking(False)
+    end = _open_screen(screen)
     reset = TerminalReset(terminal)
     gc.freeze()  # memory that no collection touches stays shared
     process = os.fork()
@@ -192,9 +172,19 @@ def fork_watchdog(
         ours.close()
         if of_station is not None:
             of_station.close()
-        _run(WatchdogProcess(theirs, screen, reset, signing, read_keys))
+        _run(WatchdogProcess(theirs, end, reset, signing, read_keys))
     finally:
         os._exit(0)
+
+
+def _open_screen(screen: socket.socket | None) -> ScreenEnd | None:
+    if screen is None:
+        return None
+    from groundstation.watchdog.screen_end import (
+        ScreenEnd,  # with all intents, which the watchdog of a verb does without
+    )
+
+    return ScreenEnd(screen)
 
 
 def _run(process: WatchdogProcess) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-
 TIMEX_SIZE = 512
 """Bytes: more than `struct timex` has on any machine (208 on 64 bits)."""
 TIME_ERROR = 5
@@ -16,6 +14,8 @@ def is_synchronized() -> bool:
     A computer without a battery for its clock starts with the time of its last shutdown (systemd-timesyncd,
     fake-hwclock). Only this tells that from the right time. https://man7.org/linux/man-pages/man2/adjtimex.2.html
     """
+    import ctypes  # by programs with keys: it takes 3 ms
+
     try:
         libc = ctypes.CDLL(None)
         state: int = libc.adjtimex(ctypes.create_string_buffer(TIMEX_SIZE))  # modes 0: only reads

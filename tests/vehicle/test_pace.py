@@ -64,6 +64,14 @@ def test_a_rover_rests_until_something_is_under_way(idle: Machine) -> None:
     assert idle.body.rest_period
 
 
+def test_a_newcomer_ends_the_rest_and_the_next_beat_does_not(idle: Machine) -> None:
+    idle.heartbeat(system=77)
+    assert idle.body.rest_period is None
+    idle.wait(BUSY_TIME + 1.0)
+    idle.heartbeat(system=77)
+    assert idle.body.rest_period == REST_PERIOD
+
+
 def test_a_message_during_a_rest_sees_the_emergency_stop(idle: Machine) -> None:
     idle.freeze(0.09)
     idle.pressed = "pressed"

@@ -36,6 +36,8 @@ class Telemetry:
         if logged:
             self._add(RECORDER, now)
             self._schedules[RECORDER].raise_level(DialectLevel.ROVER, now)
+        self.greet: Callable[[float], None] = lambda now: None
+        """Called with the time when a peer has introduced itself, which waits for our HEARTBEAT."""
         self._rates: Mapping[int, float] = {}
         self.shortest = math.inf
         """The shortest interval of a stream of any peer, s. Updated once a second."""
@@ -78,6 +80,7 @@ class Telemetry:
         if received.may_ask and received.peer not in self._schedules:
             self._add(received.peer, now)
             self._share_out()
+            self.greet(now)
 
     def handle_request_data_stream(self, received: Received, message: m.RequestDataStream, now: float) -> None:
         """Set the rate of a group of streams for the sender."""

@@ -16,12 +16,11 @@ import msgspec
 
 from groundstation.formats.errors import FileFormatError
 from groundstation.rover.protocol import MAX_LINE, Call, Ended, decode_call
-from groundstation.verbs.api.program_calls import ProgramCalls
+from groundstation.verbs.api.program_calls import ProgramCalls, parser_of
 from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
-from groundstation.verbs.line.parser import LineParser
-from groundstation.verbs.main import build_parser, choose_action
+from groundstation.verbs.main import choose_action
 from groundstation.verbs.session.endpoints import config_error
 from groundstation.verbs.session.session import VerbSession
 from groundstation.verbs.table import VERBS
@@ -112,6 +111,6 @@ def _prepare(call: Call) -> Any:
     """Return what the files and the configuration of the user say about a call. Raises VerbError, ConfigError."""
     if not call.words or call.words[0] not in VERBS:
         raise VerbError(ExitCode.USAGE, f"{' '.join(call.words)[:80]!r} is not a verb")
-    options = build_parser(call.words[0], LineParser).parse_args(call.words[1:])
+    options = parser_of(call.words[0]).parse_args(call.words[1:])
     action = choose_action(call.words[0], options)
     return None if action.prepare is None else action.prepare(options)

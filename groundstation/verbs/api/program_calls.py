@@ -11,6 +11,7 @@ import argparse
 import asyncio
 import logging
 import math
+from functools import cache
 from typing import Any
 
 import msgspec
@@ -23,7 +24,7 @@ from groundstation.verbs.api.call_output import CallOutput
 from groundstation.verbs.api.state import build_state
 from groundstation.verbs.common.channel import ChannelEndedError
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.common.lazy import LazyAttribute, LazyCall
+from groundstation.verbs.common.loading import load
 from groundstation.verbs.control import arm, drive, turn  # noqa: F401  # a call that drives waits for no import
 from groundstation.verbs.control.driving import leave
 from groundstation.verbs.line.parser import LineParser
@@ -31,6 +32,7 @@ from groundstation.verbs.main import build_parser, check_options, choose_action
 from groundstation.verbs.performing import perform
 from groundstation.verbs.session.session import VerbSession
 from link.core import Received
+from link.runtime.command_line import CommandLineParser
 
 log = logging.getLogger(__name__)
 
@@ -135,8 +137,7 @@ class ProgramCalls:
         action, options = await asyncio.to_thread(_parse, words, self._session.vehicle.system)
         options.given = given
         check_options(action, options)
-        if isinstance(action.run, LazyAttribute | LazyCall):
-            await asyncio.to_thread(action.run.resolve)
+        await load(action.run)
         if action.watches:
             return await self._perform(action, options, output)
         if action.stops:
@@ -176,9 +177,15 @@ class ProgramCalls:
         return code
 
 
+@cache
+def parser_of(verb: str) -> CommandLineParser:
+    """Return the parser of a verb: each call is parsed where the files of the user are, and where it runs."""
+    return build_parser(verb, LineParser)
+
+
 def _parse(words: list[str], vehicle: int) -> tuple[VerbAction, argparse.Namespace]:
     """Parse the words of a call. Raises VerbError."""
-    options = build_parser(words[0], LineParser).parse_args(words[1:])
+    options = parser_of(words[0]).parse_args(words[1:])
     action = choose_action(words[0], options)
     if action.offline or action.examines or action.companion is not None:
         raise VerbError(ExitCode.USAGE, f"{words[0]} is not for programs: run `mavhelm {words[0]}`")

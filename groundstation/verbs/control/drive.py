@@ -25,7 +25,6 @@ from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.requests.requests import RequestState
 from groundstation.verbs.common.arguments import LONGEST_HOLD, finite
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.common.local_file import read_text
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.control.arm import arm_first
 from groundstation.verbs.control.driving import (
@@ -37,7 +36,7 @@ from groundstation.verbs.control.driving import (
     need_accepted,
     need_control,
 )
-from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, can_play, parse_script
+from groundstation.verbs.control.key_script import KeyLine, KeyScript, SteadyDemand, can_play
 from groundstation.verbs.control.stop_jobs import emergency_job
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import finish, need_driven
@@ -107,6 +106,8 @@ def _read_course(options: argparse.Namespace) -> GivenCourse:
 
 def _read_script(options: argparse.Namespace) -> GivenCourse:
     from groundstation.config.effective import build_keymap, load_config, merge  # a steady demand does without
+    from groundstation.verbs.common.local_file import read_text
+    from groundstation.verbs.control.key_script_file import parse_script
 
     settings = merge(load_config(options.config, os.environ), os.environ, {}).settings
     keymap = build_keymap(settings)

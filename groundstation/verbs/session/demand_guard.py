@@ -9,7 +9,6 @@ from dialects.messages import Message
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.driving.stall import Standstill
 from groundstation.watchdog.feed import WatchdogFeed
-from link.runtime.local_socket import open_pair
 from link.signing.signing import Signing
 from link.transport.transport import Link
 
@@ -22,9 +21,7 @@ class DemandGuard:
 
     def __init__(self, ids: tuple[int, int], signing: Signing | None = None) -> None:
         """Start the process, which signs as this one does. Raises OSError."""
-        self._ours, theirs = open_pair()
-        self._feed = WatchdogFeed.start(theirs, None, ids, signing)
-        theirs.close()
+        self._feed = WatchdogFeed.start(None, None, ids, signing)
         self.standstill = Standstill()
         """After one the watchdog may have sent neutral, and no demand may follow."""
 
@@ -44,4 +41,3 @@ class DemandGuard:
     def close(self) -> None:
         """End the process: the last demands were neutral."""
         self._feed.close()
-        self._ours.close()

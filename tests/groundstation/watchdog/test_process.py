@@ -27,6 +27,7 @@ from groundstation.snapshot import StationOutage
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.watchdog.process import WatchdogProcess, fork_watchdog
 from groundstation.watchdog.report import DemandRoute, StationReport, encode_report
+from groundstation.watchdog.screen_end import ScreenEnd
 from groundstation.watchdog.terminal_reset import RESET, TerminalReset
 from link.protocol.framer import Framer
 from link.runtime.local_socket import open_pair
@@ -61,7 +62,7 @@ class Loop:
         terminal = TerminalReset(os.ttyname(self.slave))
         tty.setraw(self.slave)
         self.ends = theirs, screen
-        self.process = WatchdogProcess(theirs, screen, terminal, None, self._read_keys)
+        self.process = WatchdogProcess(theirs, ScreenEnd(screen), terminal, None, self._read_keys)
 
     def _read_keys(self) -> None:
         self.keys_read += 1
@@ -220,7 +221,7 @@ def test_keys_are_read_once_for_each_change(loop: Loop) -> None:
 
 
 def test_without_keys_a_change_of_them_is_nothing(loop: Loop) -> None:
-    process = WatchdogProcess(*loop.ends, TerminalReset(None))
+    process = WatchdogProcess(loop.ends[0], None, TerminalReset(None))
     loop.report(StationReport(keys_version=3))
     process.step(process.wait(0.0), 1000.0)
     assert loop.outages() == []

@@ -11,7 +11,8 @@ from groundstation.input.sticks import Sticks
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import EmergencyStop
 from groundstation.intents.vehicle import Disarm, SetMode
-from groundstation.verbs.control.key_script import KeyScript, parse_script
+from groundstation.verbs.control.key_script import KeyScript
+from groundstation.verbs.control.key_script_file import parse_script
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])
 
