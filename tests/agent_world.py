@@ -92,8 +92,10 @@ class AgentWorld(Drive):
         return self.loop.run_until_complete(self._with_agent(script))
 
     def close(self) -> None:
-        """Close the loop."""
+        """Close the loop, in which nothing of the agent runs any more."""
+        left = asyncio.all_tasks(self.loop)
         self.loop.close()
+        assert not left, "a task is destroyed before its end"
 
     async def _with_agent(self, script: Coroutine[Any, Any, Value]) -> Value:
         session = VerbSession(VerbCore(self.station, None), self.world.settle, lambda report: None)

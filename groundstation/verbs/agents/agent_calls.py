@@ -24,6 +24,7 @@ from groundstation.verbs.agents.arguments import InvalidArgumentError, check_arg
 from groundstation.verbs.agents.bounded_output import BoundedOutput, clean
 from groundstation.verbs.agents.tools import TOOLS, Tool, ToolEffect
 from groundstation.verbs.common.channel import ChannelEndedError
+from groundstation.verbs.common.endings import wait_for_ends
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyAttribute, LazyCall
 from groundstation.verbs.line.parser import LineParser
@@ -71,8 +72,7 @@ class AgentCalls:
                 self._tickets.pop(number, None)
             for task in list(self._tasks.values()):
                 task.cancel()
-            if self._tasks:
-                await asyncio.wait(set(self._tasks.values()))
+            await wait_for_ends(set(self._tasks.values()))
 
     def _handle(self, value: Any) -> None:
         """Handle what the companion has read, as plain values."""
@@ -203,7 +203,7 @@ class AgentCalls:
         finally:
             for each in (work, ended):
                 each.cancel()
-            await asyncio.wait({work, ended})
+            await wait_for_ends({work, ended})
 
     async def _work(
         self, ticket: Ticket, tool: Tool, action: VerbAction, options: argparse.Namespace, output: BoundedOutput

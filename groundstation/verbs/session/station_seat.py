@@ -12,6 +12,7 @@ from dialects import messages as m
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station.verbs.running_verbs import RunningVerb, VerbMessage
 from groundstation.station_socket.verb_run import STILL_WITHIN
+from groundstation.verbs.common.endings import wait_for_ends
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.session.core import VerbCore
 from link.core import Core, LinkReport, Received, RefusalListener
@@ -79,11 +80,15 @@ class StationSeat:
                 self.broken.result()
             return await verb
         finally:
-            if verb.cancel():
-                await asyncio.wait({verb}, timeout=END_WITHIN)
-                if verb.done() and not verb.cancelled() and (error := verb.exception()):
-                    log.info("%s: %s", self._verb.name, error)  # as of a file that cannot be kept: its shell has ended
-            self.leave()
+            try:
+                if verb.cancel():
+                    await wait_for_ends({verb}, END_WITHIN)
+                    if verb.done() and not verb.cancelled() and (error := verb.exception()):
+                        log.info(
+                            "%s: %s", self._verb.name, error
+                        )  # as of a file that cannot be kept: its shell has ended
+            finally:
+                self.leave()
 
     def leave(self) -> None:
         """End: send what is left."""
