@@ -395,23 +395,72 @@ with rover:
     assert first.process.wait(30) == 0, first.errors
 
 
-def test_two_rovers_without_a_station_do_not_drive_one_vehicle(road: Road) -> None:
+INTRUDER = """\
+rover = Rover("udpout:127.0.0.1:{port}", vehicle=1, wait=30)
+with rover:
+    for name, call in dict(
+        drive=lambda: rover.drive(-1.0, seconds=1),
+        turn=lambda: rover.turn(90),
+        goto=lambda: rover.goto(0.001, 0.001),
+        home=lambda: rover.home(),
+        mission=lambda: rover.start_mission(),
+        mode=lambda: rover.set_mode("AUTO"),
+    ).items():
+        try:
+            say(f"{{name}}: {{call()}}")
+        except RoverError as error:
+            say(f"{{name}}: {{type(error).__name__}}: {{error}}")
+    say(rover.armed)
+"""
+
+
+def test_a_program_cannot_drive_an_armed_rover_of_somebody_else(road: Road) -> None:
     port = free_port()
     road.vehicle.end()
     road.vehicle = Vehicle(road.folder, road.port, f"udpin:127.0.0.1:{port}")
-    first = road.start_driving()
-    second = road.start(f"""\
-rover = Rover("udpout:127.0.0.1:{port}", vehicle=1, wait=30)
+    first = road.start_driving(f"""\
 with rover:
-    try:
-        rover.drive(-1.0, seconds=1)
-    except RoverError as error:
-        say(f"{{type(error).__name__}}: {{error}}")
+    rover.arm(30)
+    while not os.path.exists({str(road.folder / "enough")!r}):
+        rover.drive(0.5, seconds=1)
+    say(rover.armed)
 """)
-    assert second.process.wait(30) == 0, second.errors
-    assert second.said.startswith("NotInControl"), second.said
-    assert all(value >= 0 for each in road.vehicle.outputs() for value in each.throttles)
+    second = road.start(INTRUDER.format(port=port))
+    assert second.process.wait(60) == 0, second.errors
+    *answers, armed = second.said.splitlines()
+    assert [each.split(": ")[0] for each in answers] == ["drive", "turn", "goto", "home", "mission", "mode"]
+    for each in answers:
+        assert each.split(": ")[1] in ("NotInControl", "Refused"), second.said
+        assert "GCS 254" in each, second.said
+    assert armed == "True", "its end does not disarm what somebody else has armed"
+    (road.folder / "enough").touch()
     assert first.process.wait(30) == 0, first.errors
+    assert first.said == "True\n"
+    assert all(value >= 0 for each in road.vehicle.outputs() for value in each.throttles)
+
+
+def test_a_program_leaves_nothing_open(road: Road) -> None:
+    program = road.start(f"""\
+import warnings
+warnings.simplefilter("always")
+with rover:
+    say(rover.mode)
+rover.open()
+rover.close()
+del rover
+try:
+    Rover("udpin:127.0.0.1:{free_port()}", wait=0.1).open()
+except NoVehicle as error:
+    say(error)
+with Rover.simulated() as rover:
+    say(rover.mode)
+del rover
+gc.collect()
+sys.stdin.close()
+""")
+    assert program.process.wait(60) == 0, program.errors
+    assert "no vehicle" in program.said
+    assert program.errors == ""
 
 
 def test_plans_are_values_and_files(road: Road, tmp_path: Path) -> None:
