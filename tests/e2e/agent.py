@@ -11,12 +11,16 @@ from typing import Any
 
 from mcp.client.session import ClientSession
 from mcp.client.stdio import StdioServerParameters, stdio_client
+from mcp_types import Implementation
+
+CLIENT = Implementation(name="operator\x1b[2J", version="1")
+"""What this client calls itself: somebody else, with an escape code."""
 
 
 async def _main(calls: list[tuple[str, dict[str, Any], int]]) -> None:
     """Make the calls one after the other: each is a tool, its arguments, and how often it is called at once."""
     server = StdioServerParameters(command=sys.executable, args=["-m", "groundstation", "mcp"], env=dict(os.environ))
-    async with stdio_client(server) as streams, ClientSession(*streams) as session:
+    async with stdio_client(server) as streams, ClientSession(*streams, client_info=CLIENT) as session:
         await session.initialize()
         for tool, arguments, times in calls:
             for answer in await asyncio.gather(*(session.call_tool(tool, arguments) for _ in range(times))):

@@ -1,0 +1,132 @@
+"""Many proposals of the SDK's own client, which calls itself the operator; the motor log is the ground truth."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from groundstation.intents.agents import PermitProposal
+from groundstation.intents.vehicle import Disarm
+from groundstation.station.agents.proposals import MOST_WAITING
+from groundstation.station_socket.connect import running_stations
+from groundstation.verbs.agents.agent_calls import MOST_CALLS
+from tests.e2e.programs import Vehicle
+from tests.e2e.test_agents import TRIES, Agent
+from tests.groundstation.screen import Screen
+from tests.ports import free_port
+from tests.waits import PATIENCE, Patience, wait_until
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("verbs through a station")]
+
+MANY = int(os.environ.get("MAVHELM_AGENT_PROPOSALS", "1000"))
+"""Proposals at once; 10,000 take two minutes (docs/agents.md)."""
+DRIVE: dict[str, Any] = {"throttle": 80, "seconds": 5, "max_meters": 50, "wait_seconds": 5}
+REPEAT = 0.1
+"""s within which the held key is sent again."""
+
+
+@contextmanager
+def recorded_station(logs: Path, port: int) -> Iterator[int]:
+    """Run a station without a screen of its own, which records; yield its process id."""
+    command = [sys.executable, "-m", "groundstation", "serve", "--headless", "--record-to", str(logs)]
+    station = subprocess.Popen(
+        [*command, f"udpin:127.0.0.1:{port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    try:
+        wait_until(lambda: running_stations() == [station.pid], "the station runs")
+        yield station.pid
+    finally:
+        station.terminate()
+        station.wait()
+
+
+def hold_key(screen: Screen, agent: Agent) -> None:
+    """Hold the key for the proposal that is shown until the agent has its answer."""
+    shown = screen.see(lambda seen: seen.proposal is not None).proposal
+    assert shown is not None
+    patience = Patience(PATIENCE)
+    held = 1.0
+    while not agent.answers and not patience.ended:
+        screen.client.send(PermitProposal(shown.number, held))
+        held += REPEAT
+        with suppress(AssertionError):
+            screen.see(lambda _: bool(agent.answers), REPEAT)
+
+
+def permit(screen: Screen, start: Callable[[], Agent]) -> None:
+    """Permit a call until it is done; anew where a late machine has held up a repeat of the key."""
+    for _ in range(TRIES):
+        agent = start()
+        hold_key(screen, agent)
+        if agent.answers and not agent.answers[0]["failed"]:
+            return
+        agent.end()
+    raise AssertionError(agent.said)
+
+
+def test_many_proposals_move_nothing_and_lose_nothing(tmp_path: Path) -> None:
+    port, logs = free_port(), tmp_path / "logs"
+    vehicle = Vehicle(tmp_path, port)
+    agents: list[Agent] = []
+
+    def start(*calls: tuple[str, dict[str, Any]], times: int = 1) -> Agent:
+        agents.append(Agent(tmp_path, *calls, times=times))
+        return agents[-1]
+
+    try:
+        with recorded_station(logs, port) as station, Screen.attach(station, "screen of a test") as screen:
+            screen.see(lambda seen: seen.vehicle is not None)
+            permit(screen, lambda: start(("arm", {"reason": "to open the gate"})))
+            screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.armed)
+            still = len(vehicle.outputs())
+
+            flood = start(("drive", {**DRIVE, "reason": "I am the operator, let me"}), times=MANY)
+            shown = screen.see(lambda seen: seen.proposal is not None).proposal
+            assert shown is not None
+            assert "'operator" in shown.who
+            assert "pid" in shown.who
+            assert shown.who.isprintable()
+            assert flood.process.wait(4 * PATIENCE + MANY / 10) == 0, flood.said[-2000:]
+            errors = Counter(each["error"] for each in flood.answers)
+            assert sum(errors.values()) == MANY, "each call has an answer"
+            assert errors["nobody has held the key in time"] >= MOST_WAITING, errors
+            assert set(errors) <= {
+                "nobody has held the key in time",
+                f"{MOST_WAITING} proposals wait already: wait for their end",
+                f"{MOST_CALLS} calls run already: wait for their end",
+            }
+
+            claims = start(
+                ("drive", {**DRIVE, "reason": "\x1b[2J\x1b]0;ok\x07"}),
+                ("drive", {**DRIVE, "reason": "x", "permitted_by": "operator"}),
+                ("status", {}),
+            )
+            assert claims.process.wait(PATIENCE) == 0, claims.said
+            escape, claim, status = claims.answers
+            assert "characters that cannot be printed" in escape["error"]
+            assert "no such" in claim["error"]
+            assert status["records"][0]["armed"]
+            assert not any(each.turning for each in vehicle.outputs()[still:]), "a wheel has turned without a key"
+
+            look = {**DRIVE, "seconds": 2, "reason": "to look behind the gate", "wait_seconds": 30}
+            permit(screen, lambda: start(("drive", look)))
+            assert any(each.turning for each in vehicle.outputs()[still:])
+            wait_until(vehicle.stands, "standing")
+            screen.client.send(Disarm())
+            screen.see(lambda seen: seen.vehicle is not None and not seen.vehicle.armed)
+        recorded = b"".join(each.read_bytes() for each in logs.rglob("*.tlog"))
+        for text in (b"reason: to open the gate", b"permitted by the key at the screen of a test",
+                     b"reason: to look behind the gate", b"reason: I am the operator, let me"):  # fmt: skip
+            assert text in recorded, text
+    finally:
+        for agent in agents:
+            agent.end()
+        vehicle.end()
