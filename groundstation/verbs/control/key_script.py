@@ -13,9 +13,9 @@ from groundstation.input.keymap import KeyEvent, Keymap
 from groundstation.input.sticks import Sticks
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, StepLimits, Stop
-from groundstation.intents.vehicle import SetMode
+from groundstation.intents.vehicle import Disarm, SetMode
 
-PLAYED = (DriveKeyDown, Stop, EmergencyStop, StepLimits, SetStyle, SetMode)
+_PLAYED = (DriveKeyDown, Stop, EmergencyStop, StepLimits, SetStyle, SetMode)
 """What keys of a script may request, beside what `when_armed` of an action does."""
 
 
@@ -33,7 +33,7 @@ def can_play(action: OperatorAction | None) -> bool:
     """Return whether a script may press a key with this action."""
     return (
         action is not None
-        and isinstance(action.when_armed or action.intent, (*PLAYED, Disarm))
+        and isinstance(action.when_armed or action.intent, (*_PLAYED, Disarm))
         and (not action.confirm or action.when_armed is not None)
     )
 
