@@ -202,6 +202,27 @@ def test_the_gamepad_let_go_hovers(build: Build) -> None:
 
 
 @COPTERS
+@pytest.mark.parametrize("mode", ["STABILIZE", "ACRO", "RTL", "LAND"])
+def test_the_gamepad_flies_in_no_mode_that_is_not_for_keys(build: Build, mode: str) -> None:
+    cockpit = hovering_cockpit(build())
+    copter = cockpit.copter
+
+    def push(seconds: float) -> list[m.ManualControl]:
+        at = cockpit.now + 0.03
+        for count in range(round(seconds / 0.05)):
+            cockpit.do(DrivePad(1.0, 0.5, side=1.0, climb=-1.0, read_at=cockpit.now, repeat=count > 0))
+            cockpit.run(0.05)
+        return [message for when, message in copter.all(m.ManualControl) if when > at]
+
+    assert min(each.z for each in push(0.5)) < HOVER
+    names = {"STABILIZE": "STABILIZED", "RTL": "AUTO_RTL", "LAND": "AUTO_LAND"}
+    copter.set_mode(mode if isinstance(copter, ArduCopter) else names.get(mode, mode))
+    cockpit.run(0.03)
+    assert {(each.x, each.y, each.z, each.r) for each in push(1.5)} <= {(0, 0, HOVER, 0)}
+    assert cockpit.operator.gate_reason.startswith("mode ")
+
+
+@COPTERS
 def test_space_stops_what_flies_itself(build: Build) -> None:
     cockpit = hovering_cockpit(build())
     copter = cockpit.copter

@@ -35,9 +35,12 @@ HOVERS_FOR = 2.0
 class Flight:
     """A station process whose operator has taken off a copter and flies it ahead."""
 
-    def __init__(self, copter: FlyingVehicle, line: str, stack: ExitStack) -> None:
+    def __init__(
+        self, copter: FlyingVehicle, line: str, stack: ExitStack, join: Callable[[str], str] = lambda endpoint: endpoint
+    ) -> None:
+        """`join`: takes the endpoint of the copter, and returns that of the station, with what is between them."""
         self.copter = stack.enter_context(on_line(copter, line))
-        self.screen = stack.enter_context(Screen(copter.endpoint))
+        self.screen = stack.enter_context(Screen(join(copter.endpoint)))
         self.station = self.screen.client.pid
         send, insist = self.screen.client.send, self.screen.insist
         self.screen.see(lambda seen: seen.vehicle is not None)

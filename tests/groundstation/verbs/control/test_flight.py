@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -76,6 +77,7 @@ with Rover({endpoint!r}) as rover:
     rover.arm(wait=20)
     rover.take_off({height})
     rover.drive(0.5, seconds=1)
+    rover.drive(0, side=0.5, climb=0.5, seconds=1.5)
     print("driven", flush=True)
     sys.stdin.read()
 """
@@ -96,17 +98,37 @@ def test_a_program_keeps_it_hovering_until_it_ends(build: Callable[[], FlyingVeh
             assert process.stdout.readline() == "driven\n"
             assert copter.north > 0.3
             wait_until(lambda: copter.speed < 0.1)
-            at = time.monotonic()
+            assert copter.east > 0.3
+            assert copter.lowest_z >= HOVER
+            height, at = copter.altitude, time.monotonic()
+            assert height > HEIGHT + 0.2
             wait_until(lambda: time.monotonic() > at + HOVERS_FOR or copter.mode_name in HOMEWARD)
             assert copter.mode_name in ("LOITER", "POSCTL")
-            assert copter.altitude == pytest.approx(HEIGHT, abs=LOSS)
+            assert copter.altitude == pytest.approx(height, abs=LOSS)
             if killed:
                 process.kill()
             else:
                 process.stdin.close()
             wait_until(lambda: copter.mode_name in HOMEWARD)
-        assert copter.altitude == pytest.approx(HEIGHT, abs=LOSS)
+        assert copter.altitude == pytest.approx(height, abs=LOSS)
         assert copter.lowest_z >= HOVER
+
+
+def test_a_script_and_a_demand_move_it_down_and_sideways(tmp_path: Path) -> None:
+    script = tmp_path / "run.keys"
+    script.write_text("0 press o\n1.0 release o\n1.2 press s\n2.2 release s\n")
+    with on_line(ArduCopter(), "udpin") as copter:
+        copter.lift(HEIGHT)
+        code, said = verb(copter.endpoint, "drive", "--script", str(script))
+        assert (code, copter.lowest_z < HOVER) == (ExitCode.DONE, True), said
+        assert copter.east > 0.3
+        assert HEIGHT - 1.5 < copter.altitude < HEIGHT - 0.1
+        code, said = verb(copter.endpoint, "drive", "--side", "-50", "--for", "1")
+        assert code == ExitCode.DONE, said
+        script.write_text("0 press m\n1 release m\n")
+        code, said = verb(copter.endpoint, "drive", "--script", str(script))
+        assert (code, "m is no key that moves a copter" in said) == (ExitCode.REFUSED, True), said
+        assert copter.mode_name == "LOITER"
 
 
 def test_what_does_not_fly_is_refused() -> None:
@@ -114,5 +136,7 @@ def test_what_does_not_fly_is_refused() -> None:
         for words in (("takeoff", "3"), ("land",)):
             code, said = verb(vehicle.endpoint, *words)
             assert (code, "a rover does not fly" in said) == (ExitCode.REFUSED, True), said
+        code, said = verb(vehicle.endpoint, "drive", "--climb", "30", "--for", "1")
+        assert (code, "a rover does not move sideways and does not climb" in said) == (ExitCode.REFUSED, True), said
     with pytest.raises(argparse.ArgumentTypeError, match="from 1 to 30 m"):
         altitude("31")
