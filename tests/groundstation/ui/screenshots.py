@@ -25,6 +25,7 @@ with needing("test,pictures"):
     from tests.groundstation.ui.replay_picture import replay
     from tests.groundstation.ui.screenshots_connect import connect, files, links
     from tests.groundstation.ui.screenshots_drive import drive, mission, params
+    from tests.groundstation.ui.screenshots_flight import flight
 
 
 SIZES = ((80, 24), (140, 45))
@@ -36,6 +37,7 @@ GROUPS: dict[str, Callable[[tuple[int, int]], Awaitable[dict[str, frames.Picture
     "connect": connect,
     "files": files,
     "links": links,
+    "flight": flight,
     "replay": replay,
 }
 """Name -> what takes the pictures of a size, by name. They become files later: that holds up the app's loop."""

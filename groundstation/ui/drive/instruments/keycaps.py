@@ -217,4 +217,4 @@ def bound_parts(value: KeycapsValue) -> list[Part]:
     bound = (f"{value.stop_bound:.2f} s", style(TEXT))
     if value.promises_releases:
         return [("timer ", style(DIM)), bound, (" till a release", style(DIM))]
-    return [("timer: stops within ", style(DIM)), bound]
+    return [("timer: within " if value.flies else "timer: stops within ", style(DIM)), bound]

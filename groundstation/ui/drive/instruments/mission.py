@@ -19,6 +19,10 @@ FAR = 9999.5
 """m from which on distances are in km."""
 
 
+NEAR = 1.0
+"""m from home within which its direction says nothing."""
+
+
 class FlightFigures(msgspec.Struct, frozen=True):
     """What a pilot looks at beside the altitude, rounded to what is drawn."""
 
@@ -35,7 +39,8 @@ class FlightFigures(msgspec.Struct, frozen=True):
         bearing = None
         if vehicle.home is not None and vehicle.position is not None:
             north, east = (home - here for home, here in zip(vehicle.home, vehicle.position, strict=True))
-            bearing = round(math.degrees(math.atan2(east, north))) % 360
+            if math.hypot(north, east) >= NEAR:
+                bearing = round(math.degrees(math.atan2(east, north))) % 360
         speed, climb = finite_or_none(vehicle.speed_over_ground), finite_or_none(vehicle.climb)
         return cls(
             None if speed is None else round(speed, 1),
