@@ -32,7 +32,7 @@ def build_pages() -> Iterator[Page]:
         examples = [(each.command, each.note) for each in row.examples]
         yield Page(f"{STATION}-{verb}", row.help, build_verb_parser(verb), examples, [STATION])
     for verb, row in LOCAL_VERBS.items():
-        build_parser = getattr(import_module(f"groundstation.cli.{verb}_verb"), BUILDERS.get(verb, "build_parser"))
+        build_parser = getattr(import_module(f"groundstation.cli.local.{verb}"), BUILDERS.get(verb, "build_parser"))
         yield Page(f"{STATION}-{verb}", row.help, build_parser(), (), [STATION])
     yield Page(BRIDGE, PROGRAMS["bridge"].help, build_bridge_parser(), (), [STATION])
     names = [f"{VEHICLE}-{name}" for name in SUBCOMMANDS]
