@@ -144,3 +144,13 @@ def test_wrong_deeds_of_the_first_lesson_get_their_hints() -> None:
         assert course.attempt.hint.startswith("That was a turn")
     course.go(9, FORWARD, speed=1.0)
     assert (course.attempt.step, course.attempt.hint) == (2, "")
+
+
+def test_a_rover_that_holds_again_behind_a_cut_gets_its_hint() -> None:
+    """A late HOLD may come behind the MANUAL that the step before has asked for."""
+    course = Course()
+    course.attempt = Attempt(load_course()[3].lesson, 4)
+    course.go(1, FORWARD)
+    assert not course.attempt.hint
+    course.go(1, FORWARD, mode="HOLD")
+    assert course.attempt.hint == "The rover is in mode HOLD now. Press `vehicle.manual`, then hold `drive.forward`."
