@@ -151,6 +151,7 @@ def test_a_rover_that_holds_again_behind_a_cut_gets_its_hint() -> None:
     course = Course()
     course.attempt = Attempt(load_course()[3].lesson, 4)
     course.go(1, FORWARD)
-    assert not course.attempt.hint
+    hints = [course.attempt.hint]
     course.go(1, FORWARD, mode="HOLD")
-    assert course.attempt.hint == "The rover is in mode HOLD now. Press `vehicle.manual`, then hold `drive.forward`."
+    hints.append(course.attempt.hint)
+    assert hints == ["", "The rover is in mode HOLD now. Press `vehicle.manual`, then hold `drive.forward`."]
