@@ -240,7 +240,7 @@ def robbed(*, signs: bool) -> tuple[LinksDrive, Thief]:
     return drive, thief
 
 
-def test_a_copied_id_swallows_a_command_but_neither_demands_nor_stops() -> None:
+def test_a_copied_id_swallows_single_commands_and_no_stop() -> None:
     drive, thief = robbed(signs=False)
     assert drive.power > 0.5
     drive.tell(SetMode(Mode.GUIDED.name))

@@ -43,7 +43,7 @@ def test_a_scan_is_turned_to_the_nose() -> None:
     assert readings.nearest(9.0, newest=False) is None
 
 
-def test_of_our_vehicle_the_newest_report_counts_of_others_the_nearest() -> None:
+def test_our_newest_report_counts_and_the_nearest_of_others() -> None:
     readings = ObstacleReadings()
     readings.handle_around(scan(60), None, 0.0)
     readings.handle_sensor(sensor(200, 2), 0.5)

@@ -232,7 +232,7 @@ def test_an_open_file_goes_on_over_another_link_of_its_client() -> None:
     assert {each.peer for each in vehicle.server.tick(0.1)} == {PEER}
 
 
-def test_an_answer_that_was_lost_with_the_link_comes_on_the_other_one() -> None:
+def test_an_answer_lost_with_its_link_comes_on_the_other_one() -> None:
     vehicle = FtpRig()
     remove = FtpPacket(9, FtpOpcode.REMOVE, data=b"/missions/old.plan")
     vehicle.send(remove)

@@ -220,7 +220,7 @@ def test_an_upload_goes_on_over_another_link_of_its_sender() -> None:
     assert (repeated.peer, repeated.message.type) == (OTHER_PEER, MissionResult.ACCEPTED)
 
 
-def test_a_plan_on_its_way_to_the_disk_is_acknowledged_on_the_new_link() -> None:
+def test_a_plan_being_saved_is_acknowledged_on_the_new_link() -> None:
     vehicle = MissionRig(disk=[], others=[PEER])
     vehicle.ask(m.MissionCount(1, 1, 1))
     assert vehicle.give(waypoint(0), 0) == []
