@@ -72,7 +72,7 @@ class Outgoing(NamedTuple):
     """Several peers, on any links; the message is encoded once."""
 
 
-class Route(NamedTuple):
+class AddressPair(NamedTuple):
     """Between which addresses the frames of a peer go: peers with one local address share a network."""
 
     local: str
@@ -155,7 +155,7 @@ class LinkReport(msgspec.Struct, frozen=True):
     """Why the link is down, or None."""
     capacity: float | None = None
     """Bytes/s that the link carries; None where unknown (UDP, TCP). All telemetry together must stay well below."""
-    routes: Mapping[Peer, Route] = msgspec.field(default_factory=dict)
+    routes: Mapping[Peer, AddressPair] = msgspec.field(default_factory=dict)
     """Of the first peers that sent a HEARTBEAT; none of serial ports."""
     headroom: float = 1.0
     """Share of the capacity that may be used now, 0..1; RADIO_STATUS of a telemetry radio reduces it."""

@@ -11,8 +11,8 @@ PACKAGES = ("groundstation", "link", "vehicle")
 """Not dialects: its modules are generated, and pymavlink names their classes."""
 MOST = 17
 """Modules flat in one room."""
-LARGER = {"vehicle/commands"}
-"""Rooms that may have more: a module for each command of MAVLink, all alike."""
+LARGER = {"vehicle/commands", "link/transport"}
+"""Rooms that may have more: a module for each command of MAVLink, or for each kind of endpoint, all alike."""
 CLASS = re.compile(r"^class ([A-Za-z]\w*)", re.MULTILINE)
 SHARED = {"Fence", "Position", "Rover"}
 """The client's view of what the vehicle has, by the same name on purpose: `groundstation.rover` is a public API."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import socket
 
-from link.core import Peer, Route
+from link.core import AddressPair, Peer
 from link.endpoint import parse_endpoint
 from link.transport.route import MAX_PEERS, find_routes
 from link.transport.transport import Outlet
 from link.transport.udp import open_udp
 from tests.ports import free_port
 
-HERE = Route("127.0.0.1", "127.0.0.1")
+HERE = AddressPair("127.0.0.1", "127.0.0.1")
 
 
 def test_a_listening_and_a_connected_socket_have_routes() -> None:
