@@ -21,6 +21,7 @@ from dialects.axes import (
     PX4_COPTER_AXES,
     PX4_DEAD,
     AxisMap,
+    axis_map,
 )
 from dialects.enums import Autopilot, ModeFlag, VehicleType, type_name
 from dialects.mode_tables import (
@@ -284,13 +285,14 @@ KINDS: Mapping[int, TypeRow] = {
 def find_kind(autopilot: int, kind: int) -> VehicleKind:
     """Return the kind of a vehicle with these MAV_AUTOPILOT and MAV_TYPE."""
     row = KINDS.get(kind)
+    modes, aliases, axes = _modes(autopilot, kind), _aliases(autopilot), axis_map(autopilot, kind)
     if row is None:
-        return VehicleKind("vehicle", _unknown(kind), _modes(autopilot, kind), _aliases(autopilot), falls=True)
+        return VehicleKind("vehicle", _unknown(kind), modes, aliases, axes=axes, falls=True)
     driven = DRIVEN.get((row.word, autopilot))
     if driven is not None:
         return driven
     refusal = f"keys do not drive a {row.word}: {row.why}"
-    return VehicleKind(row.word, refusal, _modes(autopilot, kind), _aliases(autopilot), falls=row.falls)
+    return VehicleKind(row.word, refusal, modes, aliases, axes=axes, falls=row.falls)
 
 
 DRIVEN_WORDS = "rovers, boats and multicopters"

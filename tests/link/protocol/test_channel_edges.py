@@ -38,7 +38,7 @@ from tests.link.signing.signed import vehicle as guarded
 
 GREETS = SigningPolicy(unsigned=None, greets_late=True)
 NAME = "udpin:127.0.0.1:14550"
-SET_BY_THE_RUNNER = {"frames_sent", "bytes_sent", "watch_only", "retry_in"}
+SET_BY_THE_RUNNER = {"frames_sent", "bytes_sent", "watch_only", "retry_in", "routes"}
 """Fields of a report that a channel does not know."""
 
 
