@@ -159,6 +159,31 @@ def test_a_held_key_permits_the_proposal_it_was_pressed_for(world: AgentWorld) -
     world.run_agent(script())
 
 
+def test_a_setting_that_waits_ends_with_its_call(world: AgentWorld) -> None:
+    """The link is cut while a permitted set waits for its answer: once it is cancelled nothing repeats it."""
+
+    def requests() -> bool:
+        return any("VerbSession.request" in repr(task.get_coro()) for task in asyncio.all_tasks())
+
+    async def script() -> None:
+        await world.see(lambda: world.station.snapshot(world.world.now, 0).vehicle is not None)
+        await asyncio.sleep(2.0)
+        number = world.call("set_param", name="FS_TIMEOUT", value=3, reason="cut")
+        await world.see(lambda: world.station.proposals.shown)
+        world.hold()
+        await world.see(requests)
+        world.world.cut()
+        await asyncio.sleep(0.1)
+        assert requests()
+        world.channel.push({"type": "cancel", "id": number})
+        await world.see(lambda: not world.runs)
+        world.release()
+        await asyncio.sleep(1.0)
+        assert not requests()
+
+    world.run_agent(script())
+
+
 def test_a_vehicle_that_drives_itself_gets_hold_on_release(world: AgentWorld) -> None:
     async def script() -> None:
         await begin(world)

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from groundstation.natural_order import natural_key
 from groundstation.vehicles.requests.param_requests import param_type_name
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
+from groundstation.verbs.common.endings import wait_for_ends
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.common.nearest import describe_nearest
 from groundstation.verbs.common.output import Output
@@ -102,18 +103,24 @@ async def _access(session: VerbSession, name: str, start: RequestStart) -> Reque
     """
     client = session.services.params.client
     asking = asyncio.ensure_future(session.request(start))
-    await asyncio.wait({asking}, timeout=ANSWERED_WITHIN)
-    if asking.done():
+    requests = [asking]
+    try:
+        await asyncio.wait({asking}, timeout=ANSWERED_WITHIN)
+        if asking.done():
+            return await asking
+        listing = asyncio.ensure_future(session.request(session.services.params.fetch))
+        requests.append(listing)
+        await asyncio.wait({asking, listing}, return_when=asyncio.FIRST_COMPLETED)
+        listed = listing.done() and listing.result().state is RequestState.ACCEPTED
+        if listed and name not in client.params:
+            hint = describe_nearest(name, client.params)
+            raise VerbError(ExitCode.DIFFERS, f"{session.vehicle.name}: it has no {name}{hint}")
+        listing.cancel()
         return await asking
-    listing = asyncio.ensure_future(session.request(session.services.params.fetch))
-    await asyncio.wait({asking, listing}, return_when=asyncio.FIRST_COMPLETED)
-    listed = listing.done() and listing.result().state is RequestState.ACCEPTED
-    if listed and name not in client.params:
-        asking.cancel()
-        hint = describe_nearest(name, client.params)
-        raise VerbError(ExitCode.DIFFERS, f"{session.vehicle.name}: it has no {name}{hint}")
-    listing.cancel()
-    return await asking
+    finally:  # also where the verb is cancelled: it must not go on asking, or setting
+        for each in requests:
+            each.cancel()
+        await wait_for_ends(requests)
 
 
 async def fetch(session: VerbSession, output: Output) -> int:
