@@ -31,6 +31,7 @@ from tests.waits import PATIENCE, Patience, Waits
 
 pytestmark = [
     pytest.mark.e2e,
+    pytest.mark.xdist_group("browser"),  # several at once starve each other
     pytest.mark.skipif(missing_package() is not None, reason="the extra [web] is not installed"),
 ]
 needs_chromium = pytest.mark.skipif(

@@ -70,6 +70,7 @@ def test_a_lesson_is_passed_by_its_text_alone(
     assert "Traceback" not in ended
 
 
+@pytest.mark.xdist_group("browser")
 @pytest.mark.skipif(missing_package() is not None, reason="the extra [web] is not installed")
 @pytest.mark.skipif(PROGRAM is None and "MAVHELM_CI" not in os.environ, reason="chromium is not installed")
 @pytest.mark.parametrize("number", IN_A_TAB)
