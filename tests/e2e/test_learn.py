@@ -6,7 +6,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -17,7 +17,7 @@ from tests.e2e.browser_terminal import tab_of
 from tests.e2e.chromium import PROGRAM
 from tests.e2e.other_terminals import OtherTerminals
 from tests.e2e.programs import LET_GO
-from tests.e2e.pupil import Pupil
+from tests.e2e.pupil import Pupil, Size
 from tests.e2e.ros1.marks import NEEDS_ROS
 from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.tmux_marks import IN_TMUX
@@ -29,9 +29,13 @@ __all__ = ["tmux"]
 pytestmark = IN_TMUX
 
 SMALL, LARGE = (80, 24), (140, 45)
-LESSONS = [pytest.param(each, marks=[NEEDS_ROS] if each == 9 else []) for each in range(1, 11)]
-IN_A_TAB = (2, 10)
-"""Lessons that are learnt in a browser: what is driven, found and typed there, and the keys that are given up."""
+EVERY_SIZE = "MAVHELM_EVERY_LESSON" in os.environ
+"""Each lesson wholly in each size and in a browser; else the size changes with each task, and two are in a browser."""
+SIZES = {"in turn": (SMALL, LARGE)} if not EVERY_SIZE else {"80x24": (SMALL,), "140x45": (LARGE,)}
+NUMBERS = range(1, 11)
+LESSONS = [pytest.param(each, marks=[NEEDS_ROS] if each == 9 else []) for each in NUMBERS]
+IN_A_TAB = [each for each in LESSONS if EVERY_SIZE or each.values[0] in (2, 10)]
+"""What is driven, found and typed in a browser, and the keys that are given up."""
 
 
 @pytest.fixture(autouse=True)
@@ -50,12 +54,13 @@ def others(tmp_path: Path) -> Iterator[OtherTerminals]:
     opened.end()
 
 
+@pytest.mark.parametrize("sizes", SIZES.values(), ids=SIZES)
 @pytest.mark.parametrize("number", LESSONS)
 def test_a_lesson_is_passed_by_its_text_alone(
-    tmux: Callable[..., Tmux], tmp_path: Path, others: OtherTerminals, number: int
+    tmux: Callable[..., Tmux], tmp_path: Path, others: OtherTerminals, number: int, sizes: Sequence[Size]
 ) -> None:
-    """The tasks are read and done in two sizes of the terminal in turn."""
-    sizes = [SMALL, LARGE] if number % 2 else [LARGE, SMALL]
+    if number % 2 == 0:
+        sizes = sizes[::-1]
     terminal = tmux(*SMALL, "learn", str(number))
     pupil = Pupil(terminal, SMALL[0], others if number > 8 else None, sizes)
     last = pupil.learn()
