@@ -44,8 +44,8 @@ class Peer:
         """Messages published so far."""
         self._held: dict[str, Any] = {}
 
-    def twist(self, x: float, z: float = 0.0) -> None:
-        self.put("cmd_vel", TWIST, CDR + struct.pack("<6d", x, 0, 0, 0, 0, z))
+    def twist(self, x: float, z: float = 0.0, up: float = 0.0) -> None:
+        self.put("cmd_vel", TWIST, CDR + struct.pack("<6d", x, 0, up, 0, 0, z))
 
     def stamped(self, x: float) -> None:
         header = struct.pack("<iII4s", 0, 0, 1, b"")  # a stamp, the length of an empty text, its end and padding
