@@ -44,7 +44,8 @@ GROUPS: dict[str, Callable[[tuple[int, int]], Awaitable[dict[str, frames.Picture
 
 
 def write_pictures(folder: Path, groups: list[str]) -> None:
-    """Write the pictures of these groups into a folder."""
+    """Write the pictures of these groups into a folder, which is made if it is missing."""
+    folder.mkdir(parents=True, exist_ok=True)
     for group in groups:
         for width, height in SIZES:
             for name, picture in asyncio.run(_await(GROUPS[group]((width, height)))).items():
