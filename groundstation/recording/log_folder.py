@@ -7,9 +7,6 @@ station or another one, is locked and never removed. Files with other names are 
 from __future__ import annotations
 
 import contextlib
-import errno
-import fcntl
-import os
 import re
 import time
 from collections.abc import Callable, Iterator
@@ -17,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from groundstation.stream.names import find_parts
+from link.runtime.growing_file import create_locked, free_space, is_locked, require_free_space
 from link.runtime.whole_file import sync_folder
 from link.tlog.raw_file import RawFile
 from link.tlog.split_file import SplitFile
@@ -28,7 +26,6 @@ SYNC_INTERVAL = 1.0
 """s between two syncs to the disk: what a power cut may lose, beside the time that a sync takes."""
 _NAME = re.compile(r"\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d(?:-\d+)?\.tlog")
 _TIME = "%Y-%m-%d_%H-%M-%S"
-_CREATE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
 
 
 class LogLimits(NamedTuple):
@@ -48,11 +45,6 @@ class CurrentLog(NamedTuple):
     """time.monotonic() of its start, s."""
 
 
-def _free_space(folder: Path) -> int:
-    status = os.statvfs(folder)
-    return status.f_bavail * status.f_frsize
-
-
 class LogFolder:
     """The folder. Names have the local time, as the user's clock shows it."""
 
@@ -62,7 +54,7 @@ class LogFolder:
         limits: LogLimits,
         *,
         clock: Callable[[], float] = time.time,
-        free: Callable[[Path], int] = _free_space,
+        free: Callable[[Path], int] = free_space,
     ) -> None:
         self.path = path
         self.current: CurrentLog | None = None
@@ -94,8 +86,6 @@ class LogFolder:
         path, descriptor = self._create()
         with contextlib.suppress(OSError):  # a file system that cannot
             sync_folder(self.path)
-        with contextlib.suppress(OSError):  # a file system without locks
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         self.current = CurrentLog(path, time.monotonic())
         return RawFile(descriptor)
 
@@ -105,7 +95,7 @@ class LogFolder:
         while True:
             path = self.path / (f"{stamp}.tlog" if number == 1 else f"{stamp}-{number}.tlog")
             try:
-                return path, os.open(path, _CREATE, 0o600)
+                return path, create_locked(path)
             except FileExistsError:
                 number += 1
 
@@ -118,8 +108,7 @@ class LogFolder:
                     current.path.unlink()
 
     def _require_free_space(self) -> None:
-        if self._free(self.path) < FREE_SPACE_MIN:
-            raise OSError(errno.ENOSPC, f"less than {FREE_SPACE_MIN >> 20} MiB free", str(self.path))
+        require_free_space(self.path, FREE_SPACE_MIN, self._free)
 
     def _remove_oldest(self) -> None:
         sizes = {path: path.stat().st_size for path in self._logs()}
@@ -127,7 +116,7 @@ class LogFolder:
         for path in sorted(sizes, key=_order):
             if sum(sizes.values()) <= room:
                 break
-            if not _is_locked(path):
+            if not is_locked(path):
                 for each in (*find_parts(path), path):  # its pictures, too
                     each.unlink(missing_ok=True)
                 del sizes[path]
@@ -142,18 +131,3 @@ def _order(path: Path) -> tuple[str, int]:
     """Return the time of a name and the number behind it, which are older first in this order."""
     stem = path.name.removesuffix(".tlog")
     return stem[:19], int(stem[20:] or 1)
-
-
-def _is_locked(path: Path) -> bool:
-    """Return whether a program writes the file, or it cannot be opened."""
-    try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
-    except OSError:
-        return True
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError:
-        return True
-    finally:
-        os.close(descriptor)
-    return False

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
-import fcntl
 import os
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 from groundstation.stream.names import find_parts, part_name, part_number, recorded_order
+from link.runtime.growing_file import create_locked, free_space, is_locked, require_free_space
 
 PART_MAX = 100_000_000
 """Bytes after which the next part begins, with a picture that needs no earlier one."""
@@ -20,18 +19,12 @@ FREE_SPACE_MIN = 64 << 20
 """Bytes that stay free: the telemetry log goes on when pictures do not."""
 CHECK_PERIOD = 1.0
 """s between two looks at the free space."""
-_CREATE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
-
-
-def _free_space(folder: Path) -> int:
-    status = os.statvfs(folder)
-    return status.f_bavail * status.f_frsize
 
 
 class VideoFolder:
     """`limit`: bytes of all recorded pictures in the folder."""
 
-    def __init__(self, limit: int, *, free: Callable[[Path], int] = _free_space) -> None:
+    def __init__(self, limit: int, *, free: Callable[[Path], int] = free_space) -> None:
         self.path: Path | None = None
         """The part that is being written."""
         self._limit, self._part_max, self._free = limit, min(PART_MAX, limit // PARTS_MIN), free
@@ -73,14 +66,11 @@ class VideoFolder:
         self._number = max([self._number if log == self._log else 0, *map(part_number, find_parts(log))]) + 1
         self._log, self._size = log, 0
         path = part_name(log, self._number)
-        self._descriptor, self.path = os.open(path, _CREATE, 0o600), path
-        with contextlib.suppress(OSError):  # a file system without locks
-            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        self._descriptor, self.path = create_locked(path), path
 
     def _check(self, folder: Path) -> None:
         self._checked = time.monotonic()
-        if self._free(folder) < FREE_SPACE_MIN:
-            raise OSError(errno.ENOSPC, f"less than {FREE_SPACE_MIN >> 20} MiB free", str(folder))
+        require_free_space(folder, FREE_SPACE_MIN, self._free)
         if self.path is not None and not self.path.exists():
             raise FileNotFoundError(errno.ENOENT, "the file was removed", str(self.path))
 
@@ -90,21 +80,6 @@ class VideoFolder:
         for path in list(sizes):
             if sum(sizes.values()) <= self._limit - self._part_max:
                 break
-            if not _is_locked(path):
+            if not is_locked(path):
                 path.unlink(missing_ok=True)
                 del sizes[path]
-
-
-def _is_locked(path: Path) -> bool:
-    """Return whether a program writes the file, or it cannot be opened."""
-    try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
-    except OSError:
-        return True
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError:
-        return True
-    finally:
-        os.close(descriptor)
-    return False
