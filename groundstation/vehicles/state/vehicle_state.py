@@ -57,6 +57,9 @@ UNKNOWN_U16 = 0xFFFF
 
 ESTOP = int(DriveLimit.ESTOP)
 """A number, because `&` with a flag makes another flag, 120 times a second while driving."""
+NEUTRAL_FIRST = int(DriveLimit.NEUTRAL_FIRST)
+UNREADY = int(DriveLimit.DISARMED | DriveLimit.NEUTRAL_FIRST | DriveLimit.STALE)
+"""Limits without which a demand that moves would count."""
 
 
 FENCE_BOUNDARY = 3
@@ -346,6 +349,22 @@ class VehicleState:
         """Return throttle and steering that the vehicle obeys, -1..1; None where they are not known."""
         drive = self._drive if self._fresh(m.RoverDriveStatus, now) else None
         return self.foreign.demand(now) if drive is None else drive_demand(drive)
+
+    @property
+    def needs_neutral(self) -> bool:
+        """Whether ROVER_DRIVE_STATUS says that no demand counts before a neutral one."""
+        return bool(self._drive and self._drive.limits & NEUTRAL_FIRST)
+
+    def has_taken_neutral(self, system: int, since: float) -> bool:
+        """Return whether ROVER_DRIVE_STATUS says that motion may follow: a neutral demand of `system` counts.
+
+        It has taken that demand `since` then, as far as its own time tells: it may have been on its way before.
+        """
+        drive = self._drive
+        if drive is None or drive.limits & UNREADY or drive.source_system != system:
+            return False
+        neutral = drive.demand_throttle == drive.demand_steering == 0
+        return bool(neutral and drive.demand_age_ms / 1000 <= self._times[m.RoverDriveStatus] - since)
 
     def command_age(self, now: float) -> float | None:
         """Return the age of the newest demand as ROVER_DRIVE_STATUS reports it, s. An old report adds its own age."""

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import Autopilot
 from dialects.kinds import MANUAL
 from dialects.modes import Mode
-from groundstation.station.driving.operator import NEUTRAL_LEAD
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
@@ -17,7 +14,7 @@ from groundstation.verbs.control.control import ask_for_control
 from groundstation.verbs.control.stop_jobs import disarm_job
 from groundstation.verbs.control.stops import run_job
 from groundstation.verbs.session.reports import need_driven
-from groundstation.verbs.session.session import TOLD_WITHIN, VerbSession
+from groundstation.verbs.session.session import VerbSession
 from link.core import Received
 
 DISARM_WITHIN = 10.0
@@ -32,7 +29,7 @@ FRAME_PARAMETER = "CA_AIRFRAME"
 
 async def begin_driving(session: VerbSession, *, leave_hold: bool = True) -> None:
     """Take control, change HOLD to MANUAL unless told not to, and show neutral. Raises VerbError."""
-    contact, state = session.contact, session.vehicle
+    state = session.vehicle
     need_driven(session.vehicle)
     await need_safe_flight(session)
     if state.drives_itself:
@@ -43,10 +40,7 @@ async def begin_driving(session: VerbSession, *, leave_hold: bool = True) -> Non
         modes = session.services.modes
         need_accepted(await session.request(lambda number, now: modes.set(number, MANUAL, now)), session)
     await learn_frame(session)
-    contact.operator.demanding = True
-    if state.has_rover_dialect:
-        await session.wait_for(lambda: contact.in_control, TOLD_WITHIN)
-    await asyncio.sleep(NEUTRAL_LEAD)
+    await session.demand_neutral()
     need_control(session)
 
 

@@ -189,10 +189,31 @@ class VerbSession:
         """Follow the verb that has armed our vehicle: nothing moves it before the new session has shown neutral."""
         contact = self.contact
         if contact.state.has_rover_dialect and contact.state.armed and contact.state.driver == contact.ids[0]:
-            contact.operator.demanding = True
-            await self.wait_for(lambda: contact.in_control, TOLD_WITHIN)
-            await asyncio.sleep(NEUTRAL_LEAD)
+            await self.demand_neutral()
             contact.operator.demanding = False
+
+    async def demand_neutral(self) -> None:
+        """Demand neutral from now on; return when our vehicle reports that it counts.
+
+        Return after NEUTRAL_LEAD where nothing is reported. One that reports that none has come gets TOLD_WITHIN more.
+        """
+        contact, state, began = self.contact, self.vehicle, self.now
+
+        def counts() -> bool:
+            return state.has_taken_neutral(contact.ids[0], began)
+
+        contact.operator.demanding = True
+        contact.tick(began)  # the neutral goes before the question
+        self.flush()
+        if not state.has_rover_dialect:
+            await asyncio.sleep(NEUTRAL_LEAD)
+            return
+        await self.wait_for(lambda: contact.in_control, TOLD_WITHIN)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(NEUTRAL_LEAD):
+                await self.request_message(m.RoverDriveStatus, NEUTRAL_LEAD, counts)
+                await self.wait_for(counts, NEUTRAL_LEAD)
+        await self.wait_for(lambda: not state.needs_neutral, TOLD_WITHIN)
 
     async def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Wait until `condition` holds; return whether it does. Raises VerbError if a message may not be sent."""
