@@ -65,6 +65,20 @@ class Console:
         while self.app.screen is not self.app.drive:
             await self.press("escape")
 
+    async def begin_anew(self, size: tuple[int, int], picture: Snapshot) -> None:
+        """Be as an app that has just begun: Drive alone, nothing kept of other screens. Costs a third of a new one."""
+        while self.app.screen is not self.app.drive:
+            if isinstance(self.app.screen, ConsoleScreen):
+                self.app._navigator.go_back()
+                await self.pilot.pause()
+            else:
+                await self.press("escape")
+        self.app._kept.clear()
+        if tuple(self.app.size) != size:
+            await self.pilot.resize_terminal(*size)
+        for uptime in (picture.uptime + 60.0, picture.uptime):  # panes of Drive wait for another second
+            await self.show(msgspec.structs.replace(picture, uptime=uptime))
+
     def is_clean(self, kind: type[ConsoleScreen]) -> bool:
         """Return whether a screen of this class is on top and has no text field and no question."""
         top = self.app.screen

@@ -18,6 +18,7 @@ from groundstation.ui.look.appearance import Look
 from tests.groundstation.replay.logs import finish
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder
+from tests.groundstation.ui.settling import paint_changes, painted_when_seen
 from tests.waits import until
 
 
@@ -78,10 +79,12 @@ async def replay_console(
     keymap = Keymap("standard", KEYMAPS["standard"])
     app = ConsoleApp(station.screen, keymap, first=first, look=look or Look(reduce_motion=True), folder=folder)
     try:
-        async with app.run_test(size=size) as pilot:
-            await until(lambda: app.gate.closure != STARTING)
-            made = ReplayConsole(app, station, pilot)
-            await made.show()
-            yield made
+        with painted_when_seen(app):
+            async with app.run_test(size=size) as pilot:
+                await until(lambda: app.gate.closure != STARTING)
+                made = ReplayConsole(app, station, pilot)
+                await made.show()
+                yield made
+                paint_changes(app.screen)
     finally:
         station.screen.close()

@@ -23,6 +23,7 @@ from groundstation.ui.terminal.key_parser import KeyEventParser
 from groundstation.ui.widgets.line_field import FieldUse
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.live_station import LiveStation
+from tests.groundstation.ui.settling import paint_changes, painted_when_seen
 from tests.test_stops import Drive
 from vehicle.safety.states import SafetyState
 
@@ -93,11 +94,13 @@ async def driving_wheels() -> AsyncIterator[Wheels]:
     station = LiveStation(drive)
     app = ConsoleApp(station.screen, Keymap("standard", KEYMAPS["standard"]))
     try:
-        async with app.run_test(size=(100, 30)) as pilot:
-            wheels = Wheels(app, station, pilot)
-            await wheels.until(lambda: app.gate.closure is None)
-            await drives(wheels)
-            yield wheels
+        with painted_when_seen(app):
+            async with app.run_test(size=(100, 30)) as pilot:
+                wheels = Wheels(app, station, pilot)
+                await wheels.until(lambda: app.gate.closure is None)
+                await drives(wheels)
+                yield wheels
+                paint_changes(app.screen)
     finally:
         station.screen.close()
 

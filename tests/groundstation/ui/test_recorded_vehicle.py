@@ -9,6 +9,7 @@ from groundstation.ui.keys.key_gate import STARTING
 from groundstation.ui.look.appearance import PLAIN
 from tests.groundstation.recorded_station import RecordedStation
 from tests.groundstation.ui import frames
+from tests.groundstation.ui.settling import painted_when_seen
 from tests.waits import until
 
 FACTS = {
@@ -36,16 +37,17 @@ async def test_every_screen_shows_the_recorded_vehicle() -> None:
     app = ConsoleApp(station.screen, Keymap("standard", KEYMAPS["standard"]), look=PLAIN)
     shown: dict[str, str] = {}
     try:
-        async with app.run_test(size=(80, 24)) as pilot:
-            await until(lambda: app.gate.closure != STARTING)
-            for size in ((80, 24), (140, 45)):
-                await pilot.resize_terminal(*size)
-                for row in (each for each in SCREENS if each.in_tabs):
-                    await pilot.press("ctrl+g", row.digit)
-                    for _ in range(STEPS):
-                        station.run(STEP)
-                        await pilot.pause(0.02)
-                    shown[row.id] = frames.text(app)
+        with painted_when_seen(app):
+            async with app.run_test(size=(80, 24)) as pilot:
+                await until(lambda: app.gate.closure != STARTING)
+                for size in ((80, 24), (140, 45)):
+                    await pilot.resize_terminal(*size)
+                    for row in (each for each in SCREENS if each.in_tabs):
+                        await pilot.press("ctrl+g", row.digit)
+                        for _ in range(STEPS):
+                            station.run(STEP)
+                            await pilot.pause(0.02)
+                        shown[row.id] = frames.text(app)
     finally:
         station.screen.close()
     assert station.ended

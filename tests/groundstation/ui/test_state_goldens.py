@@ -5,7 +5,6 @@ GOLDEN=write writes them anew; then read the diff.
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,12 +15,12 @@ from groundstation.views.base import View
 from groundstation.views.files import FilesView, FolderRow
 from groundstation.views.links import ControlView
 from groundstation.views.messages import MessageRow, MessagesPage
+from tests.groundstation.ui import golden_files
 from tests.groundstation.ui.example_files import FILES, NO_TASKS
 from tests.groundstation.ui.examples import MESSAGE_ROWS, MESSAGES_PAGE, snapshot, vehicle, waiting
 from tests.groundstation.ui.link_examples import OURS, VIEWS
 from tests.groundstation.ui.pilots import console
 
-GOLDEN = Path(__file__).parent / "golden"
 SMALL = (80, 24)
 SILENT = (LinkView(name="udpin:0.0.0.0:14550"), LinkView(name="serial:/dev/ttyUSB0:57600"))
 DAMAGED = LinkView(
@@ -60,7 +59,7 @@ FRAMES = (
 
 
 async def test_the_frames_are_the_golden_ones(tmp_path: Path) -> None:
-    wrong = []
+    shown: dict[str, str] = {}
     async with console(SMALL, folder=tmp_path) as screen:
         for frame in FRAMES:
             await screen.go_home()
@@ -73,15 +72,9 @@ async def test_the_frames_are_the_golden_ones(tmp_path: Path) -> None:
             if frame.name.startswith("files_refused"):
                 await screen.press("home", "down", "enter")
                 await screen.show(frame.picture)
-            file = GOLDEN / f"{frame.name}.txt"
-            if os.environ.get("GOLDEN") == "write":
-                file.write_text(screen.text, "utf-8")
-            wrong += [(frame.name, screen.text)] if screen.text != file.read_text("utf-8") else []
-    assert wrong == []
+            shown[frame.name] = screen.text
+    golden_files.check(shown)
 
 
 def test_the_frames_fit_their_terminal() -> None:
-    for frame in FRAMES:
-        lines = (GOLDEN / f"{frame.name}.txt").read_text("utf-8").splitlines()
-        assert len(lines) <= SMALL[1]
-        assert max(map(len, lines)) <= SMALL[0]
+    golden_files.check_sizes((frame.name, SMALL) for frame in FRAMES)

@@ -16,12 +16,12 @@ from groundstation.config.settings import ThemeName
 from groundstation.ui.look.appearance import Look
 from groundstation.ui.look.roles import Role
 from groundstation.ui.look.themes import THEMES, Colours, ColourTheme, choose_colours
-from tests.groundstation.ui import frames
+from tests.groundstation.ui import frames, golden_files
 from tests.groundstation.ui.contrast import TEXT_CONTRAST, colour_codes, contrast, forget_drawn_styles, luminance, shown
 from tests.groundstation.ui.examples import snapshot, waiting
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import app_on_a_pty
-from tests.groundstation.ui.test_goldens import FRAMES, GOLDEN, SMALL, STANDING, STOPPED, views_for
+from tests.groundstation.ui.test_goldens import FRAMES, SMALL, STANDING, STOPPED, views_for
 from tests.waits import until
 
 COLOURED = [name for name, theme in THEMES.items() if not theme.attributes]
@@ -69,8 +69,9 @@ async def test_all_text_is_readable_in_each_theme_and_colour_depth(monkeypatch: 
     pairs: set[tuple[Role, Role]] = set()
     with monkeypatch.context() as patch:
         patch.setitem(THEMES, ThemeName.DARK, ColourTheme("", PROBE))
-        for name in SCREENS:
-            async with console(*FRAMES[name][:2]) as screen:
+        async with console() as screen:
+            for name in SCREENS:
+                await screen.begin_anew(*FRAMES[name][:2])
                 await show(screen, name)
                 pairs |= set(pairs_of(screen))
     assert len(pairs) > 20
@@ -119,17 +120,16 @@ def looks(screen: Console, text: str) -> set[tuple[bool, bool, bool]]:
     return {(bool(look.bold), bool(look.reverse), bool(look.underline)) for _, look in cells}
 
 
-@pytest.mark.parametrize(
-    "name", ["drive_80x24", "log_140x45", "params_80x24", "links_80x24", "messages_80x24", "goto_80x24"]
-)
-async def test_without_colours_the_text_is_the_same_and_colourless(name: str) -> None:
-    async with console(*FRAMES[name][:2], look=Look(theme=ThemeName.NO_COLOUR)) as screen:
-        await show(screen, name)
-        if "params" not in name and "messages" not in name:
-            assert screen.text == (GOLDEN / f"{name}.txt").read_text("utf-8")
-        cells = [look for row in frames.cells(screen.app) for _, look in row]
-    assert all(look.color is None and look.bgcolor is None for look in cells)
-    assert {(look.bold, look.reverse) for look in cells} > {(True, False), (True, True)}
+async def test_without_colours_the_text_is_the_same_and_colourless() -> None:
+    async with console(look=Look(theme=ThemeName.NO_COLOUR)) as screen:
+        for name in ("drive_80x24", "log_140x45", "params_80x24", "links_80x24", "messages_80x24", "goto_80x24"):
+            await screen.begin_anew(*FRAMES[name][:2])
+            await show(screen, name)
+            if "params" not in name and "messages" not in name:
+                assert screen.text == golden_files.read(name)
+            cells = [look for row in frames.cells(screen.app) for _, look in row]
+            assert all(look.color is None and look.bgcolor is None for look in cells), name
+            assert {(look.bold, look.reverse) for look in cells} > {(True, False), (True, True)}, name
 
 
 async def test_without_colours_armed_disarmed_and_estop_look_different() -> None:
