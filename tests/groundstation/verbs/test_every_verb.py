@@ -1,7 +1,7 @@
 """Every verb of the table with our vehicle, and with vehicles as ArduPilot and PX4 answer, on real sockets.
 
-Each runs through a station, over a link of its own, and over one that loses a fifth of the frames each way. A new
-verb needs a line.
+Each runs through a station. Those that stop, arm, drive or change a mode, and one of each other service, also run over
+a link of their own, and over one that loses a fifth of the frames each way. A new verb needs a line.
 """
 
 from __future__ import annotations
@@ -100,8 +100,16 @@ ELSEWHERE = {
     "sign": "setup/test_sign.py", "takeoff": "control/test_flight.py", "land": "control/test_flight.py",
 }  # fmt: skip
 """Verb without a vehicle, for a copter, with one on a cable, or that needs another program -> its test."""
-ALL, SECOND_PART = slice(None), [*LINES].index("mission put")
-"""What of LINES is run; what comes from SECOND_PART on needs nothing of what is before it."""
+EVERYWHERE = (
+    "status", "arm", "disarm", "stop", "estop", "control request", "control release", "control give", "drive", "turn",
+    "goto", "home", "speed", "watch", "send", "request", "ping", "param set", "param save", "mission put",
+    "mission get", "mission start", "mission pause", "mission jump", "fence on", "mode", "motor", "calibrate",
+    "ftp put", "ftp get", "log get",
+)  # fmt: skip
+"""What also runs without a station. Others are of the same services (parameters, plans, files, logs, messages), and
+test_examples.py and the tests of their rooms run them over a link of their own."""
+SECOND_PART = EVERYWHERE.index("mission put")
+"""What comes from SECOND_PART on needs nothing of what is before it."""
 LOST = (5, 8)
 """Codes of `ping`, which repeats nothing, on a lossy link."""
 STOOD_STILL = "stood still"
@@ -124,14 +132,14 @@ def test_every_verb_has_a_line() -> None:
 def runs() -> Iterator[object]:
     """Yield each vehicle with each way to it. What loses frames takes long, and is run in two parts at once."""
     for name in ("ours", *OTHERS):
-        yield pytest.param(name, "through", ALL, id=f"{name} through")
-        yield pytest.param(name, "own link", ALL, id=f"{name} own link", marks=pytest.mark.slow)
-        for number, part in enumerate((slice(0, SECOND_PART), slice(SECOND_PART, None)), 1):
+        yield pytest.param(name, "through", (*LINES,), id=f"{name} through")
+        yield pytest.param(name, "own link", EVERYWHERE, id=f"{name} own link", marks=pytest.mark.slow)
+        for number, part in enumerate((EVERYWHERE[:SECOND_PART], EVERYWHERE[SECOND_PART:]), 1):
             yield pytest.param(name, "lossy", part, id=f"{name} lossy {number}", marks=pytest.mark.slow)
 
 
 @pytest.mark.parametrize(("name", "way", "part"), [*runs()])
-def test_every_verb(name: str, way: str, part: slice, here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_verb(name: str, way: str, part: Sequence[str], here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with ExitStack() as stack:
         vehicle = _our_vehicle if name == "ours" else partial(_vehicle_of_others, name)
         options, prepare_arming = vehicle(stack, way, here, capsys)
@@ -213,11 +221,11 @@ def run_all(
     prepare_arming: Callable[[bool], None],
     *,
     lossy: bool,
-    part: slice,
+    part: Sequence[str],
 ) -> str:
     """Run the lines of a part; return those that ended with another code than theirs, and what they said."""
     failed, armed = "", False
-    for each in [line for lines in [*LINES.values()][part] for line in lines]:
+    for each in [line for verb in part for line in LINES[verb]]:
         if each.armed != armed:
             prepare_arming(each.armed)
         armed = each.armed and each.words not in UNARMED_BY
