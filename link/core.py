@@ -224,6 +224,15 @@ class TimeTeller(Protocol):
 
 
 @runtime_checkable
+class CopyFinder(Protocol):
+    """A core that finds out what a second link only repeats: after it nothing needs to be sent."""
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the newest message was a copy of what another link has brought, and has changed nothing."""
+
+
+@runtime_checkable
 class RestingCore(Protocol):
     """A core that has nothing to do for some time."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
 import time
 from collections.abc import Callable, Hashable, Sequence
 from functools import partial
@@ -14,6 +15,7 @@ from dialects.codec import EncodeError, encode_payload
 from dialects.enums import Severity
 from dialects.messages import Message
 from link.core import (
+    CopyFinder,
     Core,
     EarlyActor,
     LinkReport,
@@ -34,7 +36,7 @@ from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
 from link.routing.router import Delivery, Router
 from link.runtime.multiples import next_multiple
-from link.transport.route import find_routes
+from link.transport.route import Routes
 from link.transport.transport import Link, RoleTransport, SelectiveTransport
 
 log = logging.getLogger(__name__)
@@ -86,6 +88,7 @@ class Runner:
         self._may_send = core.may_send if isinstance(core, SendGuard) else None
         self._on_sent = sent
         self._reservation = core if isinstance(core, PeerReservation) else None
+        self._copies = core if isinstance(core, CopyFinder) else None
         self._teller = core if isinstance(core, TimeTeller) else None
         self._resting = core if isinstance(core, RestingCore) else None
         self._rest: float | None = None
@@ -97,6 +100,7 @@ class Runner:
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
         self._events = LinkEvents()
+        self._routes = Routes()
         self._tick_due = 0.0
         self._timer: asyncio.TimerHandle | None = None
         self._log_tap = log_tap
@@ -242,13 +246,17 @@ class Runner:
         loop = asyncio.get_running_loop()
         if index not in self._links:
             return
+        repeats = True
+        channel = self._links[index].channel
         for data, address in received:
             now = loop.time()  # of each: a change behind a repeat moves the ramps in this call, not a cycle later
-            channel = self._links[index].channel
-            self._hand_over(channel.receive(data, address, now), now)
-            self._tell_time(channel, now)
-        self._flush()
-        self._shorten_rest()
+            repeats &= self._hand_over(channel.receive(data, address, now), now)
+            if channel.guard is not None:
+                self._tell_time(channel, now)
+                repeats = False
+        if not repeats:
+            self._flush()
+            self._shorten_rest()
         if self._router:  # after our own replies, which go first
             self._forward(self._router.receive(index, received, loop.time()))
 
@@ -260,9 +268,17 @@ class Runner:
                 if header is None or link.channel.may_send(header.message_id, len(frame), address):
                     link.send(frame, address)
 
-    def _hand_over(self, messages: list[Received], now: float) -> None:
+    def _hand_over(self, messages: list[Received], now: float) -> bool:
+        """Pass messages to the core; return whether there were any, and all were copies of what another link brought.
+
+        Nothing needs to be sent then, which is half of what a copy costs.
+        """
+        copies = self._copies
+        repeats = copies is not None and bool(messages)
         for received in messages:
             self._core.receive(received, now)
+            repeats = repeats and copies is not None and copies.repeats
+        return repeats
 
     def _tell_time(self, channel: Channel, now: float) -> None:
         untimely = channel.pop_untimely()
@@ -345,15 +361,14 @@ class Runner:
                 log.log(level, "%s: %s", report.name, event.text)
         self._core.observe(reports, now)
 
-    @staticmethod
-    def _report(link: Link, now: float) -> LinkReport:
+    def _report(self, link: Link, now: float) -> LinkReport:
         report = link.channel.report(link.transport.problem, now=now, dropped=link.transport.dropped)
         return replace(
             report,
             frames_sent=link.frames_sent,
             bytes_sent=link.bytes_sent,
             watch_only=link.watch_only,
-            routes=find_routes(link.transport, report.audience),
+            routes=self._routes.find(link.transport, report.audience, now),
         )
 
     def _flush(self) -> None:
@@ -371,13 +386,16 @@ class Runner:
 
     def _send(self, outgoing: Outgoing) -> None:
         payload, taken, refusal = encode_payload(outgoing.message), False, None
+        allowed_at = -math.inf
         for link in self._links.values():
             if link.watch_only:
                 continue
             now = asyncio.get_running_loop().time()
             for data, address, sequence in link.channel.send(outgoing, payload, now):
-                if not self._is_allowed(outgoing.message):
-                    return
+                if now - allowed_at >= LONG_ANSWER:  # else the answer is as fresh as one for this link alone may be
+                    if not self._is_allowed(outgoing.message):
+                        return
+                    allowed_at = now
                 now = asyncio.get_running_loop().time()
                 why = link.send(data, address)
                 taken, refusal = taken or why is None, refusal or why

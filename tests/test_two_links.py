@@ -16,8 +16,9 @@ from dialects import messages as m
 from dialects.enums import Command
 from dialects.modes import Mode
 from groundstation.intents.driving import EmergencyStop, Stop
-from groundstation.intents.vehicle import Disarm, SetMode
+from groundstation.intents.vehicle import Disarm, KeepControl, SetMode
 from link.core import Core, Outgoing, Received
+from link.protocol.channel import Channel
 from link.protocol.signing_guard import SigningGuard
 from tests.fakes.rover import FakeArduPilot
 from tests.link.signing.signed import DRIVER, SIGNED_ONLY, keep
@@ -125,6 +126,76 @@ def test_a_command_without_an_answer_takes_the_other_link() -> None:
     drive.tell(SetMode(Mode.GUIDED.name))
     drive.until(lambda: drive.rover._safety.mode is Mode.GUIDED, 0.5)
     assert commands(drive, Command.DO_SET_MODE) == [used, 1 - used]
+
+
+def asked(drive: LinksDrive) -> list[str]:
+    """Return the requests for control that the log of the station shows."""
+    return [line.text for line in drive.station.log._lines if "requests control" in line.text]
+
+
+def ask_for_control(drive: LinksDrive) -> None:
+    """Let another ground station, on the first link, ask the vehicle for control."""
+    other = Channel("other", 0, system=254, component=190, target="vehicle")
+    ask = m.CommandLong(1, 1, Command.REQUEST_OPERATOR_CONTROL, 0, 1.0, 0.0, 10.0, 0.0, 0.0, 0.0, 0.0)
+    for message in (m.Heartbeat(6, 8, 0, 0, 4, 3), ask):
+        for data, _, _ in other.send(Outgoing(message)):
+            drive.far.receive(0, data, "other", drive.now)
+
+
+@pytest.mark.parametrize("sound", [0, 1])
+def test_a_request_for_control_comes_over_whichever_link_is_there(sound: int) -> None:
+    drive = LinksDrive(Path(SOUND), Path(SOUND * 2))
+    drive.get_going()
+    drive.paths[1 - sound].cut = True  # in the moment before the request: nothing knows it yet
+    ask_for_control(drive)
+    drive.run(0.2)
+    assert asked(drive) == ["GCS 254 requests control of Rover 1"]
+
+
+def test_a_request_for_control_is_shown_once() -> None:
+    drive = LinksDrive(Path(SOUND), Path(SOUND * 2))
+    drive.get_going()
+    drive.paths[1].delay = 1.0  # the vehicle knows it as a link of the driver by now
+    drive.run(2.5)
+    ask_for_control(drive)
+    drive.until(lambda: len(asked(drive)) == 1, 0.2)
+    drive.tell(KeepControl())  # before the copy of the late link comes
+    drive.run(3.0)
+    assert len(asked(drive)) == 1
+    assert drive.station.snapshot(drive.now, 0).handover is None
+
+
+def test_manual_control_beside_proofs_takes_the_best_link() -> None:
+    drive = LinksDrive(Path(SOUND), Path(SOUND * 2))
+    drive.get_going()
+    drive.run(1.0)
+    drive.near.sent.clear()
+    drive.run(1.0)
+    links = [(type(message), link) for _, link, message in drive.near.sent]
+    proofs = [link for kind, link in links if kind is m.RoverOperatorPresence]
+    assert proofs.count(0) == proofs.count(1) >= 18
+    [best] = {link for kind, link in links if kind is m.ManualControl}
+    drive.paths[best].cut = True
+    assert_drives_on(drive, 2.0)
+    assert [link for _, link, message in drive.near.sent if isinstance(message, m.ManualControl)][-1] == 1 - best
+
+
+def test_what_a_second_link_repeats_leaves_nothing_to_send() -> None:
+    drive = LinksDrive(Path(SOUND), Path(SOUND * 2))
+    drive.get_going()
+    core, seen = drive.station, []
+    receive = core.receive
+
+    def note(received: Received, now: float) -> None:
+        receive(received, now)
+        seen.append((type(received.message), received.peer.link, core.repeats))
+        assert not core.repeats or not core._outbox
+
+    drive.near.core.receive = note  # type: ignore[method-assign]
+    drive.run(2.0)
+    attitudes = [(link, repeats) for kind, link, repeats in seen if kind is m.Attitude]
+    assert {repeats for link, repeats in attitudes if link == 0} == {False}
+    assert [repeats for link, repeats in attitudes if link == 1].count(True) >= 6
 
 
 def test_what_both_links_bring_is_shown_once() -> None:

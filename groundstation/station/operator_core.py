@@ -61,6 +61,8 @@ class OperatorCore:
         """When everything is to tick again while only verbs need all ticks."""
         self._now = parts.started
         """Time of the newest event."""
+        self.repeats = False
+        """The newest message has only repeated what another path had brought, so that nothing is to be sent."""
         self.on_rest_end: Callable[[], None] = lambda: None
         """Called at once when `rests` becomes False."""
 
@@ -75,7 +77,7 @@ class OperatorCore:
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message at once. What a second path to a vehicle repeats is only counted."""
-        self._now = now
+        self._now, self.repeats = now, False
         reading = type(received.message) in READINGS
         if not reading:
             self._links.receive(received, now)
@@ -86,6 +88,7 @@ class OperatorCore:
                 self._commander.stop_late(contact.state, now)
             self._heartbeat.greet(received.peer, now)
             if not contact.state.receive(received, now):
+                self.repeats = not (self._commander.blind_stops or self._heartbeat.is_greeting(now))
                 return
         self._listener.hear(received, contact, now)
         if contact is not None:

@@ -11,7 +11,8 @@ import time
 from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
-from dialects.messages import ManualControl, Message, RcChannelsOverride
+from dialects.enums import OperatorFlag
+from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverOperatorPresence
 from groundstation.station.driving.driven import DEMAND_MEMORY, WatchdogTarget
 from groundstation.watchdog.process import fork_watchdog
 from groundstation.watchdog.report import MAX_OUTLETS, DemandRoute, StationReport, encode_report
@@ -71,6 +72,9 @@ class WatchdogFeed:
         self._sequences[index, address] = sequence
         if isinstance(message, ManualControl):
             self._routes[message.target, index, address] = (link, now)
+        elif isinstance(message, RoverOperatorPresence):  # over all links; MANUAL_CONTROL beside it goes over one
+            if message.flags & OperatorFlag.AXES:
+                self._routes[message.target_system, index, address] = (link, now)
         elif isinstance(message, RcChannelsOverride):  # neutral in MANUAL_CONTROL also ends what ArduPilot holds of it
             self._routes[message.target_system, index, address] = (link, now)
 

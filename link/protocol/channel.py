@@ -24,6 +24,7 @@ from dialects.messages import (
 )
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
 from link.core import LinkReport, Outgoing, Peer, Received
+from link.protocol.address_budget import AddressBudget
 from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, find_mismatches, noise_hint, sum_counts
 from link.protocol.framer import Framer
@@ -318,21 +319,23 @@ class Channel:
         payload, target = codec.encode_payload(message) if payload is None else payload, target_system(message)
         for state in self._peers.recipients(outgoing):
             for version in state.versions(number, target):
-                if self.may_send(number, len(payload) + self._around(state), state.peer.address):
+                if state.budget is None or self._take(state.budget, number, len(payload) + self._around(state)):
                     sequence = state.sequence
                     yield self._build(number, payload, state, now, version), state.peer.address, sequence
 
     def may_send(self, number: int, size: int, address: Hashable) -> bool:
         """Return whether a message may go to an address now, and count it: see `bounded`."""
         state = self._peers.get(address)
-        if state is None or state.budget is None or state.budget.take(number, size):
-            return True
-        self._withheld += 1
-        return False
+        return state is None or state.budget is None or self._take(state.budget, number, size)
+
+    def _take(self, budget: AddressBudget, number: int, size: int) -> bool:
+        taken = budget.take(number, size)
+        self._withheld += not taken
+        return taken
 
     def _around(self, state: PeerState) -> int:
         """Return the bytes around a payload in a frame to a peer."""
-        signs = state.budget is not None and self.guard is not None and self.guard.signs_to(state)
+        signs = self.guard is not None and self.guard.signs_to(state)
         return codec.HEADER_V2 + codec.CRC_SIZE + (codec.SIGNATURE_SIZE if signs else 0)
 
     def questions(self, now: float) -> Iterator[tuple[bytes, Hashable]]:

@@ -8,6 +8,7 @@ verified frames teach routes. A frame that arrives over two redundant links is f
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Sequence
 from typing import NamedTuple
 
@@ -29,6 +30,9 @@ MAX_TRACKED_SOURCES = 256
 """Systems and components whose frames are compared between redundant links."""
 MAX_TARGETS = 256
 """Targets of one source whose destinations are cached."""
+
+FORGET_PERIOD = 1.0
+"""s between two looks for silent peers: the shortest silence that counts is 30 s."""
 
 _EVERYBODY: SourceId = (0, 0)
 _INSPECTED = LOCAL | {SystemTime.id}
@@ -63,6 +67,7 @@ class Router:
         """Frames of sources without `recent` -> when each arrived first; the oldest first."""
         self._boot_times: dict[SourceId, int] = {}
         self._loaded: list[RoutedPeer] = []
+        self._forget_due = -math.inf
 
     def receive(self, link: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
         """Handle the bytes that arrived on a link; return what to send where. `now` in s, monotonic."""
@@ -79,17 +84,23 @@ class Router:
         return self._collect()
 
     def tick(self, now: float) -> list[Delivery]:
-        """Give up overdue partial frames and forget silent peers. Call it every 50 ms or so."""
-        for peer in list(self.table.all_peers()):
-            frames = peer.framer.expire(now)
-            if frames:
-                self._forward(peer, frames, now)
+        """Give up overdue partial frames, and now and then forget silent peers. Call it every 50 ms or so."""
+        if self.table.has_streams:
+            for peer in list(self.table.all_peers()):
+                frames = peer.framer.expire(now)
+                if frames:
+                    self._forward(peer, frames, now)
+        if now >= self._forget_due:
+            self._forget_due = now + FORGET_PERIOD
+            self._forget_silent(now)
+        return self._collect()
+
+    def _forget_silent(self, now: float) -> None:
         self.table.expire(now)
         known = self.table.known_sources()
         for followed in (self._recent, self._boot_times):
             for key in followed.keys() - known:
                 del followed[key]
-        return self._collect()
 
     def broadcast_links(self, link: int, key: SourceId) -> set[int]:
         """Return the links to which a broadcast of a source that was seen on `link` goes now."""

@@ -160,6 +160,11 @@ class RouteTable:
         """Return whether this link is a stream, without datagrams."""
         return self._streams[link]
 
+    @property
+    def has_streams(self) -> bool:
+        """Whether a link is a stream: only there a frame may be incomplete."""
+        return True in self._streams.values()
+
     def all_peers(self) -> Iterator[RoutedPeer]:
         """Yield all peers of all links."""
         for peers in self._peers.values():

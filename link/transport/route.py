@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import socket
 from collections.abc import Mapping, Sequence
 
@@ -12,22 +13,40 @@ from link.transport.transport import LinkError, Outlet, Transport
 
 MAX_PEERS = 4
 """Peers of a link whose route is looked up: a flood of invented ones must cost nothing."""
+MAX_KNOWN = 64
+"""Routes that are remembered."""
+PERIOD, RETRY = 10.0, 1.0
+"""s for which a route counts, and the lack of one: a network may come or go, and what follows is a note of doctor."""
 
 
-def find_routes(transport: Transport, peers: Sequence[Peer]) -> Mapping[Peer, AddressPair]:
-    """Return the routes of the first peers. Never blocks; takes 0.02 ms for each."""
-    found = {}
-    for peer in peers[:MAX_PEERS]:
-        route = _find_route(transport.endpoint, transport.outlet(peer.address))
-        if route is not None:
-            found[peer] = route
-    return found
+class Routes:
+    """The routes of the peers of all links, each looked up now and then. Times in s."""
+
+    def __init__(self) -> None:
+        self._known: dict[Peer, tuple[object, AddressPair | None, float]] = {}
+        """Peer -> the socket, its route, and until when that counts."""
+
+    def find(self, transport: Transport, peers: Sequence[Peer], now: float) -> Mapping[Peer, AddressPair]:
+        """Return the routes of the first peers. Never blocks; a new one takes 0.05 ms."""
+        found = {peer: self._find(transport, peer, now) for peer in peers[:MAX_PEERS]}
+        return {peer: route for peer, route in found.items() if route is not None}
+
+    def _find(self, transport: Transport, peer: Peer, now: float) -> AddressPair | None:
+        outlet = transport.outlet(peer.address)
+        opened, route, until = self._known.get(peer, (None, None, -math.inf))
+        if outlet is None or (opened is outlet.opened and now < until):
+            return None if outlet is None else route
+        if len(self._known) >= MAX_KNOWN:
+            self._known.clear()
+        route = _find_route(transport.endpoint, outlet)
+        self._known[peer] = (outlet.opened, route, now + (PERIOD if route is not None else RETRY))
+        return route
 
 
-def _find_route(endpoint: Endpoint, outlet: Outlet | None) -> AddressPair | None:
+def _find_route(endpoint: Endpoint, outlet: Outlet) -> AddressPair | None:
     """Return the route of an outlet; None if it is no socket, or leads nowhere."""
-    sock = None if outlet is None else outlet.opened
-    if outlet is None or not isinstance(sock, socket.socket) or sock.family not in (socket.AF_INET, socket.AF_INET6):
+    sock = outlet.opened
+    if not isinstance(sock, socket.socket) or sock.family not in (socket.AF_INET, socket.AF_INET6):
         return None
     try:
         if outlet.destination is None:

@@ -233,7 +233,7 @@ class ArmingCommands:
         return may[-1] if may else None
 
     def _forward(self, request: CommandRequest, now: float) -> tuple[Outgoing, ...]:
-        """Forward the request to the driver alone: it may release control, or allow the takeover.
+        """Forward the request to the driver alone, on all its links: it may release control, or allow the takeover.
 
         (development.xml, 32100)
         """
@@ -246,7 +246,8 @@ class ArmingCommands:
         params = (*map(value_or_default, request.params[:3]), float(request.system), 0.0, 0.0, 0.0)
         system, component = driver.conversation.ids
         command = m.CommandLong(system, component, request.command, 0, *params)
-        return (Outgoing(command, driver.conversation.peer),)
+        peers = (driver.conversation.peer, *self._ownership.other_peers(driver.conversation, now))
+        return (Outgoing(command, among=peers),)
 
     def _refuse(self, what: str, request: CommandRequest, why: str, now: float,
                 severity: Severity = Severity.WARNING) -> Result:  # fmt: skip

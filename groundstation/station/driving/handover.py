@@ -137,6 +137,8 @@ class Handover:
         station = int(message.param4) if 1 <= message.param4 <= 255 else 0
         if message.target_system != self._system or message.param1 != REQUEST or station in (0, self._system):
             return
+        if contact.state.paths.is_late(received.peer):
+            return  # it came over another path before, and may be answered by now
         if self._driving.is_in_control(contact):
             within = message.param3 if LEAST_ANSWER <= message.param3 <= MOST_ANSWER else ANSWER_WITHIN
             self._show(_Notice(contact, station, now + within), now)

@@ -79,6 +79,11 @@ class CrashNeutral:
             self._outbox += [Outgoing(self._neutral(system)) for system in self._driven]
 
     @property
+    def repeats(self) -> bool:
+        """Whether the newest message has only repeated to the station what another path had brought."""
+        return not self._active and self._station.repeats
+
+    @property
     def due_at(self) -> float | None:
         """When the station has something to do before the next tick."""
         return None if self._active else self._station.due_at

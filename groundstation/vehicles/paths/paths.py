@@ -76,6 +76,11 @@ class Paths:
         """Return the path to a peer; None if it is not one of this vehicle."""
         return self._paths.get(peer)
 
+    def is_late(self, peer: Peer) -> bool:
+        """Return whether a path that is not the best one brings old news."""
+        path = self._paths.get(peer)
+        return path is not None and path is not self.best and path.lag > LATE
+
     def live(self, now: float) -> list[Path]:
         """Return the paths that are heard, the best one first."""
         found = [each for each in self._paths.values() if each.is_live(now)]

@@ -10,7 +10,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from dialects.messages import Heartbeat, ManualControl, RcChannelsOverride
+from dialects.enums import OperatorFlag
+from dialects.messages import Heartbeat, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.watchdog.feed import WatchdogFeed
 from groundstation.watchdog.report import MAX_OUTLETS, MAX_REPORT, StationReport, decode_report
@@ -79,6 +80,15 @@ def test_descriptors_travel_once_and_newest_sequence_each_time(rig: Rig) -> None
     assert second.keeps_descriptors
     assert none == []
     assert [route.sequence for route in (*first.routes, *second.routes)] == [1, 2]
+
+
+def test_a_link_that_gets_proofs_with_axes_is_a_route(rig: Rig) -> None:
+    for flags, routes in ((OperatorFlag(0), 1), (OperatorFlag.AXES, 2)):
+        proof = RoverOperatorPresence(target_system=1, target_component=1, time_boot_ms=1, echo_time_boot_ms=1,
+                                      session_id=7, input_count=0, last_input_age_ms=0, flags=flags,
+                                      x=0, y=0, z=0, r=0)  # fmt: skip
+        rig.feed.record_sent(rig.link, "another address", proof, 1, rig.now)
+        assert len(rig.report()[0].routes) == routes
 
 
 def test_another_socket_with_the_same_number_travels(rig: Rig) -> None:
