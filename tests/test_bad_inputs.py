@@ -6,8 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
+from tests.rows import each_row
 from tests.test_docs import functions
 
 ROOT = Path(__file__).parents[1]
@@ -34,7 +33,7 @@ def test_every_bad_input_has_a_row() -> None:
     assert {number for number, _ in rows()} == set(range(1, 84))
 
 
-@pytest.mark.parametrize(("number", "cell"), list(rows()))
+@each_row(("number", "cell"), list(rows()))
 def test_it_has_a_test(number: int, cell: str) -> None:
     named = re.findall(r"`(tests/[^`]+)`", cell)
     assert named, f"{number} has no test"

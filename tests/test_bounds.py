@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import importlib
 
-import pytest
+from tests.rows import each_row
 
 DAY = 86_400 * 100_000
 """In timestamps of 10 us."""
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("name", "value"),
     [
         ("vehicle.drive.driver.SUCCESSION_TIME", 0.7),

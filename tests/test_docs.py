@@ -18,6 +18,7 @@ from groundstation.verbs.table import VERBS
 from link.bridge import __main__ as bridge_main
 from tests.prose import find_faults, split_sentences
 from tests.recipes.tree import documented_counts
+from tests.rows import each_row
 from vehicle.cli import options, subcommands
 from vehicle.params import PARAMETERS
 
@@ -67,7 +68,7 @@ def test_files_and_tests_that_a_document_names_exist(doc: Path) -> None:
             assert test in functions(ROOT / name), f"{doc.name} names {words}"
 
 
-@pytest.mark.parametrize("doc", DOCS, ids=lambda path: path.name)
+@each_row("doc", DOCS, ids=lambda path: path.name)
 def test_links_between_documents_lead_somewhere(doc: Path) -> None:
     for target in re.findall(r"\]\(([^)#:]+)\)", doc.read_text()):
         assert (doc.parent / target).exists(), f"{doc.name} links to {target}"
@@ -79,7 +80,7 @@ def anchors(doc: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("doc", DOCS, ids=path_of)
+@each_row("doc", DOCS, ids=path_of)
 def test_links_to_headings_lead_to_one(doc: Path) -> None:
     for name, anchor in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", doc.read_text()):
         assert anchor in anchors(doc.parent / name if name else doc), f"{doc.name} links to {name}#{anchor}"
@@ -118,7 +119,7 @@ LOCAL_PARSERS = {
 SHOWN = [(doc.name, program, words) for doc in DOCS for program, words in commands(doc.read_text())]
 
 
-@pytest.mark.parametrize(("doc", "program", "words"), SHOWN, ids=lambda value: str(value))
+@each_row(("doc", "program", "words"), SHOWN, ids=lambda value: str(value))
 def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, words: list[str]) -> None:
     if program == "vehicle" and words[0] in subcommands.SUBCOMMANDS:
         subcommands.build_parser(words[0]).parse_args(words[1:])
@@ -166,7 +167,7 @@ def test_every_recipe_of_contributing_is_followed_by_a_test() -> None:
     assert [name for name in documented_counts() if f'check_recipe("{name}")' not in tests] == []
 
 
-@pytest.mark.parametrize("doc", DOCS, ids=path_of)
+@each_row("doc", DOCS, ids=path_of)
 def test_prose_of_a_document_is_within_its_limits(doc: Path) -> None:
     assert find_faults(doc.read_text()) == []
 

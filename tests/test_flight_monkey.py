@@ -20,6 +20,7 @@ from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, DrivePad, Em
 from groundstation.intents.session import Quit, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Disarm, ReleaseControl, SetMode, TakeOff
+from tests.examples import examples
 from tests.fakes.flying import THRUST, ArduCopter, FlyingVehicle, Px4Quad
 from tests.flight import hovering_cockpit
 from tests.world import World
@@ -166,7 +167,7 @@ def test_the_monkey_sees_a_descent_by_key_and_its_end() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("build", [ArduCopter, Px4Quad], ids=["arducopter", "px4"])
-@settings(max_examples=25, phases=[Phase.reuse, Phase.generate], deadline=None)
+@settings(max_examples=examples(25), phases=[Phase.reuse, Phase.generate], deadline=None)
 @given(steps=st.lists(st.tuples(STEPS, PAUSES), min_size=3, max_size=20))
 def test_nothing_but_a_held_key_sends_it_down(
     build: type[ArduCopter | Px4Quad], steps: list[tuple[Step, float]]

@@ -20,6 +20,7 @@ from groundstation.intents.driving import Stop
 from groundstation.intents.session import SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, Disarm, SetMode
+from tests.examples import examples
 from tests.test_stops import NEUTRAL_WITHIN, REPEAT, Drive
 
 SLACK = 0.04
@@ -142,7 +143,7 @@ PAUSES = st.sampled_from([0.01, 0.1, 0.35, 0.6, 1.2])
 
 @pytest.mark.slow
 @pytest.mark.parametrize("style", ["hold", "latch"])
-@settings(max_examples=25, phases=[Phase.reuse, Phase.generate])  # shrinking would take minutes
+@settings(max_examples=examples(25), phases=[Phase.reuse, Phase.generate])  # shrinking would take minutes
 @given(steps=st.lists(st.tuples(STEPS, PAUSES), min_size=3, max_size=25))
 def test_whatever_happens_the_wheels_stop_in_time(style: str, steps: list[tuple[Step, float]]) -> None:
     monkey = Monkey(style)

@@ -20,6 +20,7 @@ from groundstation.intents.vehicle import Arm, Disarm, SetMode
 from groundstation.station.station import Station
 from link.core import Outgoing
 from link.transport.memory import LossyPipe
+from tests.examples import examples
 from tests.world import World
 from vehicle.control_loop import ControlLoop
 from vehicle.motors.simulated import SimulatedMotors
@@ -254,7 +255,7 @@ def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
     assert driving > 0.99
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.integers(0, 10_000))
 @pytest.mark.slow
 def test_thirty_percent_loss_never_moves_late(seed: int) -> None:

@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 
 from tests import suite
+from tests.rows import each_row
 
 
-@pytest.mark.parametrize("row", [*suite.LONG, *suite.MAIN_JOB, *suite.MARKED])
+@each_row("row", [*suite.LONG, *suite.MAIN_JOB, *suite.MARKED])
 def test_a_row_names_a_folder_a_file_or_a_test(row: str) -> None:
     path, _, test = row.partition("::")
     place = suite.TESTS / path
@@ -30,8 +31,8 @@ def test_short_and_rest_are_all_tests_each_once(request: pytest.FixtureRequest) 
 
 
 def test_a_few_rows_of_a_long_table_are_in_the_short_suite(request: pytest.FixtureRequest) -> None:
-    rows = [item for item in request.session.items if "::test_a_row_names_a_folder" in item.nodeid]
-    assert len(rows) > 50
+    rows = [item for item in request.session.items if "::test_files_without_a_short_test" in item.nodeid]
+    assert len(rows) > 10
     assert len(suite.thinned(rows)) == suite.ROWS
     assert suite.thinned(rows[:1]) == rows[:1]
 

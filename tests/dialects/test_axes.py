@@ -33,6 +33,7 @@ from groundstation.input.keymap import KEYMAPS
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveKeyDown
+from tests.rows import each_row
 
 ROVER = VehicleType.GROUND_ROVER
 unit = st.floats(-1.0, 1.0)
@@ -167,8 +168,8 @@ def test_every_key_and_chord_moves_a_px4_rover_as_its_label_says(
         assert tuple(map(sign, px4_motion(keys, frame, rover))) == expected, keys
 
 
-@pytest.mark.parametrize(("frame", "rover"), PX4_ROVERS)
-@pytest.mark.parametrize(("out", "back"), [("u", "m"), ("o", "full_stop"), ("i", "comma")])
+@each_row(("frame", "rover"), PX4_ROVERS)
+@each_row(("out", "back"), [("u", "m"), ("o", "full_stop"), ("i", "comma")])
 def test_a_px4_rover_comes_back_on_the_same_arc(
     frame: int, rover: Callable[[ManualControl], Motion], out: str, back: str
 ) -> None:

@@ -18,6 +18,7 @@ from dialects.messages import (
     Message,
     RoverDriveStatus,
 )
+from tests.rows import each_row
 
 GOLDEN = Path(__file__).with_name("golden_frames.json")
 """Message name -> [frame in hex, fields]. Nobody may edit a line: vehicles in the field were built with these bytes."""
@@ -32,7 +33,7 @@ def plain_decode(data: bytes) -> rover.MAVLink_message:
     return messages[0]
 
 
-@pytest.mark.parametrize("name", sorted(json.loads(GOLDEN.read_text())))
+@each_row("name", sorted(json.loads(GOLDEN.read_text())))
 def test_golden_bytes_are_what_we_send_and_what_pymavlink_reads(name: str) -> None:
     frame_hex, fields = json.loads(GOLDEN.read_text())[name]
     data = bytes.fromhex(frame_hex)
@@ -66,7 +67,7 @@ def test_every_message_that_we_make_has_golden_bytes() -> None:
     assert made <= json.loads(GOLDEN.read_text()).keys()
 
 
-@pytest.mark.parametrize("number", sorted(MESSAGES))
+@each_row("number", sorted(MESSAGES))
 def test_every_message_survives_the_way_there_and_back(number: int) -> None:
     size = MESSAGES[number].unpacker.size
     payload = bytes(1 + each % 120 for each in range(size))

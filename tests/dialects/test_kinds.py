@@ -10,6 +10,7 @@ from dialects.axes import axis_map
 from dialects.enums import Autopilot, type_name
 from dialects.kinds import find_kind
 from dialects.mode_tables import ARDUPILOT, PX4
+from tests.rows import each_row
 
 ARDU, PX, OURS = Autopilot.ARDUPILOT, Autopilot.PX4, Autopilot.GENERIC
 ROVER, BOAT, COPTER = rover.MAV_TYPE_GROUND_ROVER, rover.MAV_TYPE_SURFACE_BOAT, rover.MAV_TYPE_QUADROTOR
@@ -27,8 +28,8 @@ def test_only_rovers_boats_and_multicopters_are_driven() -> None:
     assert not find_kind(OURS, ROVER).flies
 
 
-@pytest.mark.parametrize("kind", TYPES, ids=type_name)
-@pytest.mark.parametrize("autopilot", [ARDU, PX, OURS, 5])
+@each_row("kind", TYPES, ids=type_name)
+@each_row("autopilot", [ARDU, PX, OURS, 5])
 def test_every_other_kind_has_one_line_why_and_nothing_to_select(kind: int, autopilot: int) -> None:
     found = find_kind(autopilot, kind)
     if found.is_driven:
@@ -46,7 +47,7 @@ def test_what_flies_falls() -> None:
     assert falling.isdisjoint({ROVER, BOAT, rover.MAV_TYPE_SUBMARINE, rover.MAV_TYPE_ANTENNA_TRACKER})
 
 
-@pytest.mark.parametrize("kind", sorted(mavutil.AP_MAV_TYPE_MODE_MAP_DEFAULT))
+@each_row("kind", sorted(mavutil.AP_MAV_TYPE_MODE_MAP_DEFAULT))
 def test_ardupilots_names_are_pymavlinks(kind: int) -> None:
     theirs = {number: name for number, name in mavutil.AP_MAV_TYPE_MODE_MAP_DEFAULT[kind].items() if name != "LEARNING"}
     assert dict(ARDUPILOT[kind]) == theirs
@@ -57,7 +58,7 @@ def test_px4s_numbers_are_pymavlinks() -> None:
     assert named <= {f"{number >> 16 & 255}.{number >> 24}" for number in PX4}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("autopilot", "kind", "number", "name"),
     [
         (OURS, ROVER, 0, "MANUAL"),

@@ -7,6 +7,7 @@ from pymavlink.dialects.v20 import common
 
 from dialects import codec, rover
 from dialects.messages import MESSAGES, Message
+from tests.rows import each_row
 
 OFFICIAL = {
     "COMMAND_CANCEL": (80, 14),
@@ -42,7 +43,7 @@ PRIVATE = {
 }
 
 
-@pytest.mark.parametrize(("name", "number", "crc_extra"), [(name, *rest) for name, rest in OFFICIAL.items()])
+@each_row(("name", "number", "crc_extra"), [(name, *rest) for name, rest in OFFICIAL.items()])
 def test_standard_messages_have_the_official_crc_extra(name: str, number: int, crc_extra: int) -> None:
     assert (MESSAGES[number].msgname, MESSAGES[number].crc_extra) == (name, crc_extra)
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-import pytest
-
 from dialects import messages as m
 from dialects import traits
 from dialects.messages import CommandInt, CommandLong, Message
 from dialects.traits import TRAITS, Trait, ids_with, is_stop
+from tests.rows import each_row
 
 NAMED = sorted(
     (each for each in vars(m).values() if isinstance(each, type) and issubclass(each, Message) and each is not Message),
@@ -24,13 +23,13 @@ def test_every_row_is_a_named_message_of_the_dialect() -> None:
     assert len({message.id for message in TRAITS}) == len(TRAITS)
 
 
-@pytest.mark.parametrize("message", NAMED, ids=lambda message: message.msgname)
+@each_row("message", NAMED, ids=lambda message: message.msgname)
 def test_each_message_is_state_or_acknowledged_and_not_both(message: type[Message]) -> None:
     each = TRAITS.get(message, Trait.STATE)
     assert (Trait.STATE in each) != (Trait.ACKED in each)
 
 
-@pytest.mark.parametrize("message", TRAITS, ids=lambda message: message.msgname)
+@each_row("message", TRAITS, ids=lambda message: message.msgname)
 def test_traits_do_not_contradict_each_other(message: type[Message]) -> None:
     each = TRAITS[message]
     assert not (Trait.DEMAND in each and Trait.COMMAND in each)
@@ -62,7 +61,7 @@ def test_the_sets_hold_what_the_table_says() -> None:
     assert {m.SetupSigning.id, m.FileTransferProtocol.id, m.LogData.id, m.LogEntry.id} == traits.UNLOGGED
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("command", "param1", "stops"),
     [
         *((400, 0.0, True), (400, 1.0, False), (5300, 0.0, True), (5300, 1.0, False), (176, 0.0, False)),
@@ -75,7 +74,7 @@ def test_what_counts_as_a_stop(command: int, param1: float, stops: bool) -> None
     assert is_stop(CommandInt(1, 1, 0, command, 0, 0, param1, 0, 0, 0, 0, 0, 0)) is stops
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("base", "custom", "sub", "holds"),
     [
         *((1.0, 4.0, 0.0, True), (217.0, 4.0, 0.0, True), (1.0, 4.0, math.nan, True)),

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from dialects import codec
 from dialects import messages as m
 from link.core import Outgoing
 from tests.fakes.wires import ChannelWire, PymavlinkWire
+from tests.rows import each_row
 
 EXTENDED = {"MISSION_CURRENT", "MISSION_COUNT", "MISSION_ACK", "SET_ATTITUDE_TARGET", "TIMESYNC"}
 """Have extension fields that only one of the two dialects knows."""
 SAME = [number for number, kind in m.MESSAGES.items() if number in mav.mavlink_map and kind.msgname not in EXTENDED]
 
 
-@pytest.mark.parametrize("number", SAME, ids=lambda number: str(m.MESSAGES[number].msgname))
+@each_row("number", SAME, ids=lambda number: str(m.MESSAGES[number].msgname))
 def test_pymavlink_carries_every_message_unchanged(number: int) -> None:
     sent = codec.decode(number, bytes([1]) * m.MESSAGES[number].unpacker.size)
     near, far = PymavlinkWire(), PymavlinkWire()

@@ -6,9 +6,10 @@ import pytest
 
 from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse_endpoint, parse_endpoints
 from link.transport.transports import load_factory
+from tests.rows import each_row
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "endpoint"),
     [
         ("udpin:127.0.0.1:14550", Endpoint("udpin:127.0.0.1:14550", "udpin", "127.0.0.1", 14550)),
@@ -56,7 +57,7 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
     assert parse_endpoint(text) == endpoint
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "told"),
     [
         ("", "must be one of udpin:HOST:PORT"),

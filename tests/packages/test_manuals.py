@@ -13,6 +13,7 @@ from manpages.roff import Edition, Page, build, escape
 
 from groundstation.cli.verb_help import LOCAL_VERBS
 from groundstation.verbs.table import VERBS
+from tests.rows import each_row
 from vehicle.cli.subcommands import SUBCOMMANDS
 
 EDITION = Edition("0.1.0", "2026-11-27")
@@ -40,7 +41,7 @@ def flags(parser: argparse.ArgumentParser) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
+@each_row("page", PAGES.values(), ids=lambda page: page.name)
 def test_a_page_has_all_options(page: Page) -> None:
     text = build(page, EDITION)
     assert len(flags(page.parser)) >= 1

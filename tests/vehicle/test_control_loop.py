@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from link.core import Outgoing, Peer, PeerReservation, TimeTeller
+from tests.rows import each_row
 from tests.vehicle.script import AHEAD, HEARTBEAT, MESSAGE, OFF, TURN, Script, driving, machine
 from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.drive.gate import Outputs
@@ -256,8 +257,8 @@ def test_shutdown_speaks_even_where_the_motors_fail() -> None:
     assert mind.calls == ["shutdown"]
 
 
-@pytest.mark.parametrize("fault", [ZeroDivisionError("bug"), SystemExit(3), KeyboardInterrupt()])
-@pytest.mark.parametrize("verb", ["receive", "tick", "observe", "messages_to_send"])
+@each_row("fault", [ZeroDivisionError("bug"), SystemExit(3), KeyboardInterrupt()])
+@each_row("verb", ["receive", "tick", "observe", "messages_to_send"])
 def test_an_exception_stops_the_motors_before_it_goes_on(verb: str, fault: BaseException) -> None:
     body, mind, motors = driving()
     mind.fault = fault

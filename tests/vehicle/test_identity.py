@@ -18,6 +18,7 @@ from dialects.axes import Axes
 from dialects.enums import Command, ControlFlag, Result
 from dialects.modes import Mode
 from link.core import Peer
+from tests.examples import examples
 from tests.vehicle.wires import IDS, HostileLinks, Program, SessionProgram, TwoLinks, Wires, drive_fully
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.driver import SUCCESSION_TIME
@@ -139,7 +140,10 @@ def test_heartbeats_of_a_twin_do_not_keep_the_failsafe_quiet(kind: type[Program]
 
 
 OLD_FRAMES = [
-    *itertools.product((Program, SessionProgram), ("gcs", "elsewhere"), (1.0, 20.0, 1000.0), (1, 5, 8, 11, 30, 90)),
+    *itertools.product((Program, SessionProgram), ("gcs",), (1.0,), (1, 5, 8, 11, 30)),
+    *itertools.product((Program, SessionProgram), ("gcs",), (20.0, 1000.0), (1, 5, 8, 11, 30, 90)),
+    *itertools.product((Program, SessionProgram), ("elsewhere",), (1.0,), (1, 11)),
+    *itertools.product((Program, SessionProgram), ("elsewhere",), (20.0, 1000.0), (8, 90)),
     *itertools.product((TwoLinks, HostileLinks), ("gcs", "elsewhere"), (20.0,), (8, 90)),
 ]
 """Who drives, from where frames come again, at how many per second, and how many."""
@@ -224,12 +228,14 @@ def test_presence_alone_drives_and_demands_alone_do_not(kind: type[SessionProgra
 # ---- 7: roaming, restarts, losses ----
 
 
-@pytest.mark.parametrize("loss", [0.0, 0.1, 0.2])
+@pytest.mark.parametrize(("loss", "tries"), [(0.0, 1), (0.1, 3), (0.2, 6)])
 @pytest.mark.parametrize("what", ["restart", "roam", "second link"])
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_driver_who_comes_back_is_ready_within_a_second(kind: type[Program], what: str, loss: float) -> None:
+def test_a_driver_who_comes_back_is_ready_within_a_second(
+    kind: type[Program], what: str, loss: float, tries: int
+) -> None:
     ready = []
-    for seed in range(10):
+    for seed in range(tries):
         chance = random.Random(seed)
         wires, driver = driving(kind, links=2)
         if what == "restart":
@@ -249,7 +255,7 @@ def test_a_driver_who_comes_back_is_ready_within_a_second(kind: type[Program], w
         back.hold(0.3, AHEAD)
         assert wires.turning
     # Foreign: 0.7 s of silence, then three frames, one of which is not a copy, then neutral; losses come on top.
-    assert sorted(ready)[5] <= 1.0
+    assert sorted(ready)[tries // 2] <= 1.0
     assert max(ready) <= 1.0 + 10 * loss
 
 
@@ -302,7 +308,7 @@ def test_frames_of_the_former_run_move_nothing_around_a_restart(
 @pytest.mark.parametrize("kind", KINDS)
 def test_still_older_frames_after_a_restart_move_it_once_at_most(kind: type[Program]) -> None:
     """U3: copies more than 32 numbers old, on the address of a program that has just restarted."""
-    for seed in (14, 19, 43, *range(5)):  # the first three move a rover without sessions for 0.1 to 0.44 s
+    for seed in (14, 19, 43, 0, 1):  # the first three move a rover without sessions for 0.1 to 0.44 s
         chance = random.Random(seed)
         wires, driver = driving(kind)
         driver.hold(8.0, AHEAD)
@@ -516,7 +522,7 @@ def test_rover_control_tells_of_clash_of_driver_without_sessions() -> None:
 # ---- any mix ----
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 2**32), st.floats(0.0, 0.4), st.floats(0.0, 3.0), st.booleans())
 def test_a_session_is_moved_by_its_own_fresh_demands_only(seed: int, loss: float, lag: float, same: bool) -> None:
     """Two links, a twin, and copies of everything at random: no output but from a demand of the last 0.45 s.

@@ -26,6 +26,7 @@ from link.signing.role import SigningRole
 from link.signing.signature import link_and_stamp
 from link.signing.signing import Signing, SigningMemory
 from link.signing.streams import SignedStream
+from tests.examples import examples
 from tests.link.signing.signed import DAY, DRIVER, NOON, NOW, WATCHER, keep, signed
 from tests.vehicle.bench import BEAT, MESSAGE_IDS
 from vehicle.params import Params
@@ -353,7 +354,7 @@ EVENTS = st.one_of(
 )
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.sampled_from(OWN_CLOCKS), st.lists(EVENTS, max_size=8))
 def test_any_mix_of_keys_clocks_and_restarts(first: tuple[float, bool], events: list[tuple[object, ...]]) -> None:
     field = Field(first[0])

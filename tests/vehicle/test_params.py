@@ -6,11 +6,12 @@ import math
 
 import pytest
 
+from tests.rows import each_row
 from vehicle.config.merge import merge_params
 from vehicle.params import ORDERED_PAIRS, PARAMETERS, TABLE, ParamError, Parameter, Params
 
 
-@pytest.mark.parametrize("parameter", TABLE, ids=lambda parameter: parameter.name)
+@each_row("parameter", TABLE, ids=lambda parameter: parameter.name)
 def test_every_parameter_fits_the_protocol(parameter: Parameter) -> None:
     assert 1 <= len(parameter.name.encode("ascii")) <= 16
     assert parameter.low <= parameter.default <= parameter.high
@@ -51,7 +52,7 @@ def test_values_replace_defaults() -> None:
     assert list(params) == [parameter.name for parameter in TABLE]
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("name", "value"),
     [("MAN_TIMEOUT", 60), ("MAN_TIMEOUT", 0), ("MAN_TIMEOUT", math.nan), ("MOT_DECEL", 100), ("MAV_SYSID", 1.5),
      ("MAV_SYSID", math.inf), ("NO_SUCH", 1), ("MOT1_MIN", 81), ("MOT2_MAX", 24), ("MOT3_TRIM", 21),

@@ -18,6 +18,7 @@ from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import Peer, Received
+from tests.examples import examples
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench
 from vehicle.modes import MODES
 from vehicle.params import Params
@@ -190,7 +191,7 @@ def going() -> Script:
     return script
 
 
-@settings(max_examples=120)
+@settings(max_examples=examples(120))
 @given(st.lists(STEPS, max_size=40))
 def test_it_moves_only_for_a_fresh_demand_of_its_driver(steps: list[Step]) -> None:
     script = going()
@@ -205,7 +206,7 @@ def test_the_witness_sees_motion() -> None:
     assert script.witness.permitted == script.bench.now
 
 
-@settings(max_examples=120)
+@settings(max_examples=examples(120))
 @given(st.lists(STEPS, max_size=20))
 def test_disarmed_a_wheel_turns_for_a_motor_test_only(steps: list[Step]) -> None:
     script = Script(bench := Bench(), Witness(bench))
@@ -225,7 +226,7 @@ FRAMES = st.tuples(
 )
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(st.lists(FRAMES, min_size=10, max_size=60))
 def test_no_message_of_any_kind_raises(frames: list[tuple[int, bytes, int, int, bool]]) -> None:
     bench = Bench()
@@ -236,7 +237,7 @@ def test_no_message_of_any_kind_raises(frames: list[tuple[int, bytes, int, int, 
         bench.wait(CYCLE)
 
 
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 @given(
     st.sampled_from([*Command, 65535]),
     st.lists(st.one_of(st.floats(width=32), NUMBERS), min_size=7, max_size=7),

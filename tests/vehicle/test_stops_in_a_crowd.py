@@ -105,9 +105,12 @@ STOPS = {
 }
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.1, 0.5, 1.1, 2.3, 3.7])
-@pytest.mark.parametrize("stop", STOPS.values(), ids=STOPS)
-def test_a_new_station_stops_a_rover_whose_places_are_all_taken(stop: m.CommandLong, delay: float) -> None:
+@pytest.mark.parametrize(
+    ("name", "delay"), [*zip([*STOPS, *STOPS], (0.0, 0.1, 0.5, 1.1, 2.3, 3.7, 0.0, 3.0), strict=True)]
+)
+def test_a_new_station_stops_a_rover_whose_places_are_all_taken(name: str, delay: float) -> None:
+    """The delays go through the period of the strangers, each place with another stop."""
+    stop = STOPS[name]
     link = CrowdedLink()
     link.drive()
     link.run(delay)

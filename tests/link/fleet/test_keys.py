@@ -8,6 +8,7 @@ from dialects import messages as m
 from dialects import rover
 from link.fleet.keys import MAX_KEYS, FleetKeys, KeyReader, read_frame
 from tests.link.frames import demand, frame, heartbeat
+from tests.rows import each_row
 
 ALICE = FleetKeys("farm", "", "alice/1")
 ROVER = FleetKeys("farm", "rover1", None)
@@ -132,7 +133,7 @@ def test_keys_that_nobody_uses_again_are_bounded() -> None:
     assert place.sender == "v1"
 
 
-@pytest.mark.parametrize(
+@each_row(
     "word",
     [
         *("ID0", "ID061000", "ID", "IDx", "heartbeat", "ID²", "ID\u0666\u0661\u0660\u0660\u0660", "XX61000", "IDNone"),

@@ -16,6 +16,7 @@ from link.fleet.roles import depends_on_content, file_opcode, needed_role
 from link.protocol.frame import Frame
 from link.signing.role import SigningRole
 from tests.link.frames import frame, heartbeat
+from tests.rows import each_row
 from tests.vehicle.bench import Bench
 
 MORE = {
@@ -49,7 +50,7 @@ def files(opcode: int) -> Frame:
     return read(m.FileTransferProtocol(0, 1, 1, [1, 0, 0, opcode, *(0,) * 247]))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("sent", "role"),
     [
         (read_frame(heartbeat(0)), SigningRole.WATCH),
@@ -101,7 +102,7 @@ def test_what_each_frame_needs(sent: Frame, role: SigningRole) -> None:
 READING = {0, 1, 3, 4, 5, 14, 15}
 
 
-@pytest.mark.parametrize("opcode", range(20))
+@each_row("opcode", range(20))
 def test_only_file_operations_that_read_are_a_watchers(opcode: int) -> None:
     expected = SigningRole.WATCH if opcode in READING else SigningRole.DRIVE if opcode == 2 else SigningRole.SET_UP
     assert needed_role(files(opcode)) is expected
@@ -139,7 +140,7 @@ SET_UP_BY_ANOTHER_NAME = {
 }
 
 
-@pytest.mark.parametrize("number", SET_UP_BY_ANOTHER_NAME, ids=SET_UP_BY_ANOTHER_NAME.get)
+@each_row("number", SET_UP_BY_ANOTHER_NAME, ids=SET_UP_BY_ANOTHER_NAME.get)
 def test_set_up_by_another_name_needs_setup(number: int) -> None:
     for first in (0.0, 1.0, 42.0):
         assert needed_role(command(number, first)) is SigningRole.SET_UP

@@ -13,6 +13,7 @@ from link.protocol.sequence import FrameOrder, SequenceTracker
 from link.protocol.signing_guard import LANES, WATCHDOG_LANE, SigningPolicy
 from tests.link.frames import frame, heartbeat
 from tests.link.signing.signed import ARM, DAY, DRIVER, HERE, NOW, THERE, WATCHER, keep, send, signed, vehicle
+from tests.rows import each_row
 
 GREETS = SigningPolicy(unsigned=None, greets_late=True)
 
@@ -48,7 +49,7 @@ def test_the_watchdog_signs_as_the_peer_on_a_link_id_of_its_own() -> None:
 # ---- flow control ----
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("free", "delay"),
     [
         (0, 0.16),

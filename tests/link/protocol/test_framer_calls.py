@@ -18,6 +18,7 @@ from link.protocol.frame import Frame
 from link.protocol.framer import PARTIAL_DEADLINE, Framer
 from tests.link.calls import called
 from tests.link.frames import demand
+from tests.rows import each_row
 
 LARGE_ID = 0x012345
 """Id of a message of a user's dialect: three different bytes."""
@@ -44,8 +45,8 @@ def found(framer: Framer, data: bytes, calls: Sequence[str]) -> list[Frame]:
     return frames
 
 
-@pytest.mark.parametrize("length", [0, 1, 2, 9, 127, 128, 254, 255])
-@pytest.mark.parametrize("number", [0, 69, 397, LARGE_ID])
+@each_row("length", [0, 1, 2, 9, 127, 128, 254, 255])
+@each_row("number", [0, 69, 397, LARGE_ID])
 def test_a_datagram_of_one_frame_takes_no_call(length: int, number: int) -> None:
     framer, data = Framer(stream=False), build(length, number)
     for _ in range(2):
@@ -123,9 +124,9 @@ def test_a_datagram_without_its_announced_signature_is_no_frame() -> None:
     assert framer.counts.frames == 0
 
 
-@pytest.mark.parametrize("stream", [False, True])
-@pytest.mark.parametrize("number", [0, 69, LARGE_ID])
-@pytest.mark.parametrize("signed", [False, True])
+@each_row("stream", [False, True])
+@each_row("number", [0, 69, LARGE_ID])
+@each_row("signed", [False, True])
 def test_each_changed_bit_is_noticed(stream: bool, number: int, signed: bool) -> None:
     data = build(3, number, flags=int(signed), tail=bytes(13) if signed else b"")
     for bit in range(8, 8 * len(data[:15])):  # up to the end of the checksum

@@ -9,6 +9,7 @@ from dialects.messages import Heartbeat, MissionCount, MissionRequestList
 from link.protocol.frame import FramerCounts, sum_counts
 from link.protocol.framer import PARTIAL_DEADLINE, Framer
 from tests.link.frames import demand, frame, version_1
+from tests.rows import each_row
 
 BOTH = pytest.mark.parametrize("stream", [True, False], ids=["stream", "datagram"])
 FORGED = bytes([0xFD, 255, 0, 0, 0, 1, 1, 69, 0, 0])
@@ -284,7 +285,7 @@ def test_a_router_gets_a_lone_unknown_frame(flags: int, stream: bool) -> None:
     assert (framer.counts.frames, framer.counts.unknown) == (0, 1)
 
 
-@pytest.mark.parametrize("size", range(1, 25))
+@each_row("size", range(1, 25))
 def test_a_router_gets_the_same_frames_in_pieces_of_any_size(size: int) -> None:
     train = b"".join(
         (demand(1), unknown(), unknown(b""), SHORT_OLD, unknown(old=True), demand(2), unknown(flags=1), SHORT)

@@ -25,6 +25,7 @@ from link.signing.verifier import AHEAD_MAX
 from tests.link.frames import frame, heartbeat
 from tests.link.signing.signed import DRIVER, HEARTBEAT, HERE, NOW, THERE, keep, send, signed, station
 from tests.link.signing.signed import vehicle as guarded
+from tests.rows import each_row
 
 
 def vehicle(**options: object) -> Channel:
@@ -99,7 +100,7 @@ def test_a_meter_that_nobody_reads_keeps_its_window_only() -> None:
 # ---- flow control ----
 
 
-@pytest.mark.parametrize("free", range(101, 256, 11))
+@each_row("free", range(101, 256, 11))
 def test_a_radio_that_reports_no_percentage_changes_nothing(free: int) -> None:
     flow = FlowControl()
     for _ in range(5):

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import pytest
-
 from link.core import Peer
 from link.protocol.framer import Framer
 from link.protocol.peer import PeerState
+from tests.rows import each_row
 
 OLD, NEW = b"\xfe", b"\xfd"
 """First byte of a frame of each version."""
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("heard", "number", "target", "versions"),
     [
         ({1: OLD}, 76, 1, (1,)),

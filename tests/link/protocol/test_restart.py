@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from link.protocol.sequence import CLASH_SILENCE, LATE_WINDOW, NUMBERING_SILENCE, FrameOrder, SequenceTracker
+from tests.rows import each_row
 
 DEMAND, HEARTBEAT = 69, 0
 NEW, LATE, DUPLICATE = FrameOrder.NEW, FrameOrder.LATE, FrameOrder.DUPLICATE
@@ -39,8 +40,8 @@ class Former:
         return self.tracker.accept((self.frames[-1].number - behind) % 256, kind, digest, self.ended + silence)
 
 
-@pytest.mark.parametrize("behind", [0, 1, 5, 31, LATE_WINDOW])
-@pytest.mark.parametrize("silence", [CLASH_SILENCE + 0.01, 2.0, NUMBERING_SILENCE - 0.1])
+@each_row("behind", [0, 1, 5, 31, LATE_WINDOW])
+@each_row("silence", [CLASH_SILENCE + 0.01, 2.0, NUMBERING_SILENCE - 0.1])
 def test_another_frame_with_number_of_a_silent_run_begins_a_run(silence: float, behind: int) -> None:
     former = Former()
     assert former.after(silence, behind, 1) is NEW

@@ -12,6 +12,7 @@ import pytest
 
 from link.protocol.sequence import LATE_WINDOW, FrameOrder, SequenceTracker
 from tests.link.calls import called
+from tests.rows import each_row
 
 NEW, LATE, DUPLICATE = FrameOrder.NEW, FrameOrder.LATE, FrameOrder.DUPLICATE
 
@@ -166,8 +167,8 @@ def test_numbers_count_as_in_the_model(seed: int) -> None:
             assert state == (expected, model.index, model.clash, model.received, model.lost), frame
 
 
-@pytest.mark.parametrize("ahead", range(1, 9))
-@pytest.mark.parametrize("wait", [0.0, 0.5, 5.0])
+@each_row("ahead", range(1, 9))
+@each_row("wait", [0.0, 0.5, 5.0])
 def test_the_next_frame_of_the_only_sender_takes_one_call(ahead: int, wait: float) -> None:
     for start in (0, 250):
         tracker = SequenceTracker(start, 30, 1, 100.0)

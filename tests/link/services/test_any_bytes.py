@@ -18,6 +18,7 @@ from link.services.log.server import LogServer
 from link.services.mission.client import MissionClient
 from link.services.pacing import BulkPacer
 from link.services.param.client import ParamClient
+from tests.examples import examples
 from tests.link import ftp_rig, mission_rig, param_rig
 from tests.link.services_world import PEER
 
@@ -57,7 +58,7 @@ def addressed(number: int, payload: bytes, system: int, component: int) -> m.Mes
 
 
 @pytest.mark.parametrize("make", SERVERS)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(frames=st.lists(FRAMES, max_size=8))
 def test_servers(make: Callable[[], Any], frames: list[tuple[int, bytes]]) -> None:
     server = make()
@@ -87,7 +88,7 @@ CLIENTS: list[Callable[[], Any]] = [
 
 
 @pytest.mark.parametrize("make", CLIENTS)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(frames=st.lists(FRAMES, max_size=8))
 def test_clients(make: Callable[[], Any], frames: list[tuple[int, bytes]]) -> None:
     client = make()

@@ -14,6 +14,7 @@ from link.signing.signing import Signing, SigningMemory
 from link.signing.streams import MAX_STREAMS, SignedStream
 from link.signing.verifier import Refusal, Verified
 from tests.link.signing.signed import ARM, DAY, DRIVER, NOON, NOW, STRANGER, WATCHER, keep, signed
+from tests.rows import each_row
 
 GROUND = (255, 190)
 
@@ -58,7 +59,7 @@ def test_a_frame_with_one_wrong_bit_is_refused(byte: int, bit: int) -> None:
     assert keep(DRIVER).verifier.check(bytes(frame), 255, 190, 0.0) is Refusal.BAD_SIGNATURE
 
 
-@pytest.mark.parametrize("byte", range(-13, 0))
+@each_row("byte", range(-13, 0))
 def test_each_bit_of_the_signature_counts(byte: int) -> None:
     """Link id, 6 bytes of time and all 48 bits of the digest: of 16 bits every 65,536th guess would do."""
     for bit in range(8):
@@ -244,8 +245,8 @@ def test_of_many_senders_the_oldest_is_forgotten() -> None:
     assert verifier.is_pinned(255, MAX_STREAMS + 1, 0.0)
 
 
-@pytest.mark.parametrize("link_id", [0, 9])
-@pytest.mark.parametrize(
+@each_row("link_id", [0, 9])
+@each_row(
     ("ended", "ago", "found"),
     [
         (False, 3600, Refusal.TOO_OLD),

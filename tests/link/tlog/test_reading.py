@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from link.tlog import tlog
 from link.tlog.scan import Gap, LogFrame
 from link.tlog.tlog import CHUNK, LATEST, Record, encode_record, read_log, read_records
+from tests.examples import examples
 from tests.link.frames import demand, heartbeat
 from tests.link.routing.test_router import unknown
 from tests.link.tlog.test_tlog import FRAMES, LOG, SIZE, START, version_1_heartbeat
@@ -33,14 +34,14 @@ def whole(data: bytes) -> list[LogFrame | Gap]:
     return in_pieces(data, CHUNK)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.integers(1, 900), st.integers(0, len(MIXED)), st.binary(max_size=30), st.integers(0, 30))
 def test_the_pieces_do_not_change_what_is_found(size: int, at: int, noise: bytes, cut: int) -> None:
     log = MIXED[:at] + noise + MIXED[at + cut :] + MIXED
     assert in_pieces(log, size) == whole(log)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.integers(1, 900), st.integers(0, len(MIXED)), st.binary(max_size=30), st.integers(0, 30))
 def test_frames_and_gaps_are_all_bytes_of_the_file(size: int, at: int, noise: bytes, cut: int) -> None:
     log = MIXED[:at] + noise + MIXED[at + cut :]

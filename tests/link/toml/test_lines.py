@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
-
 from link.toml.lines import find_line
+from tests.rows import each_row
 
 TEXT = '''\
 # speed = 1
@@ -29,7 +28,7 @@ drive.left = "j"
 '''
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("path", "line"),
     [
         (("first",), 2), (("speed",), 6), (("list",), 7), (("a",), 11), (("a", "b"), 11), (("endpoints",), 12),

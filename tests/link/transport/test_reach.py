@@ -9,9 +9,10 @@ import pytest
 
 from link.endpoint import parse_endpoint
 from link.transport.reach import Trust, find_trust, is_interface_name, missing_interfaces
+from tests.rows import each_row
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("endpoint", "reason"),
     [
         ("serial:/dev/ttyAMA0:57600", "a cable"),
@@ -84,9 +85,7 @@ def test_a_host_name_that_means_this_computer_is_bound_to_it() -> None:
     assert find_trust(parse_endpoint(f"udpout:{host}:14550")) == Trust("only this computer", "lo")
 
 
-@pytest.mark.parametrize(
-    "name", ["", ".", "..", "wg*", "wg?", "[wg0]", "wg 0", "a/b", "a:b", "sixteen-letters-", "wg0\n"]
-)
+@each_row("name", ["", ".", "..", "wg*", "wg?", "[wg0]", "wg 0", "a/b", "a:b", "sixteen-letters-", "wg0\n"])
 def test_no_pattern_is_the_name_of_an_interface(name: str) -> None:
     assert not is_interface_name(name)
     assert all(map(is_interface_name, ("wg0", "tailscale0", "wlan0.10", "br-lan", "lo")))

@@ -12,6 +12,7 @@ import pytest
 from msgspec.structs import fields
 
 from link.runtime.command_line import USAGE_ERROR
+from tests.rows import each_row
 from tests.vehicle.accessories.across_processes import NAME
 from tests.vehicle.motors.across_processes import FiledPca9685
 from tests.vehicle.words import said_by
@@ -50,7 +51,7 @@ def test_a_file_becomes_outputs() -> None:
     assert (other.start, other.safe, other.pulses) == (0, 0, PulseRange(1000, 1500, 2000))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "says"),
     [
         ("[accessories]\nrelay = []", "relay: unknown key; did you mean relays?"),

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from dialects.axes import Axes
 from dialects.enums import Command, Result
 from dialects.modes import Mode
+from tests.examples import examples
 from tests.vehicle.bench import CYCLE, DRIVER, NEUTRAL, OTHER
 from tests.vehicle.field import Field
 from tests.vehicle.missions import upload, way
@@ -229,7 +230,7 @@ class Witness:
         self.field.cycle()
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.lists(STEPS, max_size=25))
 def test_no_command_moves_a_disarmed_stopped_or_failing_rover(steps: list[Step]) -> None:
     field = Field()

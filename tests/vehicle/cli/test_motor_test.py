@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.rows import each_row
 from tests.vehicle.motors.controllers import RoboClaw
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
@@ -83,7 +84,7 @@ def test_the_motor_gets_what_it_gets_when_driving() -> None:
     assert build_options("steering", 0.2, 1.0, car).throttles == pytest.approx((0.0, -0.12))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("motor", "throttle", "seconds", "says"),
     [
         ("middle", 0.1, 1.0, "no motor 'middle'; known: left, right, 1, 2"),

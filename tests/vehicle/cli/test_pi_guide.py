@@ -13,6 +13,7 @@ import msgspec
 import pytest
 
 from tests.ports import free_port
+from tests.rows import each_row
 from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.settings import Accessories, build_specs
 from vehicle.config.config import Config, parse_config
@@ -27,7 +28,7 @@ TEXTS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)
 TABLES = [tomllib.loads(text) for text in TEXTS]
 
 
-@pytest.mark.parametrize("text", TEXTS, ids=lambda text: text.split("\n")[1])
+@each_row("text", TEXTS, ids=lambda text: text.split("\n")[1])
 def test_a_file_of_nothing_but_a_table_of_the_guide_is_right(text: str) -> None:
     assert isinstance(parse_config(text, "rover.toml"), Config)
 

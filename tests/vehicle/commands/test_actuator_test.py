@@ -11,6 +11,7 @@ from dialects.axes import Axes
 from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import Peer, Received
+from tests.rows import each_row
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
 from vehicle.drive.gate import Outputs
 
@@ -237,7 +238,7 @@ BAD = {
 
 
 class TestRefusals:
-    @pytest.mark.parametrize("words", BAD.values(), ids=BAD)
+    @each_row("words", BAD.values(), ids=BAD)
     def test_56_what_is_too_much_is_denied(self, words: tuple[int, float, float, float, float, float]) -> None:
         bench = Bench()
         assert bench.command(*words) is Result.DENIED

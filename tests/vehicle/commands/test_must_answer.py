@@ -16,6 +16,7 @@ from dialects import messages as m
 from dialects.enums import Command, MissionType, Result, command_name
 from dialects.modes import Mode
 from link.core import LinkReport
+from tests.rows import each_row
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, Equipped, logged, said
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec
@@ -353,7 +354,8 @@ ROWS: tuple[Row, ...] = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("row", ROWS, ids=str)
+@pytest.mark.slow
+@each_row("row", ROWS, ids=str)
 def test_the_answer(row: Row) -> None:
     bench = row.state()
     answers = len(bench.all(m.CommandAck))
@@ -388,7 +390,8 @@ UNCLEAR = (NAN,) * 7
 """Parameters that stop nothing."""
 
 
-@pytest.mark.parametrize("row", [each for each in COMMANDS if each.access is Access.DRIVER_OR_UNCLAIMED], ids=named)
+@pytest.mark.slow
+@each_row("row", [each for each in COMMANDS if each.access is Access.DRIVER_OR_UNCLAIMED], ids=named)
 @pytest.mark.parametrize("state", [owned, armed, stopped], ids=lambda each: str(each.__name__))
 def test_a_command_of_the_driver_is_denied_to_all_others(row: CommandSpec, state: Callable[[], Bench]) -> None:
     bench = state()
@@ -406,12 +409,12 @@ def test_a_command_that_needs_a_heartbeat_is_denied_without_one(row: CommandSpec
     assert logged(bench, f"{command_name(row.command)} refused: no HEARTBEAT received")
 
 
-@pytest.mark.parametrize("row", [each for each in COMMANDS if each.access is Access.CONNECTED], ids=named)
+@each_row("row", [each for each in COMMANDS if each.access is Access.CONNECTED], ids=named)
 def test_a_request_without_heartbeat_is_rejected_for_now(row: CommandSpec) -> None:
     assert free().command(row.command, introduced=False) is R.TEMPORARILY_REJECTED
 
 
-@pytest.mark.parametrize("row", COMMANDS, ids=named)
+@each_row("row", COMMANDS, ids=named)
 def test_a_broadcast_is_answered_only_where_the_row_accepts_it(row: CommandSpec) -> None:
     answered = owned().command(row.command, *UNCLEAR, target=0) is not None
     assert answered == (row.broadcast and row.stops is None)

@@ -10,6 +10,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, Result
+from tests.rows import each_row
 from tests.vehicle.bench import AHEAD, DRIVER, OTHER, Bench, said
 from tests.vehicle.ground import Ground, drive, running
 from vehicle.commands.reboot import RebootRequest
@@ -37,7 +38,7 @@ class TestReboot:
         assert bench.rover.reboot_request(bench.now) is None
         assert said(bench, "PREFLIGHT_REBOOT_SHUTDOWN refused: armed")
 
-    @pytest.mark.parametrize(
+    @each_row(
         ("wish", "leave"),
         [
             ((1, 0), RebootRequest.RESTART),

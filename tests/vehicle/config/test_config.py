@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.rows import each_row
 from vehicle.config.config import Config, Identity, LogSettings, RoverConfigError, load, parse_config
 from vehicle.sensors.gps import GpsSettings
 from vehicle.sensors.suite import SensorSettings
@@ -62,7 +63,7 @@ ROBOCLAW = '[motors]\ndriver = "roboclaw"\nport = "/dev/x"\n'
 GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "says"),
     [
         ('endpont = ["a"]', "endpont: unknown key; did you mean endpoints?"),

@@ -7,6 +7,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, RcChannelsOverride
+from tests.rows import each_row
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench, said
 from vehicle.drive.demand import Demand, RcOverride, deflection, from_manual_control, pulse
 
@@ -200,12 +201,12 @@ class TestOverride:
         assert not RcOverride().update(self.message(chan1=700, chan3=700), 1.0)
         assert RcOverride().update(self.message(chan1=1500, chan3=700), 1.0)
 
-    @pytest.mark.parametrize(
+    @each_row(
         ("value", "held", "invalid"),
         [(800, True, False), (2200, True, False), (799, False, True), (2201, False, True), (1, False, True),
          (65533, False, True), (65534, False, True), (65535, False, False), (0, False, False)],
     )  # fmt: skip
-    @pytest.mark.parametrize("number", [1, 8])
+    @each_row("number", [1, 8])
     def test_values_of_channels_1_to_8(self, number: int, value: int, held: bool, invalid: bool) -> None:
         override = RcOverride()
         override.update(self.message(**{f"chan{number}": value}), 1.0)
@@ -214,12 +215,12 @@ class TestOverride:
         override.update(self.message(), 1.0)
         assert not override.has_invalid_value
 
-    @pytest.mark.parametrize(
+    @each_row(
         ("value", "held", "invalid"),
         [(800, True, False), (2200, True, False), (799, False, True), (1, False, True), (65533, False, True),
          (65534, False, False), (65535, False, False), (0, False, False)],
     )  # fmt: skip
-    @pytest.mark.parametrize("number", [9, 18])
+    @each_row("number", [9, 18])
     def test_values_of_channels_9_to_18(self, number: int, value: int, held: bool, invalid: bool) -> None:
         override = RcOverride()
         override.update(self.message(**{f"chan{number}": value}), 1.0)
@@ -258,7 +259,7 @@ class TestOverride:
         assert override.build_demand(255, 7, 1.7, 0.5).time == 1.7
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("microseconds", "value"),
     [(1500, 0.0), (1530, 0.0), (1470, 0.0), (1531, 1 / 370), (1469, -1 / 370), (1715, 0.5), (1900, 1.0), (1901, 1.0),
      (1100, -1.0), (800, -1.0), (2200, 1.0)],

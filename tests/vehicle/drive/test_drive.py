@@ -8,6 +8,7 @@ import pytest
 
 from dialects.enums import DriveLimit, DriveType
 from dialects.modes import Mode
+from tests.rows import each_row
 from tests.vehicle.bench import AHEAD, CYCLE, Bench, said
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import LIMITED_THROTTLE_MAX, Drive, shape_demand
@@ -28,9 +29,9 @@ def run(drive: Drive, wish: Demand | None, cycles: int = 100, *, limited: bool =
     return drive.outputs
 
 
-@pytest.mark.parametrize("wrong", [demand(math.nan), demand(0.0, math.nan), demand(math.nan, math.nan)])
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("largest", [100, 50])
+@each_row("wrong", [demand(math.nan), demand(0.0, math.nan), demand(math.nan, math.nan)])
+@each_row("kind", [1, 2, 3, 4])
+@each_row("largest", [100, 50])
 def test_nan_becomes_zero_and_not_speed(wrong: Demand, kind: int, largest: float) -> None:
     drive = Drive(Params({"DRIVE_TYPE": kind, "MOT_THR_MAX": largest}), 0.0)
     assert any(run(drive, demand(1.0)).throttles)
@@ -341,10 +342,8 @@ def test_steering_trim_counts_beside_a_motor_without_settings() -> None:
     assert rig.drive.wheels == (0.5, 0.0)
 
 
-@pytest.mark.parametrize("kind", [1, 2, 4])
-@pytest.mark.parametrize(
-    ("share", "left"), [(1.5, 1.0), (1.0, 1.0), (0.5, 0.5), (0.0, 0.0), (-1.0, 0.0), (math.nan, 0.0)]
-)
+@each_row("kind", [1, 2, 4])
+@each_row(("share", "left"), [(1.5, 1.0), (1.0, 1.0), (0.5, 0.5), (0.0, 0.0), (-1.0, 0.0), (math.nan, 0.0)])
 def test_obstacles_make_values_smaller_and_never_larger(kind: int, share: float, left: float) -> None:
     drive = Drive(Params({"DRIVE_TYPE": kind}), 0.0)
     full = run(drive, demand(0.6, 0.2)).throttles

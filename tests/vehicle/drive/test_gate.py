@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.rows import each_row
 from vehicle.drive.gate import (
     RAMP_TOLERANCE,
     Clearance,
@@ -35,7 +36,7 @@ def test_all_facts_together_permit_driving() -> None:
     assert CLEARED.permit is Permit.DRIVE
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("change", "permit"),
     [
         ({"armed": False}, Permit.NONE),

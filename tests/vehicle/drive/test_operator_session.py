@@ -14,6 +14,7 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.enums import OperatorFlag
 from dialects.modes import Mode
+from tests.examples import examples
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, Bench, said
 from tests.vehicle.field import Field
 from vehicle.drive.driver import SUCCESSION_TIME
@@ -368,7 +369,7 @@ def test_a_proof_is_forgotten_after_a_second() -> None:
 # ---- any mix ----
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.integers(0, 2**32), st.floats(0.0, 0.4), st.floats(0.0, 3.0), st.booleans())
 def test_no_demand_older_than_opr_echo_max_is_in_use(seed: int, loss: float, delay: float, twin_moves: bool) -> None:
     """Two links with any delay and loss, copies, and a twin: what moves the rover was sent in the last 0.45 s."""

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.rows import each_row
 from vehicle.drive.mixer import MIXERS
 from vehicle.drive.output_scaling import (
     PARAM_NAMES,
@@ -30,7 +31,7 @@ def fits(draw: st.DrawFn) -> OutputScaling:
     return OutputScaling(draw(st.booleans()), low / 100, largest / 100, trim / 100, draw(st.floats(-1, 1)))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("fit", "throttle", "output"),
     [
         (OutputScaling(), 0.5, 0.5),
@@ -59,7 +60,7 @@ def test_a_driven_motor(fit: OutputScaling, throttle: float, output: float) -> N
     assert fit.scale_throttle(throttle) == pytest.approx(output)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("fit", "steering", "output"),
     [
         (OutputScaling(), 0.5, 0.5),

@@ -7,6 +7,7 @@ example that is found is explored.
 from __future__ import annotations
 
 import copy
+import math
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -102,11 +103,14 @@ class Explorer:
         self._snapshots = Snapshots([rig.rover, *handlers])  # handlers of commands know who asks for control
         self.explored = Explored()
 
-    def run(self) -> Explored:
-        """Try every event in every state; raises AssertionError with the events that lead to what must not be."""
+    def run(self, most: float = math.inf) -> Explored:
+        """Try every event in every state; raises AssertionError with the events that lead to what must not be.
+
+        `most`: end after so many transitions; those of the fewest events come first.
+        """
         waiting: deque[tuple[tuple[str, ...], Any]] = deque([((), self._save())])
         self.explored.states[describe(self._rig, self._more)] = ()
-        while waiting:
+        while waiting and self.explored.transitions < most:
             path, saved = waiting.popleft()
             for name, event in self._events.items():
                 self._restore(saved)

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, precondition, rule
 
 from dialects.axes import Axes
+from tests.examples import examples
 from tests.vehicle.machine.events import ALL_HAZARDS, ALL_STOPS, ALL_THREE, Event
 from tests.vehicle.machine.rig import AHEAD, CYCLE, NEUTRAL, Rig
 from vehicle.safety.states import SafetyState
@@ -77,7 +78,7 @@ class RoverMachine(RuleBasedStateMachine):
 
 
 RoverMachine.TestCase.settings = settings(
-    max_examples=2000 if LONG else 15,
+    max_examples=2000 if LONG else examples(15),
     stateful_step_count=200 if LONG else 40,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow],

@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.enums import EstimatorFlag
+from tests.examples import examples
 from tests.vehicle.bench import EVERYTHING, Bench
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.estimator import GPS_LOST, Estimator
@@ -170,7 +171,7 @@ def test_one_outlier_is_ignored_and_many_move_the_position() -> None:
 BAD = st.sampled_from([math.nan, math.inf, -math.inf, 1e308, -1e308, 0.0, 1.0, -1.0, 89.9, None])
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(st.lists(st.tuples(BAD, BAD, BAD, BAD, BAD, BAD, BAD), max_size=20), st.floats(0.0, 10.0))
 def test_no_reading_makes_the_estimate_nan(rows: list[tuple[float | None, ...]], dt: float) -> None:
     estimator = Estimator()

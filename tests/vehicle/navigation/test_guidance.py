@@ -8,6 +8,7 @@ import pytest
 
 from dialects.enums import DriveType
 from dialects.modes import Mode
+from tests.rows import each_row
 from tests.vehicle.field import Field
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
@@ -26,8 +27,8 @@ def at(speed: float, yaw: float = 0.0, place: Point = HERE) -> Estimate:
     return Estimate(yaw=yaw, speed=speed, place=place)
 
 
-@pytest.mark.parametrize("grip", [0.1, 0.3, 0.6])
-@pytest.mark.parametrize("speed", [-3.0, -1.0, 0.5, 1.0, 3.0, 10.0])
+@each_row("grip", [0.1, 0.3, 0.6])
+@each_row("speed", [-3.0, -1.0, 0.5, 1.0, 3.0, 10.0])
 def test_steering_at_speed_respects_the_lateral_limit(grip: float, speed: float) -> None:
     limit = grip * GRAVITY / abs(speed)
     path = guide(ATC_TURN_MAX_G=grip, ATC_STR_ANG_P=10, WP_PIVOT_ANGLE=180, SPEED_MAX=30)

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
+from tests.rows import each_row
 from tests.vehicle.bench import AHEAD, EVERYTHING, NEUTRAL, Bench, said
 from tests.vehicle.field import Field
 from tests.vehicle.missions import upload
@@ -112,7 +113,7 @@ def test_nothing_is_wrong_with_a_vehicle_that_is_ready() -> None:
     assert find_problems(READY) == []
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("wrong", "hard"),
     [
         ({"terminated": True}, True),

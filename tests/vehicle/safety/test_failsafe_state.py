@@ -8,6 +8,7 @@ import pytest
 from msgspec.structs import replace
 
 from dialects.enums import Failsafe
+from tests.rows import each_row
 from tests.vehicle.bench import CYCLE
 from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import MOTIONS, STANDING, START, Rig
@@ -69,7 +70,7 @@ def test_the_larger_number_is_the_worse_action() -> None:
     assert DISARM.label == "disarmed"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("cause", "steps"),
     [
         (Failsafe.MANUAL_LOSS, [(0, NEUTRAL), (1.5, HOLD), (30, DISARM)]),
@@ -116,7 +117,7 @@ def test_what_each_condition_comes_to_and_when_by_default(
     assert set(RULES) >= {cause}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("params", "cause", "taken"),
     [
         ({"FS_LOW_ACT": 0}, Failsafe.BATTERY_LOW, [LIMIT]),

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.rows import each_row
 from vehicle.safety.states import TRANSITIONS, SafetyEvent, SafetyState
 
 B, S, A, E, F, O = SafetyState  # noqa: E741
@@ -21,8 +20,8 @@ EXPECTED = {
 """What changes; every other cell stays as it is."""
 
 
-@pytest.mark.parametrize("event", SafetyEvent)
-@pytest.mark.parametrize("state", SafetyState)
+@each_row("event", SafetyEvent)
+@each_row("state", SafetyState)
 def test_every_cell(state: SafetyState, event: SafetyEvent) -> None:
     assert TRANSITIONS[state, event] is EXPECTED[event].get(state, state)
 

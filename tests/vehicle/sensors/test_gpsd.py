@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.rows import each_row
 from vehicle.sensors.gpsd import GpsFix, GpsSky, parse
 
 RECORDED = Path(__file__).with_name("gpsd_3_22.jsonl").read_bytes().splitlines()
@@ -31,7 +32,7 @@ def test_a_recorded_stream_of_gpsd() -> None:
     assert skies[-1] == GpsSky(satellites=4, hdop=0.9)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("line", "report"),
     [
         (tpv(mode=0), GpsFix(0)),

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.enums import DriveType
+from tests.examples import examples
 from tests.vehicle.bench import CYCLE
 from tests.vehicle.field import Field
 from vehicle.drive.demand import Demand
@@ -84,7 +85,7 @@ part = st.floats(-1 / 3, 1 / 3)
 
 
 @pytest.mark.parametrize("kind", [OMNI, MECANUM])
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(part, part, part)
 def test_four_wheels_make_each_wish_that_fits(
     kind: DriveType, throttle: float, steering: float, sideways: float

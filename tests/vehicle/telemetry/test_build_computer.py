@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from dialects import messages as m
 from dialects.enums import Command, Result
+from tests.examples import examples
 from tests.vehicle.bench import EVERYTHING, Bench
 from vehicle.readings import ComputerReadings
 
@@ -73,7 +74,7 @@ NUMBER = st.one_of(st.none(), st.floats(), st.sampled_from([math.nan, math.inf, 
 BYTES = st.one_of(st.none(), st.integers(min_value=-(2**70), max_value=2**70))
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     st.builds(ComputerReadings, temperature=NUMBER, load=NUMBER, uptime=NUMBER, memory_used=BYTES, memory_total=BYTES)
 )

@@ -11,6 +11,7 @@ from dialects import messages as m
 from dialects.enums import Command, Result
 from link.core import RECORDER, Peer
 from link.protocol.peer_table import MAX_PEERS
+from tests.rows import each_row
 from tests.vehicle.bench import MESSAGE_IDS
 from tests.vehicle.crowd import Crowd, weight
 from vehicle.storage.logbook import NullLogRecorder
@@ -42,7 +43,7 @@ def greedy(crowd: Crowd, peer: Peer, rate: float = 50) -> None:
 # ---- families ----
 
 
-@pytest.mark.parametrize("stream", STREAMS, ids=lambda stream: stream.message.msgname)
+@each_row("stream", STREAMS, ids=lambda stream: stream.message.msgname)
 def test_a_stream_is_common_exactly_where_pymavlink_knows_it(stream: Stream) -> None:
     assert known(stream.message.id) == (stream.level is DialectLevel.COMMON)
     assert (stream.level is DialectLevel.ROVER) == stream.message.msgname.startswith("ROVER_")

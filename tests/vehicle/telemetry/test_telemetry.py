@@ -13,6 +13,7 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.enums import Autopilot, Command, DriveLimit, DriveType, Sensor, SystemState, VehicleType
 from link.core import LinkReport
+from tests.examples import examples
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, said
 from vehicle.readings import Readings
 
@@ -249,7 +250,7 @@ WILD = st.one_of(st.none(), st.floats(), st.sampled_from([math.nan, math.inf, -m
 NO_NUMBERS = ("wheel_speeds", "ranges", "computer", "configured", "faults")
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.fixed_dictionaries({field.name: WILD for field in fields(Readings) if field.name not in NO_NUMBERS}))
 def test_no_reading_breaks_a_message(values: dict[str, float]) -> None:
     """The bench encodes every message that leaves."""

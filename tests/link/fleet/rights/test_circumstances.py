@@ -13,6 +13,7 @@ from link.fleet.rights.circumstances import Circumstances
 from link.protocol.frame import Frame
 from tests.link.fleet.test_roles import command, files, read
 from tests.link.frames import frame
+from tests.rows import each_row
 
 ARDUPILOT, PX4, GENERIC, INVALID = 3, 12, 0, 8
 ROVER, BOAT, COPTER, CAMERA = 10, 11, 2, 30
@@ -35,8 +36,8 @@ def allowed(known: Circumstances, sent: Frame, sender: str = "bob/1", now: float
     return known.allows_watcher(sent, sender, now)
 
 
-@pytest.mark.parametrize("hold", HOLDS)
-@pytest.mark.parametrize(
+@each_row("hold", HOLDS)
+@each_row(
     ("autopilot", "kind", "holds"),
     [
         *((ARDUPILOT, ROVER, True), (ARDUPILOT, BOAT, True), (GENERIC, ROVER, True)),
@@ -141,7 +142,7 @@ def test_a_known_autopilot_changes_where_no_other_fits() -> None:
     assert not allowed(known, HOLDS[1])
 
 
-@pytest.mark.parametrize("opcode", range(20))
+@each_row("opcode", range(20))
 def test_a_file_is_open_after_these_operations(opcode: int) -> None:
     known = Circumstances()
     known.note_transfer(files(opcode), "alice/1", 0.0)

@@ -14,6 +14,7 @@ from link.core import Outgoing
 from link.services.ftp.client import FtpClient
 from link.services.ftp.job import MAX_SIZE, TRIES, FtpOutcome
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
+from tests.examples import examples
 from tests.link.ftp_rig import FtpRig
 from tests.link.services_world import Pair, from_vehicle, messages
 
@@ -37,7 +38,7 @@ def fetch(vehicle: FtpRig, path: str, **how: Any) -> FtpOutcome:
     return ending(client, pair)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(
     st.integers(0, 10_000),
     st.sampled_from([0.0, 0.1, 0.3]),
@@ -163,7 +164,7 @@ def test_a_size_that_would_fill_our_memory_is_refused() -> None:
     assert opened(MAX_SIZE.to_bytes(4, "little")).outcomes() == []
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(st.lists(st.binary(min_size=251, max_size=251), max_size=10), st.integers(0, 2000))
 def test_any_answer_raises_nothing_and_stays_in_bounds(payloads: list[bytes], size: int) -> None:
     client = opened(size.to_bytes(4, "little"))

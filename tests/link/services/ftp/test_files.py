@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from link.services.ftp.protocol import FtpError, FtpOpcode
 from tests.link.ftp_rig import FtpRig, error
+from tests.rows import each_row
 
 PATHS = [
     b"../../etc/shadow",
@@ -36,8 +37,8 @@ PATHS = [
 ]
 
 
-@pytest.mark.parametrize("path", PATHS)
-@pytest.mark.parametrize(
+@each_row("path", PATHS)
+@each_row(
     "op",
     [FtpOpcode.OPEN, FtpOpcode.CRC, FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE, FtpOpcode.REMOVE, FtpOpcode.TRUNCATE],
 )

@@ -8,14 +8,16 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket
+from tests.examples import examples
 from tests.link.ftp_rig import LOG, MAX_OFFSET, FtpRig, error
 from tests.link.services_world import PEER, from_gcs
+from tests.rows import each_row
 
 # ---- bad questions ----
 
 
-@pytest.mark.parametrize("size", [240, 255])
-@pytest.mark.parametrize("op", [FtpOpcode.OPEN, FtpOpcode.READ, FtpOpcode.BURST, FtpOpcode.WRITE, FtpOpcode.LIST])
+@each_row("size", [240, 255])
+@each_row("op", [FtpOpcode.OPEN, FtpOpcode.READ, FtpOpcode.BURST, FtpOpcode.WRITE, FtpOpcode.LIST])
 def test_72_a_size_that_cannot_be_is_refused(size: int, op: FtpOpcode) -> None:
     vehicle = FtpRig()
     vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
@@ -50,7 +52,7 @@ def test_what_is_for_others_or_from_strangers_is_not_answered() -> None:
     assert vehicle.send(question, introduced=False) == []
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.lists(st.binary(min_size=251, max_size=251), max_size=8))
 def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) -> None:
     vehicle = FtpRig()
@@ -60,7 +62,7 @@ def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) ->
         assert len(answers) <= 1
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(
     st.lists(
         st.builds(

@@ -11,6 +11,7 @@ from link.services.ftp.sessions import EXPIRY, IDLE_AFTER, MAX_FILE, MAX_SESSION
 from link.services.pacing import BulkPacer
 from tests.link.ftp_rig import GENERAL, LOG, MAX_OFFSET, FtpRig, as_entries, error, only_plans
 from tests.link.services_world import OTHER_PEER, PEER, from_gcs
+from tests.rows import each_row
 
 # ---- repeats ----
 
@@ -149,8 +150,8 @@ def test_an_old_file_is_changed_in_place_and_cut() -> None:
     assert vehicle.stored(b"/missions/old.plan") == b"{N"
 
 
-@pytest.mark.parametrize("op", [FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE, FtpOpcode.REMOVE, FtpOpcode.TRUNCATE])
-@pytest.mark.parametrize("path", [b"/logs/1.bin", b"/general.json.xz", b"@PARAM/param.pck", b"/new.plan"])
+@each_row("op", [FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE, FtpOpcode.REMOVE, FtpOpcode.TRUNCATE])
+@each_row("path", [b"/logs/1.bin", b"/general.json.xz", b"@PARAM/param.pck", b"/new.plan"])
 def test_what_is_only_read_is_protected(op: FtpOpcode, path: bytes) -> None:
     vehicle = FtpRig()
     assert error(vehicle.ask(op, path)) is FtpError.PROTECTED

@@ -14,6 +14,7 @@ from link.services.log.client import DATA_SIZE, MAX_LOGS, TRIES, LogClient, LogO
 from link.services.log.server import LogServer
 from link.services.pacing import BulkPacer
 from tests.link.services_world import Pair, from_vehicle
+from tests.rows import each_row
 
 
 def server(files: dict[str, bytes], rate: float = 1e6) -> LogServer:
@@ -72,8 +73,8 @@ def test_a_download_is_resumed_at_its_last_whole_piece() -> None:
     assert ending(client, pair).data == data
 
 
-@pytest.mark.parametrize("size", [89, 90, 1000, 8_999, 9_000, 20_000])
-@pytest.mark.parametrize("loss", [0.0, 0.3])
+@each_row("size", [89, 90, 1000, 8_999, 9_000, 20_000])
+@each_row("loss", [0.0, 0.3])
 def test_what_was_left_of_another_log_is_not_used(size: int, loss: float) -> None:
     data, other = random.Random(1).randbytes(9_000), random.Random(2).randbytes(size)
     client = LogClient(255, 190, target_system=1)

@@ -18,9 +18,10 @@ from tests.link.mission_rig import (
     plain,
     waypoint,
 )
+from tests.rows import each_row
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("changes", "verdict"),
     [
         ({"command": 0}, MissionResult.UNSUPPORTED),

@@ -19,10 +19,11 @@ from link.services.param.values import (
     to_wire,
     value_fault,
 )
+from tests.rows import each_row
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3, 4, 5, 6])
-@pytest.mark.parametrize("bytewise", [True, False])
+@each_row("kind", [1, 2, 3, 4, 5, 6])
+@each_row("bytewise", [True, False])
 def test_whole_numbers_survive_both_ways_of_sending_them(kind: int, bytewise: bool) -> None:
     for value in (0, 1, 100, 127):
         assert from_wire(to_wire(value, kind, bytewise=bytewise), kind, bytewise=bytewise) == value

@@ -8,6 +8,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType, Result
+from tests.rows import each_row
 from tests.vehicle.bench import said
 from tests.vehicle.field import Field
 from tests.vehicle.missions import Item, do, ready, upload, way
@@ -16,7 +17,7 @@ NAN = math.nan
 NAV_TAKEOFF = 22
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("item", "verdict"),
     [
         (do(NAV_TAKEOFF), MissionResult.UNSUPPORTED),
