@@ -14,4 +14,11 @@ def examples(full: int) -> int:
 
     CI draws the same ones each time; `make test-all` tries all, and draws new ones.
     """
-    return min(full, max(LEAST, full * settings.default.max_examples // FULL))
+    return min(full, max(LEAST, full * asked() // FULL))
+
+
+def asked() -> int:
+    """Return `max_examples` of the profile that counts."""
+    profile = settings.default
+    assert profile is not None
+    return profile.max_examples

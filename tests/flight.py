@@ -28,12 +28,20 @@ class FlightCockpit(Cockpit):
 def hovering_cockpit(copter: FlyingVehicle, height: float = HEIGHT) -> FlightCockpit:
     """Return a station whose copter has been armed and taken off by its operator, and hovers in a mode for keys."""
     cockpit = FlightCockpit(copter)
-    cockpit.run(8.0)  # its settings are read
-    cockpit.do(ReportKeyReleases(), Arm(held=1.0))
+    cockpit.do(ReportKeyReleases())
     cockpit.run(2.0)
+    for _ in range(12):  # its settings are read first
+        cockpit.do(Arm(held=1.0))
+        cockpit.run(0.5)
+        if copter.armed:
+            break
     assert copter.armed, cockpit.texts
+    cockpit.run(1.0)
     cockpit.do(TakeOff(altitude=height, held=1.0))
-    cockpit.run(5.0 + height)
+    begun = cockpit.now
+    while abs(copter.altitude - height) > 0.1 and cockpit.now - begun < 5.0 + height:
+        cockpit.run(0.2)
+    cockpit.run(1.0)
     assert copter.commands(Command.NAV_TAKEOFF)
     if not isinstance(copter, ArduCopter):
         cockpit.do(SetMode(mode="MANUAL"))

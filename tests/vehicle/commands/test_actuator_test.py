@@ -238,7 +238,7 @@ BAD = {
 
 
 class TestRefusals:
-    @each_row("words", BAD.values(), ids=BAD)
+    @each_row("words", BAD.values())
     def test_56_what_is_too_much_is_denied(self, words: tuple[int, float, float, float, float, float]) -> None:
         bench = Bench()
         assert bench.command(*words) is Result.DENIED

@@ -12,10 +12,9 @@ import time
 from typing import NamedTuple
 
 import pytest
-from hypothesis import settings
 
 from dialects.modes import Mode
-from tests.examples import FULL
+from tests.examples import FULL, asked
 from tests.vehicle.machine import explore
 from tests.vehicle.machine.events import (
     ALL_HAZARDS,
@@ -54,7 +53,7 @@ DOMAINS = {
     "battery": Domain(BATTERY, explore.stops, 200),
     "position": Domain(POSITION, explore.hazards, 200, mission=True),
 }
-FIRST = math.inf if settings.default.max_examples >= FULL else 3000
+FIRST = math.inf if asked() >= FULL else 3000
 ALL = os.environ.get("MAVHELM_MACHINE") == "all"
 PATIENCE = 6 * 3600 if ALL else 600
 """s, on a machine that other programs keep busy."""
