@@ -301,11 +301,11 @@ def test_the_stop_key_stops_a_rover_that_drives_itself() -> None:
     drive.tell(SetMode(Mode.GUIDED.name))
     drive.run(1.0)
     for _ in range(100):
-        drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
+        drive.station._outbox.commands.append(Outgoing(AHEAD_IN_GUIDED))
         drive.run(0.05)
     assert drive.power > 0.2
     drive.tell(SetKeyGate(False, "help is open"), Stop("help is open"))
-    drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
+    drive.station._outbox.commands.append(Outgoing(AHEAD_IN_GUIDED))
     drive.run(0.2)
     assert drive.power > 0.1
     drive.tell(SetKeyGate(True), Stop())

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from dialects.messages import Message
 from groundstation.station.driving.permission import Permission
 from groundstation.vehicles.fleet import Contact
-from link.core import LinkReport, Outgoing, Received
+from link.core import LinkReport, Received
 
 if TYPE_CHECKING:
     from groundstation.intents.union import AnyIntent
@@ -59,7 +59,3 @@ class CoreListener:
 
     def handle_sent(self, message: Message, now: float) -> None:
         """Note that a message was sent."""
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now and clear the queue."""
-        return []

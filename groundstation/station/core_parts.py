@@ -18,6 +18,7 @@ from groundstation.station.driving.stops.shutdown import StationShutdown
 from groundstation.station.links.link_monitor import LinkMonitor
 from groundstation.station.links.path_routing import PathRouting
 from groundstation.station.notes.operator_log import OperatorLog
+from groundstation.station.outbox import Outbox
 from groundstation.station.services.service_requests import ServiceRequests, TransferPause
 from groundstation.station.services.vehicle_queries import VehicleQueries
 from groundstation.station.verbs.refusals import Refusals
@@ -49,22 +50,23 @@ class CoreParts:
         ids = self.ids = (system, component)
         self.started = now
         log = self.log = MessageLog()
+        outbox = self.outbox = Outbox()
         operator = self.operator = OperatorSession(style, speed, session)
         fleet = self.fleet = Fleet(log, *ids)
         log.name_of = fleet.name_of
         self.links = LinkMonitor(endpoints, log, system, now)
         stats = self.links.stats
         self.paths = PathRouting(fleet)
-        commander = self.commander = Commander(log, *ids, take_off_altitude=take_off)
+        commander = self.commander = Commander(log, outbox, *ids, take_off_altitude=take_off)
         commander.take_off_refusal, commander.altitude_fence = fleet.take_off_refusal, fleet.altitude_fence
         hold = TransferPause(fleet, operator, stats)
-        self.services = ServiceRequests(fleet, commander, log, *ids, texts=docs_cache, is_held=hold.is_held)
-        self.driving = DrivingController(operator, fleet, commander, ids)
+        self.services = ServiceRequests(fleet, commander, log, outbox, *ids, texts=docs_cache, is_held=hold.is_held)
+        self.driving = DrivingController(operator, fleet, commander, outbox, ids)
         self.shutdown = StationShutdown(fleet, commander, self.driving)
         self.handover = Handover(fleet, commander, self.driving, log, system)
         self.link_closing = LinkClosing(operator, fleet, stats)
-        self.queries = VehicleQueries(fleet, commander, stats, log, self.services)
-        self.verbs = RunningVerbs(fleet, operator, log)
+        self.queries = VehicleQueries(fleet, commander, stats, log, self.services, outbox)
+        self.verbs = RunningVerbs(fleet, operator, log, outbox)
         self.proposals = ProposalBook(fleet, operator, commander, log)
         self.driving.report = lambda at, text: log.add(at, "station", text, Severity.WARNING)
         self.driving.is_lent = self.verbs.drives_for_operator

@@ -13,7 +13,7 @@ from groundstation.station.intent_handler import Rows
 from groundstation.station.snapshot_builder import SnapshotBuilder
 from groundstation.station.views.drive_display import DriveDisplay
 from groundstation.vehicles.fleet import Contact
-from link.core import Outgoing, Received
+from link.core import Received
 
 
 class DoctorFeed(CoreListener):
@@ -25,8 +25,9 @@ class DoctorFeed(CoreListener):
         self._snapshots = SnapshotBuilder(parts, self._display)
         links, ids = parts.links.stats, parts.ids
         self.doctor = Diagnostics(
-            parts.fleet, parts.services, parts.queries, links, parts.operator, ids, lambda now: self.snapshot(now, now)
-        )
+            parts.fleet, parts.services, parts.queries, links, parts.operator, parts.outbox, ids,
+            lambda now: self.snapshot(now, now),
+        )  # fmt: skip
 
     @property
     def handlers(self) -> Rows:
@@ -80,7 +81,3 @@ class DoctorFeed(CoreListener):
     def handle_sent(self, message: Message, now: float) -> None:
         """Note that a message was sent for the display."""
         self._display.handle_sent(message, now)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the doctor's messages, and remove them."""
-        return self.doctor.messages_to_send()

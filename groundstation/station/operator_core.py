@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from dialects import messages as m
 from dialects.enums import Severity
@@ -39,6 +39,13 @@ TICK_PERIOD = 0.1
 """s between ticks that are enough for demands, which have times of their own (`due_at`)."""
 
 
+class _Worker(Protocol):
+    """A part of which something may be under way that needs all ticks."""
+
+    @property
+    def busy(self) -> bool: ...
+
+
 class OperatorCore:
     """A core (link/core.py). Its parts do the work; here is which of them gets what, and in which order."""
 
@@ -54,7 +61,10 @@ class OperatorCore:
         self._links, self._timesync, self._heartbeat = parts.links, parts.links.timesync, parts.links.heartbeat
         self._paths = parts.paths
         self._refusals, self._operator_log = parts.refusals, parts.operator_log
-        self._outbox: list[Outgoing] = []
+        self._outbox = parts.outbox
+        self._workers: tuple[_Worker, ...] = (
+            parts.commander, parts.services, parts.handover, parts.proposals, self._listener
+        )  # fmt: skip
         self._active_at = parts.started
         """When something was under way last."""
         self._tick_due = parts.started
@@ -129,7 +139,7 @@ class OperatorCore:
             self._handle_texts(said, now)
         if contact is self.fleet.selected:
             self._timesync.receive(received, now)
-        self._outbox += handle_request(received, now, self.parts.ids)
+        self._outbox.commands += handle_request(received, now, self.parts.ids)
         self._commander.receive(received, now)
 
     def tick(self, now: float) -> None:
@@ -155,7 +165,8 @@ class OperatorCore:
         permission = self.driving.judge(now)
         if self.operator.live and not self.driving.ending:
             self._timesync.tick(now)
-            self._outbox += self._heartbeat.tick(now, driving=bool(permission.controlled))
+            self._outbox.commands += self._timesync.messages_to_send()
+            self._outbox.commands += self._heartbeat.tick(now, driving=bool(permission.controlled))
         self.driving.update(permission, now)
         self._log_driving(now)
         self._listener.follow(None, permission, now)
@@ -197,14 +208,7 @@ class OperatorCore:
     @property
     def _works(self) -> bool:
         """The same of all but verbs."""
-        return (
-            self._commander.busy
-            or self.services.busy
-            or self._handover.busy
-            or self.proposals.busy
-            or self._listener.busy
-            or self.driving.ending
-        )
+        return self.driving.ending or any(each.busy for each in self._workers)
 
     def _update_rest(self, now: float) -> None:
         driven = any(contact.state.armed or not contact.demand_stream.finished for contact in self.fleet)
@@ -255,20 +259,9 @@ class OperatorCore:
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""
-        outbox, self._outbox = self._outbox, []
-        demands = self.driving.messages_to_send()
-        commands = self._commander.messages_to_send() + self._queries.messages_to_send()
-        services = self.services.messages_to_send()  # repeated later if they are dropped here
-        found = (
-            demands
-            + self.verbs.messages_to_send()
-            + commands
-            + self._listener.messages_to_send()
-            + self._timesync.messages_to_send()
-            + outbox
-            + (services if self._uses_services else [])
-        )
-        return [self._paths.route(each, self._now) for each in found]
+        if not self._uses_services:
+            self._outbox.services.clear()  # repeated later
+        return [self._paths.route(each, self._now) for each in self._outbox.pop()]
 
     @property
     def _uses_services(self) -> bool:

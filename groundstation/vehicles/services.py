@@ -7,7 +7,7 @@ their modules imported, when they are used first: importing all of them takes a 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, MutableMapping, Sequence
+from collections.abc import Mapping, MutableMapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
@@ -52,6 +52,10 @@ class _Service(Protocol):
 
     def cancel(self, number: int, now: float) -> None: ...
 
+
+class _Client(Protocol):
+    """What queues the messages of a service."""
+
     def messages_to_send(self) -> list[Outgoing]: ...
 
 
@@ -87,12 +91,19 @@ _SERVICE_OF: Mapping[type[m.Message], str] = {
 class VehicleServices:
     """Services of the component `target` (system, component). `system` and `component` are our ids.
 
+    `outbox` gets what is sent; while transfers wait, theirs stays with them.
     `texts` keeps downloaded texts of parameters, by the checksum of the vehicle's general metadata file.
     """
 
     def __init__(
-        self, system: int, component: int, target: tuple[int, int], texts: MutableMapping[int, bytes] | None = None
+        self,
+        outbox: list[Outgoing],
+        system: int,
+        component: int,
+        target: tuple[int, int],
+        texts: MutableMapping[int, bytes] | None = None,
     ) -> None:
+        self._outbox = outbox
         self._ids = (system, component)
         self._texts = {} if texts is None else texts
         self.autopilot: int = Autopilot.GENERIC
@@ -122,19 +133,21 @@ class VehicleServices:
     def _talk_to(self, target: tuple[int, int]) -> None:
         self._target = target
         self.identity = VehicleIdentity(target[1])
-        self.commands = CommandRequests(CommandClient(*self._ids), self.book, target)
+        self.commands = CommandRequests(CommandClient(*self._ids, self._outbox), self.book, target)
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.progress = PlanProgress(target[1])
         self._services: list[_Service] = [self.commands]
-        """Those that are made; likewise in the next three."""
+        """Those that are made; likewise in the next four."""
+        self._clients: list[_Client] = []
         self._followers: list[_Follower] = []
         self._disk_users: list[_DiskUser] = []
         self._timed: list[MetadataRequests | TransferRequests] = []
 
     # ---- made when they are used first ----
 
-    def _add(self, service: _S) -> _S:
+    def _add(self, service: _S, client: _Client) -> _S:
         self._services.append(service)
+        self._clients.append(client)
         return service
 
     @cached_property
@@ -152,7 +165,7 @@ class VehicleServices:
 
         (to, at), first = self._target, int.from_bytes(os.urandom(3))
         client = FtpClient(*self._ids, target_system=to, target_component=at, first=first)
-        return self._add(FileRequests(client, self.book))
+        return self._add(FileRequests(client, self.book), client)
 
     @cached_property
     def plans(self) -> PlanRequests:
@@ -161,7 +174,8 @@ class VehicleServices:
         from link.services.mission.client import MissionClient
 
         to, at = self._target
-        return self._add(PlanRequests(MissionClient(*self._ids, target_system=to, target_component=at), self.book))
+        client = MissionClient(*self._ids, target_system=to, target_component=at)
+        return self._add(PlanRequests(client, self.book), client)
 
     @cached_property
     def missions(self) -> MissionRequests:
@@ -177,7 +191,8 @@ class VehicleServices:
         from link.services.log.client import LogClient
 
         to, at = self._target
-        return self._add(LogRequests(LogClient(*self._ids, target_system=to, target_component=at), self.book))
+        client = LogClient(*self._ids, target_system=to, target_component=at)
+        return self._add(LogRequests(client, self.book), client)
 
     @cached_property
     def params(self) -> ParamRequests:
@@ -188,7 +203,7 @@ class VehicleServices:
         to, at = self._target
         client = ParamClient(*self._ids, target_system=to, target_component=at)
         made = ParamRequests(client, lambda: self.files, self.identity, self.book, lambda: self.autopilot)
-        return self._add(made)
+        return self._add(made, client)
 
     @cached_property
     def param_writer(self) -> ParamWriter:
@@ -270,6 +285,7 @@ class VehicleServices:
         for service in self._services:
             service.receive(received, now)
         self._take_queries(now)
+        self._release()
 
     def handle_text(self, text: str, severity: int, now: float) -> None:
         """Handle a whole STATUSTEXT of the vehicle."""
@@ -311,7 +327,7 @@ class VehicleServices:
         self.book.tick(now)
 
     def pop_reports(self, now: float) -> list[RequestReport]:
-        """Return the newest report of each request that has changed since the last call."""
+        """Return the newest report of each request that has changed since the last call, and send what follows."""
         found: dict[int, RequestReport] = {}
         while reports := self.book.pop_changes():  # a request of several steps goes on when one has ended
             for report in reports:
@@ -319,6 +335,7 @@ class VehicleServices:
                     follower.handle_report(report, now)
                 if report.number > FIRST_STEP:
                     found[report.number] = report
+        self._release()
         return list(found.values())
 
     def pop_disk_jobs(self) -> list[DiskJob]:
@@ -330,10 +347,11 @@ class VehicleServices:
         for user in self._disk_users:
             user.handle_disk(result, now)
 
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        sending: Sequence[_Service] = (self.commands,) if self.held else self._services
-        return [outgoing for service in sending for outgoing in service.messages_to_send()]
+    def _release(self) -> None:
+        """Pass on what the transfers send, unless they wait."""
+        if not self.held:
+            for client in self._clients:
+                self._outbox += client.messages_to_send()
 
     def _query_identity(self, now: float) -> None:
         if self.commands.is_waiting(Command.REQUEST_MESSAGE):

@@ -46,12 +46,16 @@ class Server(Protocol):
     def tick(self, now: float) -> list[Outgoing]: ...
 
 
-class Client(Protocol):
-    """The ground station's half."""
+class User(Protocol):
+    """What has a client, and passes on to it what it gets."""
 
     def receive(self, received: Received, now: float) -> None: ...
 
     def tick(self, now: float) -> None: ...
+
+
+class Client(User, Protocol):
+    """The ground station's half."""
 
     def messages_to_send(self) -> list[Outgoing]: ...
 
@@ -60,9 +64,18 @@ class Pair:
     """A server and a client in steps of `step` s; each message is lost with probability `loss`."""
 
     def __init__(
-        self, server: Server, client: Client, *, loss: float = 0.0, seed: int = 0, step: float = 0.02, delay: int = 1
+        self,
+        server: Server,
+        client: Client,
+        user: User | None = None,
+        *,
+        loss: float = 0.0,
+        seed: int = 0,
+        step: float = 0.02,
+        delay: int = 1,
     ) -> None:
         self.server, self.client, self.now = server, client, 100.0
+        self.user = user or client
         self.sent_by_client = self.sent_by_server = 0
         self._loss, self._step, self._delay = loss, step, delay
         self._dice = random.Random(seed)
@@ -77,8 +90,8 @@ class Pair:
             replies += self.server.receive(from_gcs(message), self.now)
         replies += self.server.tick(self.now)
         for message in self._arrived(self._down):
-            self.client.receive(from_vehicle(message), self.now)
-        self.client.tick(self.now)
+            self.user.receive(from_vehicle(message), self.now)
+        self.user.tick(self.now)
         self.sent_by_server += len(replies)
         questions = self.client.messages_to_send()
         self.sent_by_client += len(questions)

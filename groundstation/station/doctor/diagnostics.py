@@ -29,6 +29,7 @@ from groundstation.station.doctor.doctor_facts import (
 from groundstation.station.driving.motor_test import THROTTLE_MAX, MotorTester
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.outbox import Outbox
 from groundstation.station.services.service_calls import SETUP
 from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.station.services.vehicle_queries import VehicleQueries
@@ -42,7 +43,7 @@ from groundstation.views.doctor import (
     DoctorView,
 )
 from groundstation.views.requests import RequestLine
-from link.core import Outgoing, Received
+from link.core import Received
 
 PERIOD = 1.0
 """s between two examinations."""
@@ -61,20 +62,21 @@ class Diagnostics:
         queries: VehicleQueries,
         links: LinkStats,
         operator: OperatorSession,
+        outbox: Outbox,
         ids: tuple[int, int],
         shown: Callable[[float], Snapshot],
     ) -> None:
         """`shown` builds the snapshot of a moment: the doctor judges what the screens show."""
         self._fleet, self._services, self._queries = fleet, services, queries
         self._links, self._ids, self._shown = links, ids, shown
-        self.tester = MotorTester(fleet, operator, ids)
+        self.tester = MotorTester(fleet, operator, outbox, ids)
         self.faults = 0
         """How many links of the chain stop the operator."""
         self._reports: dict[int, VehicleReport] = {}
         self._request = DoctorRequest()
         self._rows: tuple[DoctorRow, ...] = ()
         self._due = -math.inf
-        self._outbox: list[Outgoing] = []
+        self._outbox = outbox.commands
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -119,12 +121,6 @@ class Diagnostics:
         contact.drive.params.want(report.calibration.sticks.values)
         if contact.state.armed:
             report.calibration.end_sticks("RC sticks: ended, the vehicle is armed")
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        outbox, self._outbox = self._outbox, []
-        calibrations = (report.calibration.messages_to_send() for report in self._reports.values())
-        return self.tester.messages_to_send() + outbox + [each for messages in calibrations for each in messages]
 
     def examine_if_due(self, now: float) -> None:
         """Examine the chain, once a second. Called when everything else of a tick is done."""
@@ -247,7 +243,7 @@ class Diagnostics:
     def _report(self, contact: Contact) -> VehicleReport:
         report = self._reports.get(contact.state.system)
         if report is None or report.component != contact.state.component:
-            report = self._reports[contact.state.system] = VehicleReport.of(contact, self._ids)
+            report = self._reports[contact.state.system] = VehicleReport.of(contact, self._outbox, self._ids)
         return report
 
 

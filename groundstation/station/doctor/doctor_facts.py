@@ -18,6 +18,7 @@ from groundstation.vehicles.readings.outputs import PARAMS as FUNCTION_PARAMS
 from groundstation.vehicles.readings.outputs import servo_functions, servo_names
 from groundstation.vehicles.state.doctor_params import DoctorParams
 from groundstation.views.doctor import MotorRow, ParamFix, SensorRow, TerminalFacts
+from link.core import Outgoing
 from link.runtime.diagnosis import Health
 
 SENSOR_NAMES: Mapping[Sensor, str] = {
@@ -44,11 +45,11 @@ class VehicleReport(msgspec.Struct):
     """Of the vehicle that they ask."""
 
     @classmethod
-    def of(cls, contact: Contact, ids: tuple[int, int]) -> VehicleReport:
-        """Return an empty one for a vehicle; `ids` are our system and component id."""
+    def of(cls, contact: Contact, outbox: list[Outgoing], ids: tuple[int, int]) -> VehicleReport:
+        """Return an empty one for a vehicle; `outbox` gets what is sent to it, `ids` are ours."""
         state = contact.state
         target = (state.system, state.component)
-        params, calibration = DoctorParams(state.autopilot, ids, target), CalibrationState(ids, target)
+        params, calibration = DoctorParams(state.autopilot, ids, target), CalibrationState(outbox, ids, target)
         return cls(ArmingChecks(state.component), params, calibration, state.component)
 
 

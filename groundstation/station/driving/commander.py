@@ -15,13 +15,14 @@ from groundstation.station.driving.command_results import CommandResults
 from groundstation.station.driving.stops.blind_stops import EVERYBODY, BlindStops
 from groundstation.station.driving.stops.emergency import EmergencyLock
 from groundstation.station.driving.stops.stop_questions import FALLS, StopQuestions
+from groundstation.station.outbox import Outbox
 from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, mode_stop
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, StopKind
 from groundstation.vehicles.demand.take_off import find_fence_refusal, find_refusal, take_off_params
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.vehicles.stops.altitude_fence import AltitudeFence
-from link.core import Outgoing, Received
+from link.core import Received
 from link.services.command.client import CommandClient, CommandOutcome
 
 QUERY_COMMANDS = (
@@ -40,11 +41,17 @@ class Commander:
     """Sends commands to all vehicles. `system` and `component` are our ids."""
 
     def __init__(
-        self, log: MessageLog, system: int, component: int, *, take_off_altitude: float = TAKE_OFF_ALTITUDE
+        self,
+        log: MessageLog,
+        outbox: Outbox,
+        system: int,
+        component: int,
+        *,
+        take_off_altitude: float = TAKE_OFF_ALTITUDE,
     ) -> None:
         self._log = log
         self._results = CommandResults(log)
-        self._client = CommandClient(system, component)
+        self._client = CommandClient(system, component, outbox.commands)
         self._arming: ArmSequence | None = None
         self._stops: dict[tuple[int, int], RepeatedStop] = {}
         """By system id and command."""
@@ -52,7 +59,7 @@ class Commander:
         self._claims = Claims()
         self._stop_questions = StopQuestions()
         self.blind_stops = BlindStops((system, component), log)
-        self._outbox: list[Outgoing] = []
+        self._outbox = outbox.commands
         self._vehicles: dict[int, VehicleState] = {}
         """Vehicles that were sent a command, by system id."""
         self._query_outcomes: list[CommandOutcome] = []
@@ -286,11 +293,6 @@ class Commander:
         self._end_stops(now)
         self._client.tick(now)
         self._handle_outcomes(now)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now and clear the queue."""
-        outbox, self._outbox = self._outbox, []
-        return outbox + self._client.messages_to_send()
 
     # ---- results ----
 

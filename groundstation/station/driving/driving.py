@@ -13,6 +13,7 @@ from groundstation.station.driving.driven import DEMAND_MEMORY, WatchdogTarget
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.station.driving.permission import Permission
 from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.outbox import Outbox
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.paths.paths import SILENCE
 from groundstation.vehicles.readings.latency import SentDemand
@@ -25,7 +26,9 @@ EARLY = 0.02
 class DrivingController:
     """Connects the operator with the selected vehicle. `ids` are our system and component id."""
 
-    def __init__(self, operator: OperatorSession, fleet: Fleet, commander: Commander, ids: tuple[int, int]) -> None:
+    def __init__(
+        self, operator: OperatorSession, fleet: Fleet, commander: Commander, outbox: Outbox, ids: tuple[int, int]
+    ) -> None:
         self._operator = operator
         self._fleet = fleet
         self.is_lent: Callable[[int, float], bool] = lambda system, now: False
@@ -36,10 +39,7 @@ class DrivingController:
         self._ids = ids
         self._system = ids[0]
         self._ending = False
-        self._demands: dict[int, list[Message]] = {}
-        """Newest demand of each vehicle, with its operator presence: state, so a newer one replaces it."""
-        self._neutrals: list[Outgoing] = []
-        """Those with which demands change to another path."""
+        self._demands = outbox.demands
         self._changed: tuple[Message, ...] = ()
         """The newest demand that was changed, and its copies."""
         self._proven_at = -math.inf
@@ -101,12 +101,6 @@ class DrivingController:
             self._reported[state.system] = reported
             self.due_at = now
 
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the demands to send now and clear the queue."""
-        demands, self._demands = self._demands, {}
-        neutrals, self._neutrals = self._neutrals, []
-        return neutrals + [Outgoing(message) for messages in demands.values() for message in messages]
-
     def adapt(self, links: LinkStats) -> None:
         """Adapt the copies of demands to the links of their vehicles. The loss is that of the other direction."""
         for contact in self._fleet:
@@ -115,7 +109,7 @@ class DrivingController:
 
     def drop_demands(self) -> None:
         """Drop the demands that were made and not sent: they are from before a freeze."""
-        self._demands.clear()
+        self._demands.drop_all()
 
     def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
@@ -159,7 +153,7 @@ class DrivingController:
     @property
     def finished(self) -> bool:
         """No demand is being sent and none is left to send."""
-        return not (self._demands or self._neutrals) and all(contact.demand_stream.finished for contact in self._fleet)
+        return not self._demands.waiting and all(contact.demand_stream.finished for contact in self._fleet)
 
     def is_in_control(self, contact: Contact) -> bool:
         """Return whether we control this vehicle: by what it reports, else by its acceptance of our commands."""
@@ -234,9 +228,9 @@ class DrivingController:
             return False
         if contact is self._fleet.selected:
             self._operator.reset_demand(now)
-        self._demands.pop(contact.state.system, None)
+        self._demands.drop(contact.state.system)
         neutral = build_manual_control(NEUTRAL, contact.state.system, contact.choose_axes(NEUTRAL))
-        self._neutrals.append(Outgoing(neutral, among=(before.peer, paths.best.peer)))
+        self._demands.first.append(Outgoing(neutral, among=(before.peer, paths.best.peer)))
         self.report(now, f"{contact.state.name}: its link is silent, demands take another one: release the keys first")
         return True
 
@@ -263,7 +257,7 @@ class DrivingController:
         elif copying:
             messages = messages[:1]  # a vehicle of our dialect ignores MANUAL_CONTROL from a driver with a session
             self._changed += tuple(messages) if contact is self._fleet.selected else ()
-        self._demands[state.system] = messages
+        self._demands.replace(state.system, messages)
 
     def _queue_idle_proof(self, now: float) -> None:
         """Prove this session to the selected vehicle while it gets no demands, so that arming finds it proven."""
@@ -276,6 +270,5 @@ class DrivingController:
             return
         if state.has_rover_dialect and state.system not in self._demands:
             self._proven_at = now
-            self._demands[state.system] = [
-                self._operator.build_presence((state.system, state.component), state.boot_time, now)
-            ]
+            presence = self._operator.build_presence((state.system, state.component), state.boot_time, now)
+            self._demands.replace(state.system, (presence,))

@@ -18,6 +18,7 @@ from dialects.enums import Autopilot, Command, Result, result_token
 from groundstation.input.key_repeat import REPEAT_WINDOW_MAX, KeyTrace, RepeatWindows
 from groundstation.intents.setup import TurnMotor
 from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.outbox import Outbox
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.readings.motor_outputs import TURN_TIME, TestedMotor, build_stop, build_turn, is_turn
 from groundstation.views.doctor import MotorTestView
@@ -70,12 +71,12 @@ class _Stop(msgspec.Struct):
 class MotorTester:
     """Turns one motor at a time. `ids` are our system and component id."""
 
-    def __init__(self, fleet: Fleet, operator: OperatorSession, ids: tuple[int, int]) -> None:
+    def __init__(self, fleet: Fleet, operator: OperatorSession, outbox: Outbox, ids: tuple[int, int]) -> None:
         self._fleet, self._operator, self._ids = fleet, operator, ids
         self._windows = RepeatWindows()
         self._run: _Run | None = None
         self._stops: list[_Stop] = []
-        self._outbox: list[Outgoing] = []
+        self._outbox = outbox.commands
         self._presses = 0
         self._event_at = -math.inf
         self._text = ""
@@ -117,7 +118,7 @@ class MotorTester:
         if run is None:
             return
         self._text = text
-        self._outbox = [each for each in self._outbox if not is_turn(each.message)]
+        self._outbox[:] = [each for each in self._outbox if not is_turn(each.message)]
         self._stops.append(_Stop(run.contact, run.motor, STOPS, now))
         self._send_stops(now)
 
@@ -200,11 +201,6 @@ class MotorTester:
                 run.due = now + RENEW_PERIOD
                 self._send(run.contact, *build_turn(run.contact.state.autopilot, run.motor, run.throttle, run.seconds))
         self._send_stops(now)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        outbox, self._outbox = self._outbox, []
-        return outbox
 
     def _end(self, run: _Run, now: float, *, watched: bool) -> str | None:
         """Return why the test ends now."""

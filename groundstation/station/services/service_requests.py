@@ -15,12 +15,13 @@ from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.outbox import Outbox
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
-from link.core import Outgoing, Received
+from link.core import Received
 
 if TYPE_CHECKING:  # what only screens need: a verb of its own process does without
     from groundstation.intents.services import ServiceIntent
@@ -65,6 +66,7 @@ class ServiceRequests:
         fleet: Fleet,
         commander: Commander,
         log: MessageLog,
+        outbox: Outbox,
         system: int,
         component: int,
         *,
@@ -76,6 +78,7 @@ class ServiceRequests:
         self._fleet = fleet
         self._commander = commander
         self._log = log
+        self._outbox = outbox.services
         self._ids = (system, component)
         self._texts: MutableMapping[int, bytes] = {} if texts is None else texts
         self._service_of: dict[int, str] = {}
@@ -141,11 +144,6 @@ class ServiceRequests:
     def is_setting_rate(self, contact: Contact) -> bool:
         """Return whether a SET_MESSAGE_INTERVAL of the operator is under way: another would be taken for it."""
         return contact.services is not None and contact.services.commands.is_waiting(Command.SET_MESSAGE_INTERVAL)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now and clear the queue."""
-        found = (contact.services for contact in self._fleet if contact.services is not None)
-        return [outgoing for services in found for outgoing in services.messages_to_send()]
 
     # ---- the disk ----
 
@@ -217,7 +215,8 @@ class ServiceRequests:
     def services_of(self, contact: Contact) -> VehicleServices:
         """Return the services of a vehicle."""
         if contact.services is None:
-            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component), self._texts)
+            target = (contact.state.system, contact.state.component)
+            contact.services = VehicleServices(self._outbox, *self._ids, target, self._texts)
             contact.services.note_state(contact.state)
         return contact.services
 

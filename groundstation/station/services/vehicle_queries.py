@@ -10,6 +10,7 @@ from dialects.enums import Command, Severity
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.links.link_stats import LinkStats
+from groundstation.station.outbox import Outbox
 from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
@@ -30,14 +31,20 @@ class VehicleQueries:
     """Queries each vehicle, one command of a kind at a time, because they are acknowledged one at a time."""
 
     def __init__(
-        self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog, services: ServiceRequests
+        self,
+        fleet: Fleet,
+        commander: Commander,
+        links: LinkStats,
+        log: MessageLog,
+        services: ServiceRequests,
+        outbox: Outbox,
     ) -> None:
         self._services = services
         self._fleet = fleet
         self._commander = commander
         self._links = links
         self._log = log
-        self._outbox: list[Outgoing] = []
+        self._outbox = outbox.commands
         self._versions: dict[int, tuple[int, float]] = {}
         """System id -> how often its AUTOPILOT_VERSION was requested, and when it may be again."""
         self._homes: dict[tuple[int, int], tuple[int, float]] = {}
@@ -92,11 +99,6 @@ class VehicleQueries:
         """Return whether a REQUEST_MESSAGE is not acknowledged yet: another one would take its answer."""
         pending = self._commander.is_pending(Command.REQUEST_MESSAGE, contact.state)
         return pending or self._services.is_querying(contact)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now and clear the queue."""
-        outbox, self._outbox = self._outbox, []
-        return outbox
 
     def _handle_outcomes(self, now: float) -> None:
         for outcome in self._commander.pop_query_outcomes():

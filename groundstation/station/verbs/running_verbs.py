@@ -22,6 +22,7 @@ from dialects import messages as m
 from dialects.enums import Severity
 from dialects.traits import ACKED, is_stop, only_asks
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.station.outbox import Outbox
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.vehicles.demand.demand_neutrals import DEMANDS
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
@@ -120,7 +121,7 @@ class _Ending(msgspec.Struct):
 class RunningVerbs:
     """The verbs of one station."""
 
-    def __init__(self, fleet: Fleet, operator: OperatorSession, log: MessageLog) -> None:
+    def __init__(self, fleet: Fleet, operator: OperatorSession, log: MessageLog, outbox: Outbox) -> None:
         self._fleet = fleet
         self._operator = operator
         self._log = log
@@ -135,11 +136,11 @@ class RunningVerbs:
         """When a verb without a screen beside it last used the session."""
         self._proven: dict[int, float] = {}
         """System id -> when the session was last proven to it for a verb."""
-        self._outbox: list[Outgoing] = []
+        self._outbox = outbox.demands.verbs
         self._senders: list[tuple[m.Message, RunningVerb]] = []
-        """Of the messages of verbs in `_outbox`."""
+        """Of the messages of verbs that were queued last; with an empty outbox they are being sent, or are sent."""
         self._sent: list[tuple[m.Message, RunningVerb]] = []
-        """The same of those that are being sent."""
+        """The same of those before."""
 
     def may_follow(self, now: float) -> bool:
         """Return whether a verb that only looks may go on with the session of the verb before."""
@@ -201,6 +202,8 @@ class RunningVerbs:
             return
         if isinstance(message, m.RoverOperatorPresence):
             self._operator.adopt_presence(message, now)
+        if not self._outbox:
+            self._sent, self._senders = self._senders, []
         self._prove(verb, message, now)
         self._outbox.append(Outgoing(message))
         self._senders.append((message, verb))
@@ -249,15 +252,9 @@ class RunningVerbs:
         for ending in list(self._endings):
             self._continue(ending, now)
 
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        outbox, self._outbox = self._outbox, []
-        self._sent, self._senders = self._senders, []
-        return outbox
-
     def handle_refused(self, message: m.Message, why: str, now: float) -> bool:
         """Tell the verb whose message our role does not allow; return whether it is one of a verb."""
-        verb = next((verb for sent, verb in self._sent if sent is message), None)
+        verb = next((verb for sent, verb in (*self._sent, *self._senders) if sent is message), None)
         if verb is not None:
             verb.seat.tell_refusal(message, why, now)
         return verb is not None

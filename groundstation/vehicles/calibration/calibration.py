@@ -81,9 +81,12 @@ def kind_for(name: str, autopilot: int) -> str | None:
 
 
 class CalibrationState:
-    """What one vehicle asks for and reports. `ids` are ours, `target` is the vehicle's component."""
+    """What one vehicle asks for and reports; `outbox` gets what is sent to it.
 
-    def __init__(self, ids: tuple[int, int], target: tuple[int, int]) -> None:
+    `ids` are ours, `target` is the vehicle's component.
+    """
+
+    def __init__(self, outbox: list[Outgoing], ids: tuple[int, int], target: tuple[int, int]) -> None:
         self._ids, self._target = ids, target
         self.position: int | None = None
         """The position of ACCEL_POSITIONS that it waits for."""
@@ -97,7 +100,7 @@ class CalibrationState:
         """Reports of the compass do not count: they were on the way when it was cancelled."""
         self._written = 0
         """Number of the newest request that has written a result of the compass."""
-        self._outbox: list[Outgoing] = []
+        self._outbox = outbox
 
     def receive(self, received: Received) -> None:
         """Handle a request or report of the vehicle."""
@@ -150,11 +153,6 @@ class CalibrationState:
         """Forget the results if they are cancelled; while they are written, the vehicle may still refuse."""
         if not accept:
             self.text, self.compass, self._cancelled = "", CompassCalibration(), True
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        outbox, self._outbox = self._outbox, []
-        return outbox
 
     def rows(self, autopilot: int, requests: Iterable[RequestLine]) -> tuple[CalibrationRow, ...]:
         """Return what can be calibrated, and what cannot. `requests` show which ones are done."""

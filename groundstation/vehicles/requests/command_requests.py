@@ -7,7 +7,7 @@ from typing import NamedTuple
 from dialects import messages as m
 from dialects.enums import Command, Result, command_name, result_token
 from groundstation.vehicles.requests.requests import RequestBook
-from link.core import Outgoing, Received
+from link.core import Received
 from link.services.command.client import TRIES, CommandClient, CommandOutcome, CommandPlace
 
 
@@ -99,10 +99,6 @@ class CommandRequests:
             if progress is not None:
                 self._book.advance(number, progress, 100)
         self._handle_outcomes(now)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        return self._client.messages_to_send()
 
     def _transmit(self, command: int, params: tuple[float, ...], now: float, place: CommandPlace | None = None) -> None:
         system, component = self.target

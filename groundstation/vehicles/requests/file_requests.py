@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from groundstation.vehicles.requests.requests import RequestBook, describe_holes
-from link.core import Outgoing, Received
+from link.core import Received
 from link.services.ftp.client import FtpClient
 from link.services.ftp.job import TRIES, FtpOutcome
 
@@ -101,10 +101,6 @@ class FileRequests:
         for number, job in self._jobs.items():
             if job == self._client.number:
                 self._book.advance(number, *self._client.progress, describe_holes(self._client.holes))
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        return self._client.messages_to_send()
 
     def _follow(self, number: int, job: int, now: float) -> None:
         self._jobs[number] = job

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 
 from groundstation.vehicles.requests.requests import RequestBook, describe_holes
-from link.core import Outgoing, Received
+from link.core import Received
 from link.services.log.client import LogClient, LogOutcome, RemoteLog
 
 MAX_LEFT = 1
@@ -77,10 +77,6 @@ class LogRequests:
         if self._number is not None:
             holes = describe_holes(self._client.holes)
             self._book.advance(self._number, *self._client.progress, holes)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        return self._client.messages_to_send()
 
     def _add(self, number: int, begin: _Begin, now: float) -> None:
         self._jobs.append((number, begin))

@@ -14,7 +14,7 @@ from dialects.enums import ParamErrorCode
 from dialects.result_texts import param_error_text
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.state.identity import VehicleIdentity
-from link.core import Outgoing, Received
+from link.core import Received
 from link.services.param.client import ParamClient, ParamOutcome
 from link.services.param.float32 import float32_neighbours, value_text
 from link.services.param.values import is_bytewise, value_fault
@@ -123,10 +123,6 @@ class ParamRequests:
         self.client.tick(now)
         self._handle_outcomes(now)
         self._watch_fetch()
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        return self.client.messages_to_send()
 
     # ---- all ----
 

@@ -10,7 +10,7 @@ import msgspec
 from dialects.enums import MissionResult, MissionType
 from dialects.result_texts import mission_result_name
 from groundstation.vehicles.requests.requests import RequestBook
-from link.core import Outgoing, Received
+from link.core import Received
 from link.services.mission.client import MissionClient, MissionOutcome
 from link.services.mission.items import Items, MissionItem
 
@@ -100,10 +100,6 @@ class PlanRequests:
         self._handle_outcomes(now)
         if self._under_way is not None:
             self._book.advance(self._under_way.number, *self._client.progress)
-
-    def messages_to_send(self) -> list[Outgoing]:
-        """Return the messages to send now, and remove them."""
-        return self._client.messages_to_send()
 
     # ---- jobs ----
 

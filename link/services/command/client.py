@@ -78,10 +78,11 @@ class CommandClient:
     target.
     """
 
-    def __init__(self, system: int, component: int) -> None:
+    def __init__(self, system: int, component: int, outbox: list[Outgoing] | None = None) -> None:
+        """`outbox` gets what is to be sent; without one it is kept for `messages_to_send`."""
         self._ids = (system, component)
         self._waiting: dict[tuple[int, int], _Waiting] = {}
-        self._outbox: list[Outgoing] = []
+        self._outbox = [] if outbox is None else outbox
         self._outcomes: list[CommandOutcome] = []
 
     def send(
@@ -176,7 +177,8 @@ class CommandClient:
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
-        outbox, self._outbox = self._outbox, []
+        outbox = self._outbox[:]
+        self._outbox.clear()
         return outbox
 
     def outcomes(self) -> list[CommandOutcome]:

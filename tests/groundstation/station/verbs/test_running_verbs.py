@@ -163,7 +163,8 @@ def test_a_thawed_verb_is_found_out_by_its_first_packet() -> None:
     ashore.verbs.hear(ashore.verb, now)
     ashore.verbs.handle(ashore.verb, said(FULL), now)
     assert "stood still for 1." in ashore.refusals[0]
-    sent = [each.message for each in ashore.verbs.messages_to_send() if isinstance(each.message, m.ManualControl)]
+    queued = ashore.cockpit.station.messages_to_send()
+    sent = [each.message for each in queued if isinstance(each.message, m.ManualControl)]
     assert {message.x for message in sent} == {0}
 
 
@@ -248,8 +249,8 @@ def test_channels_that_a_verb_has_given_back_are_left_alone() -> None:
 
 def test_a_demand_to_nobody_is_not_sent() -> None:
     ashore = Ashore()
-    ashore.send(m.ManualControl(9, 1000, 0, 0, 0, 0))
-    assert ashore.verbs.messages_to_send() == []
+    ashore.verbs.handle(ashore.verb, said(m.ManualControl(9, 1000, 0, 0, 0, 0)), ashore.cockpit.now)
+    assert ashore.cockpit.station.messages_to_send() == []
 
 
 def test_neutral_of_a_verb_is_left_out_while_the_station_streams() -> None:

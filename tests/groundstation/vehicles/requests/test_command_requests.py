@@ -17,7 +17,8 @@ class Rig:
 
     def __init__(self) -> None:
         self.book = RequestBook()
-        self.requests = CommandRequests(CommandClient(255, 190), self.book, (1, 1))
+        self.client = CommandClient(255, 190)
+        self.requests = CommandRequests(self.client, self.book, (1, 1))
 
     def request(self, number: int) -> None:
         """Request SYS_STATUS."""
@@ -30,7 +31,7 @@ class Rig:
 
     def sent(self) -> list[float]:
         """Return the messages that were requested since the last call."""
-        commands = [each.message for each in self.requests.messages_to_send()]
+        commands = [each.message for each in self.client.messages_to_send()]
         return [each.param1 for each in commands if isinstance(each, m.CommandLong)]
 
     def states(self) -> dict[int, RequestState]:

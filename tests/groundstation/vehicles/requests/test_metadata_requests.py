@@ -26,9 +26,10 @@ def fetch(
     """Let a vehicle say where its texts are, and follow that."""
     logs = {name: each if isinstance(each, bytes) else json.dumps(each).encode() for name, each in files.items()}
     vehicle, identity = ftp_rig.FtpRig(logs=logs, rate=1e6), VehicleIdentity(1)
-    requests = FileRequests(FtpClient(255, 190, target_system=1), RequestBook())
+    client = FtpClient(255, 190, target_system=1)
+    requests = FileRequests(client, RequestBook())
     metadata = MetadataRequests(requests, identity, {} if cache is None else cache)
-    pair = Pair(vehicle.server, requests)
+    pair = Pair(vehicle.server, client, requests)
     identity.receive(from_vehicle(m.AutopilotVersion(32, 0, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)))
     assert identity.next_request(0.0) is None, "not before they are wanted"
     metadata.want()

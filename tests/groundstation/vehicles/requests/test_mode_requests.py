@@ -8,6 +8,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
+from link.core import Outgoing
 from tests.link.command_rig import received
 
 ROVER, HOLD, MANUAL = 10, 4, 0
@@ -15,7 +16,7 @@ ROVER, HOLD, MANUAL = 10, 4, 0
 
 def accepted() -> VehicleServices:
     """Return the services of a vehicle that has accepted HOLD at 0.1 s and sent no heartbeat since."""
-    services = VehicleServices(255, 190, (1, 1))
+    services = VehicleServices([], 255, 190, (1, 1))
     services.autopilot, services.kind = Autopilot.ARDUPILOT, ROVER
     services.modes.set(1, "HOLD", 0.0)
     ack = m.CommandAck(Command.DO_SET_MODE, Result.ACCEPTED, target_system=255, target_component=190)
@@ -46,10 +47,11 @@ def test_without_any_heartbeat_there_is_no_answer() -> None:
 
 
 def test_a_change_that_our_role_does_not_allow_is_refused() -> None:
-    services = VehicleServices(255, 190, (1, 1))
+    outbox: list[Outgoing] = []
+    services = VehicleServices(outbox, 255, 190, (1, 1))
     services.autopilot, services.kind = Autopilot.ARDUPILOT, ROVER
     services.modes.set(1, "HOLD", 0.0)
-    [sent] = [each.message for each in services.messages_to_send() if isinstance(each.message, m.CommandLong)]
+    [sent] = [each.message for each in outbox if isinstance(each.message, m.CommandLong)]
     services.handle_refused(sent, "the key may only watch", 0.1)
     services.receive(received(m.Heartbeat(ROVER, Autopilot.ARDUPILOT, 1, MANUAL, 4, 3), 1, 1), 0.2)
     report = tick(services, 0.2)

@@ -29,8 +29,9 @@ def ends(book: RequestBook) -> dict[int, RequestState]:
 
 def test_plans_go_one_after_the_other() -> None:
     vehicle, book = mission_rig.MissionRig(), RequestBook()
-    plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
-    pair = Pair(vehicle.server, plans)
+    client = MissionClient(255, 190, target_system=1)
+    plans = PlanRequests(client, book)
+    pair = Pair(vehicle.server, client, plans)
     plans.upload(1, MissionType.MISSION, ITEMS, pair.now)
     plans.download(2, MissionType.MISSION, pair.now)
     plans.clear(3, MissionType.MISSION, pair.now)
@@ -43,8 +44,9 @@ def test_plans_go_one_after_the_other() -> None:
 
 def test_cancelled_upload_changes_nothing_and_next_request_runs() -> None:
     vehicle, book = mission_rig.MissionRig(), RequestBook()
-    plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
-    pair = Pair(vehicle.server, plans)
+    client = MissionClient(255, 190, target_system=1)
+    plans = PlanRequests(client, book)
+    pair = Pair(vehicle.server, client, plans)
     plans.upload(1, MissionType.MISSION, ITEMS, pair.now)
     plans.upload(2, MissionType.MISSION, ITEMS[:5], pair.now)
     plans.download(3, MissionType.FENCE, pair.now)
@@ -59,13 +61,14 @@ def test_cancelled_upload_changes_nothing_and_next_request_runs() -> None:
 def test_a_download_that_was_not_answered_goes_on_where_it_ended() -> None:
     vehicle, book = mission_rig.MissionRig(), RequestBook()
     vehicle.upload(ITEMS)
-    plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
-    pair = Pair(vehicle.server, plans)
+    client = MissionClient(255, 190, target_system=1)
+    plans = PlanRequests(client, book)
+    pair = Pair(vehicle.server, client, plans)
     plans.download(1, MissionType.MISSION, pair.now)
     pair.run_until(lambda: any(report.done >= 20 for report in book.running), 5.0)
     for second in range(60):
         plans.tick(pair.now + second)
-    plans.messages_to_send()
+    client.messages_to_send()
     [failed] = [report for report in book.pop_changes() if report.state.ended]
     assert failed.text == "download mission: no answer, after 16 tries, 20 of 30 items arrived"
     sent = pair.sent_by_client
@@ -77,8 +80,9 @@ def test_a_download_that_was_not_answered_goes_on_where_it_ended() -> None:
 
 def test_files_are_cancelled_one_by_one() -> None:
     vehicle, book = ftp_rig.FtpRig(logs={"1.bin": DATA}, rate=50_000.0), RequestBook()
-    files = FileRequests(FtpClient(255, 190, target_system=1), book)
-    pair = Pair(vehicle.server, files)
+    client = FtpClient(255, 190, target_system=1)
+    files = FileRequests(client, book)
+    pair = Pair(vehicle.server, client, files)
     files.download(1, "/logs/1.bin", pair.now)
     files.checksum(2, "/logs/1.bin", pair.now)
     files.list_folder(3, "/logs", pair.now)
@@ -103,11 +107,12 @@ def test_a_path_that_cannot_be_sent_is_refused_at_once() -> None:
 
 def test_logs_are_cancelled_one_by_one() -> None:
     book = RequestBook()
-    logs = LogRequests(LogClient(255, 190, target_system=1), book)
+    client = LogClient(255, 190, target_system=1)
+    logs = LogRequests(client, book)
     server = LogServer(
         MemoryFolder({"1.bin": DATA}), system=1, component=1, pacer=BulkPacer(lambda peer: 50_000.0)
     )  # fmt: skip
-    pair = Pair(server, logs)
+    pair = Pair(server, client, logs)
     log = RemoteLog(0, 0, len(DATA))
     logs.download(1, log, pair.now)
     logs.download(2, log, pair.now)
