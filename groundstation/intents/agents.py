@@ -23,6 +23,7 @@ class EndPermission(Intent, frozen=True):
 class DeclineProposal(Intent, frozen=True):
     """Refuse the proposal that is shown, or end the one that runs."""
 
+    log_text = "decline the proposal of the agent"
     valid_when_late = open_to_all = True
     number: int = 0
     """0: the one that is shown."""

@@ -18,3 +18,10 @@ class Intent(msgspec.Struct, frozen=True, tag=True):
 
     open_to_all: ClassVar[bool] = False
     """Also carried out for a screen that does not drive: it stops, or reads what the vehicle has."""
+
+    log_text: ClassVar[str] = ""
+    """The line of the message log; `{0.field}` stands for a value of the intent. "": none."""
+
+    def describe(self) -> str:
+        """Return the line of the message log; "" for none."""
+        return self.log_text.format(self)

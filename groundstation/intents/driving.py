@@ -86,16 +86,21 @@ class Stop(Intent, frozen=True):
     valid_when_late = True
     reason: str = STOP_KEY
 
+    def describe(self) -> str:
+        return "stop" if self.reason == STOP_KEY else ""
+
 
 class EmergencyStop(Intent, frozen=True):
     """Motors off at once and locked: a command, repeated until acknowledged."""
 
+    log_text = "emergency stop"
     valid_when_late = open_to_all = True
 
 
 class ClearEmergencyStop(VehicleIntent, frozen=True):
     """Release the emergency stop; arming is a separate step."""
 
+    log_text = "release the emergency stop"
     confirmed = "release of the emergency stop"
     held: float = 0.0
     """s for which the key was held; refused below HOLD_TIME."""
@@ -115,6 +120,7 @@ class StepLimits(Intent, frozen=True):
 class SetStyle(Intent, frozen=True):
     """Set the drive style: "hold", "latch" or "step"; "next" selects the one after the current style."""
 
+    log_text = "change the drive style"
     style: str
     why: str = ""
     """For the log."""

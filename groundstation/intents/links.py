@@ -15,9 +15,13 @@ class AddLink(Intent, frozen=True):
     watch_only: bool = False
     """Never send a byte on it."""
 
+    def describe(self) -> str:
+        return f"open {self.endpoint}{' to watch only' if self.watch_only else ''}"
+
 
 class CloseLink(Intent, frozen=True):
     """Close a link: neutral first to the vehicles that it leads to."""
 
+    log_text = "close a link"
     link: int
     """LinkRow.index."""

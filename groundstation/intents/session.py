@@ -60,6 +60,7 @@ class ReportScreen(Intent, frozen=True):
 class StartSimulator(Intent, frozen=True):
     """Start simulated rovers as children of the station process and let them connect to us."""
 
+    log_text = "start the simulator"
     kind: str = "rover"
     """A row of groundstation.sitl.simulators.SIMULATORS."""
 
@@ -82,3 +83,6 @@ class Quit(Intent, frozen=True):
     valid_when_late = True
     disarm: bool = False
     """Disarm before the exit what this station armed; another Quit without it meanwhile leaves that armed."""
+
+    def describe(self) -> str:
+        return "quit, disarm first" if self.disarm else "quit"

@@ -2,28 +2,61 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from groundstation.intents.base import Intent
 from groundstation.intents.services import ServiceIntent
+
+if TYPE_CHECKING:
+    from groundstation.vehicles.services import VehicleServices
+
+SETUP = "setup"
+"""The service of the requests of the Setup screen."""
+AUTOPILOT = 1.0
+"""Parameter 1 of PREFLIGHT_REBOOT_SHUTDOWN: restart the autopilot, not its computer."""
 
 
 class RunChecks(ServiceIntent, frozen=True, tag=True):
     """Let the vehicle run its pre-arm checks (MAV_CMD_RUN_PREARM_CHECKS)."""
 
+    log_text = "run the pre-arm checks"
+    service, what = SETUP, "pre-arm checks"
+
+    def start(self, services: VehicleServices, now: float) -> None:
+        services.commands.send_named(self.request, "RUN_PREARM_CHECKS", (), self.what, now)
+
 
 class RebootVehicle(ServiceIntent, frozen=True, tag=True):
     """Restart the autopilot; it refuses while armed."""
+
+    log_text = "restart the vehicle"
+    service, what = SETUP, "reboot"
+
+    def start(self, services: VehicleServices, now: float) -> None:
+        services.commands.send_named(self.request, "PREFLIGHT_REBOOT_SHUTDOWN", (AUTOPILOT,), self.what, now)
 
 
 class Calibrate(ServiceIntent, frozen=True, tag=True):
     """Begin a calibration; `kind` is one of vehicles/calibration/calibration.py, KINDS."""
 
+    log_text = "calibrate {0.kind}"
+    service, what = SETUP, "calibrate"
+
     kind: str = ""
+
+    def start(self, services: VehicleServices, now: float) -> None:
+        services.calibrate(self.request, self.kind, now)
 
 
 class EndCalibration(ServiceIntent, frozen=True, tag=True):
     """End the calibration of the compass: write its result (`accept`), or cancel it."""
 
+    service, what = SETUP, "end a calibration"
+
     accept: bool = False
+
+    def start(self, services: VehicleServices, now: float) -> None:
+        services.end_calibration(self.request, now, accept=self.accept)
 
 
 class TurnMotor(Intent, frozen=True):

@@ -11,6 +11,7 @@ from groundstation.intents.vehicle_intent import Commands, Vehicle, VehicleInten
 class Arm(VehicleIntent, frozen=True):
     """Arm the vehicle, after changing to MANUAL if it is in HOLD."""
 
+    log_text = "arm"
     confirmed = "arming"
     held: float = 0.0
     """s for which the key was held; refused below HOLD_TIME."""
@@ -23,6 +24,7 @@ class Arm(VehicleIntent, frozen=True):
 class Disarm(VehicleIntent, frozen=True):
     """Disarm the vehicle."""
 
+    log_text = "disarm"
     valid_when_late = open_to_all = True
 
     def send(self, commands: Commands[Vehicle], vehicle: Vehicle, now: float) -> None:
@@ -70,6 +72,7 @@ class CutMotors(VehicleIntent, frozen=True):
 class SetMode(VehicleIntent, frozen=True):
     """Change the mode; `mode` is a name of dialects.modes.Mode."""
 
+    log_text = "mode {0.mode}"
     neutral = False
     mode: str
 
@@ -81,6 +84,8 @@ class SetMode(VehicleIntent, frozen=True):
 class RequestControl(Intent, frozen=True):
     """Request to be the ground station in control (MAV_CMD_REQUEST_OPERATOR_CONTROL)."""
 
+    log_text = "request control"
+
 
 class ReleaseControl(Intent, frozen=True):
     """Release control of the selected vehicle: neutral, then it is free for others."""
@@ -89,20 +94,30 @@ class ReleaseControl(Intent, frozen=True):
     all: bool = False
     """Of every vehicle that we control."""
 
+    def describe(self) -> str:
+        return "release control of all vehicles" if self.all else "release control"
+
 
 class GiveControl(Intent, frozen=True):
     """Give control to the ground station that asks for it; without such a request nothing happens."""
+
+    log_text = "give control"
 
 
 class KeepControl(Intent, frozen=True):
     """Refuse the request of another ground station for control."""
 
+    log_text = "keep control"
+
 
 class SelectVehicle(Intent, frozen=True):
     """Select the vehicle with this system id."""
 
+    log_text = "select vehicle {0.system}"
     system: int
 
 
 class SelectNextVehicle(Intent, frozen=True):
     """Select the vehicle with the next higher system id; after the last comes the first."""
+
+    log_text = "select the next vehicle"

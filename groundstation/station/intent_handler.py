@@ -1,7 +1,7 @@
 """Carries out the operator's intents: one table row for each kind of intent.
 
-A new intent is a class in groundstation/intents. A command to the selected vehicle (VehicleIntent) needs no more; a
-request to one of its services has a row in SERVICE_CALLS (service_calls.py), every other intent one in HANDLERS.
+A new intent is a class in groundstation/intents. A command to the selected vehicle (VehicleIntent) and a request to one
+of its services (ServiceIntent) need no more; every other intent has a row in HANDLERS.
 """
 
 from __future__ import annotations
@@ -43,7 +43,6 @@ from groundstation.intents.vehicle import (
 from groundstation.intents.vehicle_intent import VehicleIntent
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.permission import Permission
-from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.vehicles.state.vehicle_state import VehicleState
 
 EMERGENCY_WINS = 0.5
@@ -72,6 +71,7 @@ class IntentHandler:
         """Before the intent that is being carried out."""
         rows: dict[type[Intent], Handle] = {kind: partial(do, self) for kind, do in HANDLERS.items()}
         rows |= dict.fromkeys(VehicleIntent.__subclasses__(), self._send_command)
+        rows |= dict.fromkeys(ServiceIntent.__subclasses__(), self._services.start)
         self._table = {kind: [handle] for kind, handle in rows.items()}
         self._last: dict[type[Intent], Handle] = {}
 
@@ -233,9 +233,6 @@ class IntentHandler:
     def _keep_control(self, intent: KeepControl, now: float) -> None:
         self._handover.keep(now)
 
-    def _start_request(self, intent: ServiceIntent, now: float) -> None:
-        self._services.start(intent, now)
-
     def _cancel_request(self, intent: CancelRequest, now: float) -> None:
         self._services.cancel(intent.request, now)
 
@@ -276,7 +273,8 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     CancelRequest: IntentHandler._cancel_request,
     CloseLink: IntentHandler._close_link,
     Quit: IntentHandler._quit,
-    **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),
 }
-"""Intent -> method, for all that are not commands to the selected vehicle. Those of the screens are added by
-screen_feed.py. The station's process adds those of the shell: AddLink, StartSimulator, RunLine and more."""
+"""Intent -> method, for all that are neither commands to the selected vehicle nor requests to its services.
+
+Those of the screens are added by screen_feed.py, those of the shell by the station's process: AddLink, StartSimulator,
+RunLine and more."""

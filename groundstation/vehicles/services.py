@@ -300,6 +300,20 @@ class VehicleServices:
                 for report in self.book.running:
                     service.cancel(report.number, now)
 
+    def calibrate(self, number: int, name: str, now: float) -> None:
+        """Begin a calibration, one of KINDS."""
+        from groundstation.vehicles.calibration.calibration import KINDS, REQUEST
+
+        kind = KINDS[name]
+        self.commands.send(number, kind.command, kind.params, f"{REQUEST}{name}", now)
+
+    def end_calibration(self, number: int, now: float, *, accept: bool) -> None:
+        """End the calibration of the compass: write its result, or cancel it."""
+        from groundstation.vehicles.calibration.calibration import CANCEL, REQUEST, WRITE
+
+        command, what = (Command.DO_ACCEPT_MAG_CAL, WRITE) if accept else (Command.DO_CANCEL_MAG_CAL, CANCEL)
+        self.commands.send(number, command, (0,), f"{REQUEST}{what}", now)
+
     def cancel(self, number: int, now: float) -> None:
         """Cancel a request."""
         for service in self._services:

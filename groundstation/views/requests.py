@@ -21,7 +21,7 @@ class RequestLine(msgspec.Struct, frozen=True):
     done: int = 0
     total: int | None = None
     service: str = ""
-    """Which service it is for, e.g. "params"; see station/services/service_calls.py."""
+    """Which service it is for, e.g. "params"; see ServiceIntent.service."""
     waits: str = ""
     """What it waits for, e.g. the operator's hands on a slow line; "" if it goes on."""
     system: int = 0

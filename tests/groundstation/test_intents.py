@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Any, get_args
 
 import msgspec
@@ -13,6 +15,7 @@ from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.line import RunLine
 from groundstation.intents.links import AddLink
+from groundstation.intents.services import ServiceIntent
 from groundstation.intents.session import Detach, GiveUpKeys, ReportScreen, StartSimulator
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle_intent import VehicleIntent
@@ -88,3 +91,20 @@ def test_no_key_has_two_actions_and_drive_keys_differ() -> None:
     assert len(keys) == len(set(keys))
     drives = [action.intent for action in ACTIONS.values() if isinstance(action.intent, DriveKeyDown)]
     assert len({(*each.directions, each.override) for each in drives}) == len(drives) == 13
+
+
+def test_each_request_names_its_service_and_its_call() -> None:
+    kinds = ServiceIntent.__subclasses__()
+    assert len(kinds) > 20
+    for kind in kinds:
+        assert "" not in (kind.service, kind.what), kind
+        assert kind.start is not ServiceIntent.start, kind
+
+
+def test_intents_load_nothing_of_vehicles_or_the_dialect() -> None:
+    code = "import sys, groundstation.intents.union; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "groundstation.intents.services" in loaded
+    assert not [
+        name for name in loaded if name.startswith(("groundstation.vehicles", "groundstation.station", "dialects"))
+    ]

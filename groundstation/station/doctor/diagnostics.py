@@ -10,6 +10,7 @@ from groundstation.doctor.chain import count_faults, examine
 from groundstation.doctor.prearm_advice import find_advice
 from groundstation.intents.base import Intent
 from groundstation.intents.setup import (
+    SETUP,
     Calibrate,
     ConfirmPosition,
     EndCalibration,
@@ -30,7 +31,6 @@ from groundstation.station.driving.motor_test import THROTTLE_MAX, MotorTester
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.outbox import Outbox
-from groundstation.station.services.service_calls import SETUP
 from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.station.services.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewSource

@@ -2,36 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 from dialects.axes import Axes
-from groundstation.intents.agents import DeclineProposal
 from groundstation.intents.base import Intent
-from groundstation.intents.driving import (
-    PAD,
-    STOP_KEY,
-    ClearEmergencyStop,
-    DriveKeyDown,
-    DrivePad,
-    EmergencyStop,
-    SetStyle,
-    Stop,
-)
-from groundstation.intents.links import AddLink, CloseLink
-from groundstation.intents.session import Quit, StartSimulator
-from groundstation.intents.setup import Calibrate, RebootVehicle, RunChecks
-from groundstation.intents.vehicle import (
-    Arm,
-    Disarm,
-    GiveControl,
-    KeepControl,
-    ReleaseControl,
-    RequestControl,
-    SelectNextVehicle,
-    SelectVehicle,
-    SetMode,
-)
+from groundstation.intents.driving import PAD, DriveKeyDown, DrivePad
 from groundstation.vehicles.readings.latency import LatencyMeter
 from groundstation.vehicles.state.message_log import OPERATOR, MessageLog
 
@@ -41,31 +14,6 @@ change at once; a report that comes later was lost or waits on a slow line."""
 
 MAX_KEYS = 8
 """Keys named in one line; all ten drive keys would fill it."""
-
-TEXTS: dict[type[Intent], Callable[[Any], str]] = {
-    Stop: lambda intent: "stop" if intent.reason == STOP_KEY else "",
-    EmergencyStop: lambda _: "emergency stop",
-    ClearEmergencyStop: lambda _: "release the emergency stop",
-    Arm: lambda _: "arm",
-    Disarm: lambda _: "disarm",
-    SetMode: lambda intent: f"mode {intent.mode}",
-    SetStyle: lambda _: "change the drive style",
-    RequestControl: lambda _: "request control",
-    ReleaseControl: lambda intent: "release control of all vehicles" if intent.all else "release control",
-    GiveControl: lambda _: "give control",
-    KeepControl: lambda _: "keep control",
-    DeclineProposal: lambda _: "decline the proposal of the agent",
-    SelectVehicle: lambda intent: f"select vehicle {intent.system}",
-    SelectNextVehicle: lambda _: "select the next vehicle",
-    RunChecks: lambda _: "run the pre-arm checks",
-    RebootVehicle: lambda _: "restart the vehicle",
-    Calibrate: lambda intent: f"calibrate {intent.kind}",
-    StartSimulator: lambda _: "start the simulator",
-    AddLink: lambda intent: f"open {intent.endpoint}{' to watch only' if intent.watch_only else ''}",
-    CloseLink: lambda _: "close a link",
-    Quit: lambda intent: "quit, disarm first" if intent.disarm else "quit",
-}
-"""Intent -> its text; "" for none."""
 
 
 class OperatorLog:
@@ -87,8 +35,7 @@ class OperatorLog:
             return
         if isinstance(intent, DrivePad) and len(self._keys) < MAX_KEYS:
             self._keys[PAD] = None
-        text = TEXTS.get(type(intent), lambda _: "")(intent)
-        if text:
+        if text := intent.describe():
             self._log.add(now, OPERATOR, text)
 
     def tick(self, demand: Axes, latency: LatencyMeter | None, now: float) -> None:

@@ -16,7 +16,6 @@ from groundstation.intents.services import ServiceIntent
 from groundstation.intents.session import ReportScreen, SetKeyGate
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.driving.permission import Permission
-from groundstation.station.services.service_calls import SERVICE_CALLS
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.state.message_log import OPERATOR, STATE
 from link.core import LinkReport
@@ -57,7 +56,7 @@ class StationNotes:
         elif isinstance(intent, StepLimits):
             self.add(now, Kind.ACTION, f"limits: speed {self._limit(0)}, turn {self._limit(1)}")
         elif isinstance(intent, ServiceIntent):
-            self._add(now, Kind.REQUEST, SERVICE_CALLS[type(intent)].what, target=intent.system or self._vehicle)
+            self._add(now, Kind.REQUEST, intent.what, target=intent.system or self._vehicle)
         self._follow_vehicle(now)
         self._follow_keys(intent, permission, now)
         if permission.reason != self._blocked:

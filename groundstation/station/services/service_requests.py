@@ -91,16 +91,13 @@ class ServiceRequests:
 
     def start(self, intent: ServiceIntent, now: float) -> None:
         """Make a request; without its vehicle it ends at once."""
-        from groundstation.station.services.service_calls import SERVICE_CALLS
-
-        call = SERVICE_CALLS[type(intent)]
-        self._service_of[intent.request] = call.service
+        self._service_of[intent.request] = intent.service
         contact = self._fleet.get(intent.system) if intent.system else self._fleet.selected
         if contact is None:
-            report = RequestReport(intent.request, call.what, RequestState.REFUSED, "no vehicle yet")
+            report = RequestReport(intent.request, intent.what, RequestState.REFUSED, "no vehicle yet")
             self._end(report, 0, "station", now)
             return
-        call.make(self.services_of(contact), intent, now)
+        intent.start(self.services_of(contact), now)
         self.collect(now)
 
     def cancel(self, number: int, now: float) -> None:

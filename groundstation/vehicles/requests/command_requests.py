@@ -57,6 +57,10 @@ class CommandRequests:
             self._numbers[int(command)] = number
             self._transmit(int(command), params, now, place)
 
+    def send_named(self, number: int, name: str, params: tuple[float, ...], what: str, now: float) -> None:
+        """Send the MAV_CMD of this name; by name for intents, which do not load the dialect."""
+        self.send(number, Command[name], params, what, now)
+
     def query(self, command: Command, params: tuple[float, ...], now: float) -> None:
         """Send a command that is not a request of the operator; call it only while none of its kind is_waiting."""
         self._transmit(command, params, now)

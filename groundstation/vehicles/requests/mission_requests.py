@@ -55,6 +55,11 @@ class MissionRequests:
         self._autopilot = autopilot
         self._model = model
 
+    def enable_fence(self, number: int, now: float, *, on: bool) -> None:
+        """Switch the fence on or off."""
+        what = f"fence {'on' if on else 'off'}"
+        self._commands.send(number, Command.DO_FENCE_ENABLE, (float(on),), what, now)
+
     def start(self, number: int, now: float) -> None:
         """Start the mission with the current item, or go on where it was paused."""
         auto, refusal = _AUTO.get(self._autopilot()), self._model().refusal or (FLIES if self._model().flies else "")

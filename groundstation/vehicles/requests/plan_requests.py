@@ -4,21 +4,32 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import msgspec
 
 from dialects.enums import MissionResult, MissionType
 from dialects.result_texts import mission_result_name
+from groundstation.formats.plan import Plan, PlannedHome, for_vehicle
 from groundstation.vehicles.requests.requests import RequestBook
 from link.core import Received
 from link.services.mission.client import MissionClient, MissionOutcome
 from link.services.mission.items import Items, MissionItem
+
+if TYPE_CHECKING:
+    from groundstation.intents.plan import UploadPlan
 
 _NAMES = {
     MissionType.MISSION: "mission",
     MissionType.FENCE: "fence",
     MissionType.RALLY: "rally points",
     MissionType.ALL: "all plans",
+}
+
+_PARTS: dict[MissionType, Callable[[Items, PlannedHome | None], Plan]] = {
+    MissionType.MISSION: lambda items, home: Plan(mission=items, home=home),
+    MissionType.FENCE: lambda items, _: Plan(fence=items),
+    MissionType.RALLY: lambda items, _: Plan(rally=items),
 }
 
 
@@ -50,10 +61,22 @@ class PlanRequests:
 
     # ---- requests ----
 
-    def download(self, number: int, kind: MissionType, now: float) -> None:
+    def download(self, number: int, kind: int, now: float) -> None:
         """Download a plan; one that failed before is resumed if it is still the same."""
-        job = _PlanJob(number, kind, lambda later: self._client.download(kind, later, self._failed.pop(kind, None)))
-        self._add(job, f"download {_NAMES[kind]}", now)
+        plan = MissionType(kind)
+        job = _PlanJob(number, plan, lambda later: self._client.download(plan, later, self._failed.pop(plan, None)))
+        self._add(job, f"download {_NAMES[plan]}", now)
+
+    def upload_edited(self, intent: UploadPlan, autopilot: int, now: float) -> None:
+        """Replace a plan by one that a screen has edited, in the form that this autopilot keeps."""
+        kind = MissionType(intent.kind)
+        items = tuple(
+            MissionItem(each.command, each.frame, each.params, each.x, each.y, each.z, each.autocontinue)
+            for each in intent.items
+        )
+        place = intent.home
+        home = place and PlannedHome(place.latitude, place.longitude, intent.home_altitude)
+        self.upload(intent.request, kind, for_vehicle(_PARTS[kind](items, home), kind, autopilot), now)
 
     def upload(self, number: int, kind: MissionType, items: Sequence[MissionItem], now: float) -> None:
         """Replace a plan; the old one stays until the vehicle has accepted the whole new one."""
@@ -70,11 +93,11 @@ class PlanRequests:
         for kept in (self.plans, self.versions, self.ids):
             kept.pop(kind, None)
 
-    def clear(self, number: int, kind: MissionType, now: float) -> None:
+    def clear(self, number: int, kind: int, now: float) -> None:
         """Clear a plan."""
-        self._add(
-            _PlanJob(number, kind, lambda later: self._client.clear(kind, later), ()), f"clear {_NAMES[kind]}", now
-        )
+        plan = MissionType(kind)
+        job = _PlanJob(number, plan, lambda later: self._client.clear(plan, later), ())
+        self._add(job, f"clear {_NAMES[plan]}", now)
 
     def cancel(self, number: int, now: float) -> None:
         """Cancel a request."""

@@ -140,10 +140,8 @@ def enable_fence(on: bool) -> Run:
 
     async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
         await session.need_only_vehicle(options.vehicle)
-        commands, what = session.services.commands, f"fence {'on' if on else 'off'}"
-        report = await session.request(
-            lambda number, now: commands.send(number, Command.DO_FENCE_ENABLE, (float(on),), what, now)
-        )
-        return finish(session, report, output, f"has accepted {what}", enabled=on)
+        missions = session.services.missions
+        report = await session.request(lambda number, now: missions.enable_fence(number, now, on=on))
+        return finish(session, report, output, f"has accepted fence {'on' if on else 'off'}", enabled=on)
 
     return run
