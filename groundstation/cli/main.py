@@ -6,7 +6,6 @@ import contextlib
 import sys
 from collections.abc import Sequence
 
-from groundstation.verbs.manual.mavproxy_words import describe_action
 from link.runtime import startup_gc, stdio, without_openssl
 
 FLAGS = ("--json", "-q", "--quiet")
@@ -31,13 +30,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(arguments: Sequence[str]) -> int:
     arguments = _verb_first(arguments)
     verb = arguments[0] if arguments else ""
-    if hint := describe_action(arguments):
-        print(f"mavhelm: {hint}", file=sys.stderr)
-        return 2
     if verb.isalnum():  # it may be a verb; the screen of an endpoint does without the table
         from groundstation.cli.verb_help import LOCAL_VERBS
+        from groundstation.verbs.mavproxy_words import describe_action
         from groundstation.verbs.table import VERBS
 
+        if hint := describe_action(arguments, VERBS):
+            print(f"mavhelm: {hint}", file=sys.stderr)
+            return 2
         if verb in VERBS:
             without_openssl.load()
             with startup_gc.paused():

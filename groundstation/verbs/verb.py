@@ -58,6 +58,8 @@ class Verb(msgspec.Struct, frozen=True):
     """Name -> action; only `ONLY` for a verb that takes no name."""
     summary: str = ""
     """One line for --help that names all actions; not needed for a verb with one."""
+    mavproxy: dict[str, str] = msgspec.field(default_factory=dict)
+    """Word or two of MAVProxy -> the words behind `mavhelm` that do the same; mavproxy_words.py answers with them."""
 
     @property
     def help(self) -> str:

@@ -1,4 +1,7 @@
-"""Recipe: a verb, in two files: its function in a module of a room, and its row in the table of that room."""
+"""Recipe: a verb, in two files: its function in a module of a room, and its row in the table of that room.
+
+The row has its help, its examples and MAVProxy's words for it.
+"""
 
 from __future__ import annotations
 
@@ -34,9 +37,12 @@ ROW = """    "horn": Verb(Group.VEHICLE, (
         Example("mavhelm horn --relay 1", "sounds the horn at relay 1"),
     ), {ONLY: VerbAction("sound the horn", horn.run,
         (("--relay", {"type": float, "default": 0.0, "metavar": "N", "help": "its relay (0)"}),),
-        needs_session=True)}),"""
+        needs_session=True)}, mavproxy={"siren": "horn --relay 0"}),"""
 
 SOUND_IT = """
+import contextlib
+import io
+
 from dialects.enums import Command
 from groundstation.cli.main import main
 from tests.fakes.services import foreign_vehicle
@@ -47,6 +53,11 @@ with foreign_vehicle() as vehicle:
     commands = [each for _, each in vehicle.received if getattr(each, "command", 0) == Command.DO_SET_RELAY]
 sent = [(each.param1, each.param2) for each in commands]
 assert sent == [(2.0, 1.0)], sent
+
+said = io.StringIO()
+with contextlib.redirect_stderr(said):
+    assert main(["siren"]) == 2
+assert said.getvalue() == "mavhelm: siren: use `mavhelm horn --relay 0`\\n", said.getvalue()
 """
 
 

@@ -13,7 +13,6 @@ from groundstation.client import StationError
 from groundstation.config.config_file import ConfigError
 from groundstation.config.effective import Effective, load_config, merge
 from groundstation.input.keymap import KeymapError
-from groundstation.verbs.manual.mavproxy_words import describe_word
 from link.endpoint import EndpointError
 from link.runtime.command_line import CommandLineParser
 
@@ -48,5 +47,6 @@ def report_mistakes(run: Callable[[], int], word: str = "") -> int:
 
 def _describe_word(word: str) -> str | None:
     from groundstation.cli.verb_help import EVERY_VERB  # loads the tables of verbs
+    from groundstation.verbs.mavproxy_words import describe_word
 
     return describe_word(word, EVERY_VERB)

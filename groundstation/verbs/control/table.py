@@ -30,7 +30,7 @@ VERBS: dict[str, Verb] = {
     "arm": Verb(Group.DRIVE, (
         Example("mavhelm arm --wait 20", "waits until the vehicle is ready, then arms it", Stage.ARMED),
     ), {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
-                             needs_session=True, many=True)}),
+                             needs_session=True, many=True)}, mavproxy={"arm throttle": "arm"}),
     "disarm": Verb(Group.DRIVE, (
         Example("mavhelm disarm", "repeated until the heartbeat reports it; so are stop, estop", Stage.STOPPING),
         Example("mavhelm disarm --all",
@@ -40,7 +40,7 @@ VERBS: dict[str, Verb] = {
     "stop": Verb(Group.DRIVE, (
         Example("mavhelm stop", "to HOLD", Stage.STOPPED),
     ), {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop, finds=False,
-                              own_timeout=True, many=True, stops=True)}),
+                              own_timeout=True, many=True, stops=True)}, mavproxy={"hold": "stop"}),
     "estop": Verb(Group.DRIVE, (
         Example("mavhelm estop", "motors off and locked; what flies lands", Stage.STOPPING),
         Example("mavhelm estop --clear", "releases the lock", Stage.STOPPING),
@@ -110,7 +110,9 @@ VERBS: dict[str, Verb] = {
     "mode": Verb(Group.DRIVE, (
         Example("mavhelm mode HOLD", "done when the heartbeat reports it"),
     ), {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
-                              (("name", {"metavar": "MODE"}),), needs_session=True, shows_neutral=True, many=True)}),
+                              (("name", {"metavar": "MODE"}),), needs_session=True, shows_neutral=True, many=True)},
+       mavproxy={"auto": "mode AUTO", "manual": "mode MANUAL", "loiter": "mode LOITER",
+                 "steering": "mode STEERING"}),
     "reboot": Verb(Group.VEHICLE, (
         Example("mavhelm reboot", "the vehicle refuses while it is armed", Stage.AFTERWARDS),
     ), {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, needs_session=True,

@@ -63,7 +63,8 @@ VERBS: dict[str, Verb] = {
         "reset": VerbAction("have the vehicle reset all parameters to their defaults", param.reset,
                             (_SURE,), needs_session=True,
                             many=True),
-    }, "get, set, save, load, diff, store or reset parameters of a vehicle"),
+    }, "get, set, save, load, diff, store or reset parameters of a vehicle",
+       mavproxy={"param fetch": "param get", "param show": "param get", "arm list": "param get ARMING_CHECK"}),
     "ftp": Verb(Group.DATA, (
         Example("mavhelm ftp ls /logs", "files, where the vehicle has MAVLink FTP"),
         Example("mavhelm ftp get /logs/00000001.tlog", "download, resume, compare the checksum"),
@@ -80,7 +81,7 @@ VERBS: dict[str, Verb] = {
         "rm": VerbAction("remove a file", ftp.rm, (_REMOTE,), needs_session=True),
         "crc": VerbAction("print the checksum of a file, or compare it with a file here", ftp.crc,
                           (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"})), watches=True),
-    }, "ls, get, put, rm or crc files on the vehicle"),
+    }, "ls, get, put, rm or crc files on the vehicle", mavproxy={"ftp list": "ftp ls FOLDER"}),
     "log": Verb(Group.DATA, (
         Example("mavhelm log list", "the logs on the vehicle"),
         Example("mavhelm log get latest", "download the newest"),
@@ -92,7 +93,7 @@ VERBS: dict[str, Verb] = {
                            ("file", {"nargs": "?", "metavar": "FILE"}), YES), watches=True),
         "erase": VerbAction("have the vehicle erase all its logs", log.erase,
                             (_SURE,), needs_session=True),
-    }, "list, get or erase the logs on the vehicle"),
+    }, "list, get or erase the logs on the vehicle", mavproxy={"log download": "log get ID"}),
     "export": Verb(Group.DATA, (
         Example("mavhelm export f.tlog --mcap out.mcap --from 0:31 --to 0:44",
                 "a part of a log, for Foxglove and ROS 2; no vehicle needed", Stage.AFTERWARDS),

@@ -14,7 +14,7 @@ from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES, LineRule
 from groundstation.verbs.line.session import here
 from groundstation.verbs.main import build_parser
-from groundstation.verbs.manual.mavproxy_words import describe_action, describe_word
+from groundstation.verbs.mavproxy_words import describe_action, describe_word
 from groundstation.verbs.table import VERBS
 from link.runtime.command_line import CommandLineParser
 
@@ -60,8 +60,8 @@ def parse_line(text: str, modes: Collection[str] = ()) -> ParsedLine:
     elif words == ["rtl"]:  # an autopilot that has another name for it
         words = ["home"]
     verb = words[0]
-    if verb not in VERBS or describe_action(words):
-        hint = describe_action(words) or describe_word(verb, VERBS) or f"{verb!r} is not a verb; TAB lists them"
+    if (hint := describe_action(words, VERBS)) or verb not in VERBS:
+        hint = hint or describe_word(verb, VERBS) or f"{verb!r} is not a verb; TAB lists them"
         raise VerbError(ExitCode.USAGE, here(hint))
     _refuse_elsewhere(verb)
     options = build_parser(verb, LineParser).parse_args(words[1:])

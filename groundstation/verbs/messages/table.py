@@ -49,14 +49,14 @@ VERBS: dict[str, Verb] = {
          ("--speak", {"action": argparse.BooleanOptionalAction, "help": "with --changes: say them, too"}),
          ("--bell", {"action": argparse.BooleanOptionalAction,
                      "help": "with --changes: ring for what must not be missed"})),
-        watches=True, many=True, check=status.check_status)}),
+        watches=True, many=True, check=status.check_status)}, mavproxy={"bat": "status", "gps": "status"}),
     "vehicles": Verb(Group.VEHICLE, (
         Example("mavhelm vehicles", "all vehicles that are heard"),
     ), {ONLY: VerbAction("print the vehicles that are heard", status.vehicles, (_listen(1.3),), watches=True)}),
     "links": Verb(Group.LINKS, (
         Example("mavhelm links", "what arrives on each link"),
     ), {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False,
-                               watches=True)}),
+                               watches=True)}, mavproxy={"link": "links"}),
     "messages": Verb(Group.DATA, (
         Example("mavhelm messages --for 5", "which messages arrive, and their rates"),
     ), {ONLY: VerbAction("print which messages arrive, and their rates", messages.messages,
@@ -76,12 +76,12 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("request one message and print it", command.request,
         (("name", {"metavar": "MESSAGE"}),
          ("params", {"nargs": "*", "type": finite, "metavar": "P", "help": "parameters 2 and up, e.g. an index"})),
-        watches=True, many=True, check=command.check_message)}),
+        watches=True, many=True, check=command.check_message)}, mavproxy={"version": "request AUTOPILOT_VERSION"}),
     "rate": Verb(Group.DATA, (
         Example("mavhelm rate ATTITUDE 10", "10 Hz on this link"),
     ), {ONLY: VerbAction("set how often a message comes on this link", command.rate,
         (("name", {"metavar": "MESSAGE"}), ("rate", {"type": rate_or_none, "metavar": "HZ", "help": "0: never"})),
-        watches=True, many=True, check=command.check_message)}),
+        watches=True, many=True, check=command.check_message)}, mavproxy={"messagerate": "rate MESSAGE HZ"}),
     "command": Verb(Group.DATA, (
         Example("mavhelm command DO_SET_HOME 1", "any MAV_CMD by its name or number"),
     ), {ONLY: VerbAction("send a MAV_CMD; done when the vehicle has accepted", command.command,
@@ -89,7 +89,9 @@ VERBS: dict[str, Verb] = {
          ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"}),
          ("--int", {"action": "store_true",
                     "help": "as COMMAND_INT; 5 and 6 in degrees for a command with a position, else whole numbers"})),
-        needs_session=True, shows_neutral=True, many=True, check=command.check_command)}),
+        needs_session=True, shows_neutral=True, many=True, check=command.check_command)},
+       mavproxy={"long": "command", "command_long": "command", "servo": "command DO_SET_SERVO N US",
+                 "relay": "command DO_SET_RELAY N 0|1", "arm check": "command RUN_PREARM_CHECKS"}),
     "send": Verb(Group.DATA, (
         Example("mavhelm send STATUSTEXT severity=INFO text=hello", "any message"),
     ), {ONLY: VerbAction("send a message; what is not given is 0, and what can move the vehicle needs --yes", send.run,
@@ -108,6 +110,6 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("measure round trips to the vehicle", ping.ping,
         (("--count", {"type": count, "default": 4, "metavar": "N", "help": "how many (4)"}),
          ("--interval", {"type": seconds, "default": 1.0, "metavar": "S", "help": "s between two (1)"})),
-        watches=True)}),
+        watches=True)}, mavproxy={"time": "ping", "timesync": "ping"}),
 }  # fmt: skip
 """Verb -> its row."""

@@ -64,16 +64,16 @@ VERBS: dict[str, Verb] = {
                         "help": "degrees; or `wp`, and the number of an item of the mission in place of LON"}),
          ("longitude", {"nargs": "?", "type": finite, "metavar": "LON", "help": "degrees"}),
          ("--by", {"nargs": 2, "type": finite, "metavar": ("NORTH", "EAST"), "help": "m from where it is"})),
-        needs_session=True, shows_neutral=True, check=go_to.check_place)}),
+        needs_session=True, shows_neutral=True, check=go_to.check_place)}, mavproxy={"guided": "goto LAT LON"}),
     "home": Verb(Group.DRIVE, (
         Example("mavhelm home", "RTL", Stage.MOVING),
     ), {ONLY: VerbAction("drive home by itself; done when the heartbeat reports RTL", go_to.home,
-                              needs_session=True, shows_neutral=True, many=True)}),
+                              needs_session=True, shows_neutral=True, many=True)}, mavproxy={"rtl": "home"}),
     "speed": Verb(Group.DRIVE, (
         Example("mavhelm speed 0.6", "m/s of modes that drive by themselves", Stage.MOVING),
     ), {ONLY: VerbAction("set the speed of modes that drive by themselves", go_to.speed,
         (("speed", {"type": metres_per_second, "metavar": "M/S"}),), needs_session=True, shows_neutral=True,
-        many=True)}),
+        many=True)}, mavproxy={"setspeed": "speed M/S"}),
     "mission": Verb(Group.PLANS, (
         Example("mavhelm mission put patrol.plan", "upload it; the old one stays until it is accepted"),
         Example("mavhelm mission check patrol.plan", "is it the vehicle's? code 7 if not"),
@@ -83,7 +83,9 @@ VERBS: dict[str, Verb] = {
         Example("mavhelm mission pause", "stop where it is", Stage.MOVING),
         Example("mavhelm mission jump 2", "go on with item 2, as show prints it", Stage.MOVING),
         Example("mavhelm mission clear", "remove the mission on the vehicle", Stage.IN_CONTROL),
-    ), _plan_actions("mission"), "show, get, put, check or clear the mission; start, pause or jump"),
+    ), _plan_actions("mission"), "show, get, put, check or clear the mission; start, pause or jump",
+       mavproxy={"wp": "mission", "wp list": "mission show", "wp load": "mission put FILE",
+                 "wp save": "mission get FILE", "wp clear": "mission clear", "wp set": "mission jump N"}),
     "fence": Verb(Group.PLANS, (
         Example("mavhelm fence put patrol.plan", "the fence of the same file; also for rally"),
         Example("mavhelm fence check patrol.plan", "as for a mission"),
@@ -92,13 +94,16 @@ VERBS: dict[str, Verb] = {
         Example("mavhelm fence on", "off: turn the fence off"),
         Example("mavhelm fence off", "disable it", Stage.IN_CONTROL),
         Example("mavhelm fence clear", "remove it", Stage.IN_CONTROL),
-    ), _plan_actions("fence"), "show, get, put, check or clear the fence; on or off"),
+    ), _plan_actions("fence"), "show, get, put, check or clear the fence; on or off",
+       mavproxy={"fence load": "fence put FILE", "fence list": "fence show", "fence save": "fence get FILE",
+                 "fence enable": "fence on", "fence disable": "fence off"}),
     "rally": Verb(Group.PLANS, (
         Example("mavhelm rally put patrol.plan", "upload them"),
         Example("mavhelm rally check patrol.plan", "as for a mission"),
         Example("mavhelm rally show", "print them"),
         Example("mavhelm rally get rally.plan", "download them"),
         Example("mavhelm rally clear", "remove the rally points on the vehicle", Stage.IN_CONTROL),
-    ), _plan_actions("rally"), "show, get, put, check or clear the rally points"),
+    ), _plan_actions("rally"), "show, get, put, check or clear the rally points",
+       mavproxy={"rally load": "rally put FILE", "rally list": "rally show", "rally save": "rally get FILE"}),
 }  # fmt: skip
 """Verb -> its row."""

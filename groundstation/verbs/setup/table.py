@@ -73,6 +73,6 @@ VERBS: dict[str, Verb] = {
                            offline=True),
         "use": VerbAction("sign with this key from now on", sign.use, (_WHICH_KEY,), offline=True),
         "forget": VerbAction("remove a key here; the vehicle still has it", sign.forget, (_WHICH_KEY,), offline=True),
-    }, "new, show, install, setup, list, use or forget: keys for MAVLink signing"),
+    }, "new, show, install, setup, list, use or forget: keys for MAVLink signing", mavproxy={"signing": "sign"}),
 }  # fmt: skip
 """Verb -> its row."""

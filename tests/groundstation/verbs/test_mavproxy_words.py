@@ -9,7 +9,7 @@ import pytest
 from groundstation.cli.main import main
 from groundstation.cli.verb_help import EVERY_VERB, LOCAL_VERBS, PROGRAMS
 from groundstation.verbs.action import ONLY
-from groundstation.verbs.manual.mavproxy_words import ACTIONS, WORDS
+from groundstation.verbs.mavproxy_words import WORDS
 from groundstation.verbs.table import VERBS
 
 SAID = [
@@ -34,9 +34,13 @@ def test_one_line_names_what_to_write(capsys: pytest.CaptureFixture[str], words:
 
 
 def test_every_verb_that_is_proposed_exists_and_none_is_hidden() -> None:
-    for hint in [*WORDS.values(), *ACTIONS.values()]:
+    of_rows = {words: answer for verb in EVERY_VERB.values() for words, answer in verb.mavproxy.items()}
+    assert sum(len(verb.mavproxy) for verb in EVERY_VERB.values()) == len(of_rows) > 40, "no words are in two rows"
+    for hint in [*WORDS.values(), *(f"`mavhelm {answer}`" for answer in of_rows.values())]:
         for verb, action in re.findall(r"`mavhelm ([a-z]+)(?: ([a-z]+))?", hint):
             assert verb in EVERY_VERB, hint
             assert not action or verb in PROGRAMS or {ONLY, action} & VERBS[verb].actions.keys(), hint
-    assert not set(WORDS) & (VERBS | LOCAL_VERBS).keys()
-    assert not any(verb in VERBS and action in VERBS[verb].actions for verb, action in ACTIONS)
+    words = {*WORDS, *(each for each in of_rows if " " not in each)}
+    assert not words & (VERBS | LOCAL_VERBS).keys()
+    pairs = [tuple(each.split()) for each in of_rows if " " in each]
+    assert not any(verb in VERBS and action in VERBS[verb].actions for verb, action in pairs)
