@@ -40,8 +40,6 @@ class AsyncRover(StateValues):
     ) -> None:
         self._process = ApiProcess(endpoints, vehicle, wait, stay_armed=stay_armed)
         self._connection: ApiConnection | None = None
-        self.waits: Callable[[], bool] = lambda: True
-        """Whether the program waits for the call that drives; Rover sets it."""
 
     @classmethod
     def simulated(cls, *, stay_armed: bool = False) -> Self:
@@ -69,7 +67,6 @@ class AsyncRover(StateValues):
     async def open(self) -> None:
         """Connect, and wait for the vehicle. Raises NoVehicle, RoverError."""
         self._connection = connection = ApiConnection(self._process)
-        connection.waits = self.waits
         try:
             await connection.open()
         except BaseException:

@@ -9,6 +9,7 @@ import signal
 import subprocess
 from collections import deque
 from collections.abc import AsyncGenerator, Callable, Sequence
+from contextvars import ContextVar
 from itertools import count
 from typing import Any
 from weakref import WeakSet
@@ -41,7 +42,8 @@ HANGS_AFTER = 5.0
 END_WITHIN = 3.0
 """s for it to send neutral, to disarm and to end, before it is killed."""
 TEXTS_KEPT = 100
-
+WAITS: ContextVar[Callable[[], bool]] = ContextVar("WAITS", default=lambda: True)
+"""Tells whether the thread that has made a call waits for it. A coroutine does, as long as its loop runs."""
 
 _OPEN: WeakSet[ApiConnection] = WeakSet()
 
@@ -93,8 +95,6 @@ class ApiConnection:
         """The newest one."""
         self.texts: deque[TextEvent] = deque(maxlen=TEXTS_KEPT)
         """The newest STATUSTEXT messages of the vehicle."""
-        self.waits: Callable[[], bool] = lambda: True
-        """Whether the program waits for the call that drives."""
 
     async def open(self) -> None:
         """Start the process, unless it runs already, and wait until it has found the vehicle. Raises RoverError."""
@@ -132,7 +132,7 @@ class ApiConnection:
         """Run a verb to its end; a call that is cancelled ends with neutral. Raises RoverError."""
         number, running = self._begin(words)
         try:
-            ended = await self._wait(running, drives=drives)
+            ended = await self._wait(number, running, drives=drives)
         except asyncio.CancelledError:
             self._send(Cancel(number))
             self._cancelled.add(running.ended)
@@ -194,14 +194,14 @@ class ApiConnection:
             raise
         return number, running
 
-    async def _wait(self, running: _Running, *, drives: bool) -> Ended:
+    async def _wait(self, number: int, running: _Running, *, drives: bool) -> Ended:
         """Wait for the end of a call; while it drives, say that the program waits. Raises Disconnected."""
         silent = 0
         while not running.ended.done():
             before = self._lines
             await asyncio.wait({running.ended}, timeout=WAITING_PERIOD)
-            if drives and self.waits() and not running.ended.done():
-                self._send(Waiting())
+            if drives and WAITS.get()() and not running.ended.done():
+                self._send(Waiting(number))
             silent = 0 if self._lines != before else silent + 1  # counted, because this program may have stood still
             if silent * WAITING_PERIOD > HANGS_AFTER:
                 raise Disconnected(f"mavhelm has not answered for {HANGS_AFTER:g} s")

@@ -36,7 +36,9 @@ class Cancel(msgspec.Struct, frozen=True, tag="cancel"):
 
 
 class Waiting(msgspec.Struct, frozen=True, tag="waiting"):
-    """The program runs, and waits for its call."""
+    """The program runs, and waits for a call: for this one, or for all that run."""
+
+    id: int | None = None
 
 
 class Ready(msgspec.Struct, frozen=True, tag="ready"):

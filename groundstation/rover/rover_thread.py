@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import threading
 import time
 from collections.abc import Callable, Coroutine
 from concurrent.futures import wait
+from contextvars import copy_context
 from typing import Any, TypeVar
 
 from groundstation.rover.api_process import ApiProcess
 from groundstation.rover.async_rover import AsyncRover
-from groundstation.rover.connection import END_WITHIN
+from groundstation.rover.connection import END_WITHIN, WAITS
 from groundstation.rover.protocol import WAITING_PERIOD
 
 CLOSES_WITHIN = 0.02
@@ -21,10 +21,10 @@ Result = TypeVar("Result")
 
 
 class _Waiting:
-    """When the thread that has called waited last. A Rover that is forgotten must not be held by its connection."""
+    """When the thread that has made a call waited for it last."""
 
     def __init__(self) -> None:
-        self._at = -math.inf
+        self._at = time.monotonic()
 
     def note(self) -> None:
         """Note that it waits."""
@@ -40,20 +40,19 @@ class RoverThread:
 
     def __init__(self, process: ApiProcess) -> None:
         self.rover = AsyncRover.of(process)
-        self._waiting = _Waiting()
-        self.rover.waits = self._waiting.lately
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=_run, args=(self._loop,), name="mavhelm-rover", daemon=True)
         self._thread.start()
 
     def call(self, start: Callable[[AsyncRover], Coroutine[Any, Any, Result]]) -> Result:
         """Run a coroutine, and wait for it here; an exception here, as of Ctrl-C, cancels it."""
-        self._waiting.note()
-        future = asyncio.run_coroutine_threadsafe(start(self.rover), self._loop)
+        waiting, context = _Waiting(), copy_context()
+        context.run(WAITS.set, waiting.lately)  # of this call: another thread that waits must not keep it driving
+        future = context.run(asyncio.run_coroutine_threadsafe, start(self.rover), self._loop)
         try:
             while not future.done():
                 wait((future,), WAITING_PERIOD)
-                self._waiting.note()
+                waiting.note()
             return future.result()
         except BaseException:
             if future.cancel():  # neutral is sent before the exception goes on

@@ -297,10 +297,12 @@ class RunningVerbs:
         message, contact = said.message, self._fleet.get(m.target_system(said.message))
         if contact is None:
             return False
-        if said.purpose is not Purpose.MOTION:
-            verb.demands.pop((type(message), contact.state.system), None)
-            return not contact.demand_stream.streaming  # else the station sends them
         other = next((each for each in self._verbs if each is not verb and each.demands), None)
+        if said.purpose is not Purpose.MOTION:
+            ends = verb.demands.pop((type(message), contact.state.system), None) is not None
+            if said.purpose is Purpose.NEUTRAL and other is not None and not ends:
+                return False  # a verb that waits for its turn does not brake the one that drives
+            return not contact.demand_stream.streaming  # else the station sends them
         screen = self.screen_that_drives() if verb.is_permitted is None else None
         if not verb.refused and (screen or other):
             self._refuse(verb, f"the {screen or (other.name if other else '')} drives", now)

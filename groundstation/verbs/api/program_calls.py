@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import asyncio
 import logging
-import math
 from functools import cache
 from typing import Any
 
@@ -51,8 +50,10 @@ class ProgramCalls:
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._driving: dict[int, asyncio.Task[None]] = {}
         self._changing = asyncio.Lock()
-        self._waited_at = -math.inf
-        self._stands_still = False
+        self._waited_at: dict[int, float] = {}
+        """Call that drives -> when the program has said last that it waits for it."""
+        self._stand_still: set[int] = set()
+        """Calls for which it has not."""
         self._armed_here = False
         self._ends = False
 
@@ -82,8 +83,10 @@ class ProgramCalls:
     def _handle(self, value: Any) -> None:
         """Handle what the companion has read, as plain values."""
         match value:
-            case {"type": "waiting"}:
-                self._waited_at = self._session.now
+            case {"type": "waiting", **rest}:
+                number = rest.get("id")
+                for each in self._waited_at if number is None else self._waited_at.keys() & {number}:
+                    self._waited_at[each] = self._session.now
             case {"type": "cancel", "id": int(number)}:
                 if number in self._tasks:
                     self._tasks[number].cancel()
@@ -110,9 +113,9 @@ class ProgramCalls:
         """End what drives when the program does not wait for it any more."""
         while True:
             await asyncio.sleep(LOOK_PERIOD)
-            if self._driving and self._session.now - self._waited_at > SILENCE:
-                self._stands_still = True
-                for task in self._driving.values():
+            for number, task in self._driving.items():
+                if self._session.now - self._waited_at[number] > SILENCE:
+                    self._stand_still.add(number)
                     task.cancel()
 
     async def _call(self, number: int, words: list[str], given: Any) -> None:
@@ -125,7 +128,8 @@ class ProgramCalls:
             if self._ends:  # the program gets the reason of that
                 return
             code = int(ExitCode.BROKEN)
-            text = f"the program stood still for {SILENCE:g} s: neutral" if self._stands_still else "cancelled"
+            text = f"the program stood still for {SILENCE:g} s: neutral" if number in self._stand_still else "cancelled"
+            self._stand_still.discard(number)
         except (VerbError, FileFormatError) as error:
             code, text = int(error.code if isinstance(error, VerbError) else ExitCode.USAGE), str(error)
         except Exception as error:  # of the verb: it must not end the connection
@@ -153,13 +157,13 @@ class ProgramCalls:
     async def _drive(self, number: int, action: VerbAction, options: argparse.Namespace, output: CallOutput) -> int:
         task = asyncio.current_task()
         assert task is not None
-        self._waited_at, self._stands_still = self._session.now, False
+        self._waited_at[number] = self._session.now
         self._session.core.standstill.forget()  # of the time before: neutral is shown again first
         self._driving[number] = task
         try:
             return await self._perform(action, options, output)
         finally:
-            del self._driving[number]
+            del self._driving[number], self._waited_at[number]
 
     async def _end_driving(self) -> None:
         driving = list(self._driving.values())

@@ -178,6 +178,15 @@ def test_of_two_verbs_the_first_drives() -> None:
     assert ashore.cockpit.demands()[-1][1] == 1000
 
 
+def test_neutral_of_a_verb_does_not_brake_the_one_that_drives() -> None:
+    ashore = Ashore()
+    second = ashore.add("mavhelm drive")
+    ashore.run(0.2, FULL)
+    assert ashore.passed(CENTRE, verb=second) == [0]
+    assert ashore.passed(CENTRE, verb=ashore.verb) == [1], "its own neutral ends the drive"
+    assert ashore.passed(CENTRE, verb=second) == [1], "nobody drives any more"
+
+
 def test_a_screen_that_comes_ends_the_demand() -> None:
     ashore = Ashore()
     ashore.run(0.2, FULL)

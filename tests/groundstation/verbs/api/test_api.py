@@ -134,6 +134,18 @@ def test_a_drive_without_a_program_that_waits_ends_with_neutral(vehicle: Foreign
         assert vehicle.of("MANUAL_CONTROL")[-1].z == 0
 
 
+def test_waiting_for_another_call_does_not_keep_it_driving(vehicle: ForeignVehicle) -> None:
+    vehicle.armed = True
+    with api(vehicle) as program:
+        number = program.start_driving(vehicle)
+        program.send(call(99, *DRIVE))
+        while not program.ended:
+            program.send({"type": "waiting", "id": 99})
+            program.read("state")
+        assert program.ended[0]["id"] == number
+        assert "stood still" in program.ended[0]["text"]
+
+
 def test_a_call_that_is_cancelled_ends_with_neutral(vehicle: ForeignVehicle) -> None:
     vehicle.armed = True
     with api(vehicle) as program:
