@@ -8,10 +8,10 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache
-from pathlib import Path
 from typing import IO
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
+"""A text: a program with Rover imports pathlib, which takes 4 ms, while its process starts."""
 
 PR_SET_PDEATHSIG = 1
 """prctl(2): the kernel sends a signal when the parent dies, even by kill -9."""
@@ -84,9 +84,9 @@ def _end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
 
 def child_environment() -> dict[str, str]:
     """Return our environment; in a checkout that is not installed, with its folder on the path, which -P removes."""
-    if not (ROOT / "pyproject.toml").exists():
+    if not os.path.exists(os.path.join(ROOT, "pyproject.toml")):
         return dict(os.environ)
-    return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))}
+    return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [ROOT, os.environ.get("PYTHONPATH")]))}
 
 
 def end_process(process: subprocess.Popen[bytes], timeout: float) -> int:

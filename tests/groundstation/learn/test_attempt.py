@@ -11,6 +11,7 @@ from groundstation.learn.attempt import Attempt
 from groundstation.learn.course import load_course
 from groundstation.learn.lesson import Lesson, Step
 from groundstation.snapshot import LogLine, OperatorView, ReplayStatus, Snapshot, VehicleView
+from groundstation.views.messages import MessageView
 
 NEUTRAL = OperatorView(gate_open=True)
 FORWARD = OperatorView(gate_open=True, held=("i",), throttle=0.6)
@@ -155,3 +156,31 @@ def test_a_rover_that_holds_again_behind_a_cut_gets_its_hint() -> None:
     course.go(1, FORWARD, mode="HOLD")
     hints.append(course.attempt.hint)
     assert hints == ["", "The rover is in mode HOLD now. Press `vehicle.manual`, then hold `drive.forward`."]
+
+
+def test_wrong_deeds_of_other_lessons_get_their_hints_and_cost_nothing() -> None:
+    messages, other_rover, parameter = (begin(number, step) for number, step in ((2, 3), (3, 3), (6, 1)))
+    messages.attempt.see_view(opened("HEARTBEAT"))
+    messages.go(1)
+    assert messages.attempt.hint.startswith("That is HEARTBEAT.")
+    messages.attempt.see_view(opened("ROVER_OPERATOR_PRESENCE"))
+    messages.go(1)
+    other_rover.go(3, FORWARD, speed=1.0)
+    assert other_rover.attempt.hint.startswith("That was rover 1. Let go")
+    other_rover.go(3, FORWARD, speed=1.0, system=2)
+    parameter.go(1, FORWARD, armed=False)
+    assert "but the rover is disarmed" in parameter.attempt.hint
+    parameter.go(3, FORWARD, speed=1.0, armed=True)
+    assert [each.attempt.step for each in (messages, other_rover, parameter)] == [3, 3, 1]
+    assert [each.attempt.hint for each in (messages, other_rover, parameter)] == ["", "", ""]
+
+
+def begin(number: int, task: int) -> Course:
+    """Return a lesson of the course at one of its tasks."""
+    course = Course()
+    course.attempt = Attempt(load_course()[number - 1].lesson, task - 1)
+    return course
+
+
+def opened(name: str) -> MessageView:
+    return MessageView(system=1, component=1, sent=False, name=name, id=0, rate=1, count=1, age=0, length=9, fields=())
