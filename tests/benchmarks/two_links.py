@@ -10,8 +10,9 @@ from __future__ import annotations
 import os
 import random
 import signal
+import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -29,7 +30,11 @@ from tests.benchmarks.watch import Watch
 from tests.groundstation.held_key import GAP
 
 STOPS, QUICK_STOPS = 8, 3
-"""Drives of a network, each ended by the stop key."""
+"""Drives of a network that count, each ended by the stop key."""
+AGAIN = 4
+"""Drives at most for each one that counts: a busy machine spoils some, and says nothing about the links."""
+STARTS = 3
+"""Times that the programs are started for a network in which too few drives have counted."""
 DRIVE = (1.0, 1.6)
 """s of a drive, at random."""
 CHANGES = (0.25, 0.45)
@@ -46,7 +51,7 @@ OBEYED, CPU_SHARE = 0.1, 0.15
 """s of age of the oldest command that is obeyed while one link is sound, and added CPU of the second link."""
 CPU_ROUNDS, QUICK_CPU_ROUNDS = 5, 1
 TRIES = 5
-"""Times that both speeds are tried before a drive."""
+"""Times that both speeds are tried before a drive, and that CPU is counted until the key drives all the time."""
 CALIBRATION = 0.6
 """s for which each speed is held before it counts as reached."""
 CPU_WINDOW = 8.0
@@ -96,8 +101,15 @@ class Outcome:
     stop_times: list[float] = field(default_factory=list)
     """s from the stop key to motors without power."""
     lost_stops: int = 0
+    valid: int = 0
+    """Drives that count."""
     froze: int = 0
     """Drives in which the screen did not take each key: a busy machine had held it up, whatever the links did."""
+
+    @property
+    def counted(self) -> int:
+        """Drives that say something about the links."""
+        return self.valid + self.stops
 
 
 class Driven:
@@ -145,6 +157,7 @@ class Driven:
         if LINK_LOST in self._rig.vehicle.text_since(said):
             outcome.stops += 1
         elif self._all_taken(began):
+            outcome.valid += 1
             self._judge(outcome, began)
             self._note_delays(outcome, began)
         else:
@@ -188,15 +201,20 @@ class Driven:
             self._rig.watch.pause(GAP)
 
     def measure_cpu(self) -> float:
-        """Return the CPU of both programs while a key is held, % of a core."""
-        self._hold(1.0)
+        """Return the CPU of both programs while a key is held and the motors have power, % of a core."""
         pids = [each for program in (self._rig.ground, self._rig.vehicle) for each in family(program.pid)]
-        before, began = cpu_seconds(pids), time.monotonic()
-        self._hold(CPU_WINDOW)
-        share = 100 * (cpu_seconds(pids) - before) / (time.monotonic() - began)
-        self._rig.ground.type(b" ")
-        self._rig.watch.pause(REST)
-        return share
+        for _ in range(TRIES):
+            self._hold(1.0)
+            before, began, seen = cpu_seconds(pids), time.monotonic(), len(self._rig.feed.changes)
+            moved = self._power > 0.0
+            self._hold(CPU_WINDOW)
+            share = 100 * (cpu_seconds(pids) - before) / (time.monotonic() - began)
+            moved = moved and all(any(each.throttles) for each in self._rig.feed.changes[seen:])
+            self._rig.ground.type(b" ")
+            self._rig.watch.pause(LET_GO)
+            if moved:
+                return share
+        raise BenchmarkError("a key was held, and the motors did not have power all the time: the machine is too busy")
 
     def _all_taken(self, began: int) -> bool:
         """Return whether the motors had what each key asks for when the next one came."""
@@ -260,15 +278,7 @@ def run(options: Options) -> Report:
     if reason := why_not():
         raise BenchmarkSkippedError(reason)
     chance = random.Random(5)
-    outcomes = {name: Outcome() for name in NETWORKS}
-    for name, network in NETWORKS.items():
-        options.say(f"two_links: {name}")
-        with _running(network) as (rig, faults):
-            driven = Driven(rig, faults, chance)
-            driven.calibrate()
-            faults.begin()
-            for _ in range(QUICK_STOPS if options.quick else STOPS):
-                driven.drive(outcomes[name])
+    outcomes = {name: _drive_through(name, options, chance) for name in NETWORKS}
     cpu: dict[int, list[float]] = {1: [], 2: []}
     for turn in range(QUICK_CPU_ROUNDS if options.quick else CPU_ROUNDS):
         for links, shares in cpu.items():
@@ -276,6 +286,25 @@ def run(options: Options) -> Report:
             with _running(Network(), links) as (rig, faults):
                 shares.append(Driven(rig, faults, chance).measure_cpu())
     return _report(outcomes, cpu)
+
+
+def _drive_through(name: str, options: Options, chance: random.Random) -> Outcome:
+    """Drive through a network until enough drives count, or too many have not."""
+    outcome, wanted = Outcome(), QUICK_STOPS if options.quick else STOPS
+    for _ in range(STARTS):
+        options.say(f"two_links: {name}")
+        try:
+            with _running(NETWORKS[name]) as (rig, faults):
+                driven = Driven(rig, faults, chance)
+                driven.calibrate()
+                faults.begin()
+                for _ in range(AGAIN * wanted):
+                    if outcome.counted >= wanted:
+                        return outcome
+                    driven.drive(outcome)
+        except BenchmarkError as error:
+            options.say(f"two_links: {name}: again: {error}")
+    return outcome
 
 
 @contextmanager
@@ -328,6 +357,7 @@ def _report(outcomes: dict[str, Outcome], cpu: dict[int, list[float]]) -> Report
         Goal("oldest command that is obeyed while one link is sound", 1000 * oldest, 1000 * OBEYED, "ms"),
         Goal("stops while a key is held", sum(each.stops for each in every), 0, "stops"),
         Goal("stop keys that were lost", sum(each.lost_stops for each in every), 0, "keys"),
+        Goal("networks in which no drive counted", sum(not each.counted for each in every), 0, "networks"),
         Goal("CPU that the second link adds", 100 * (two / one - 1.0), 100 * CPU_SHARE, "%"),
     ]  # fmt: skip
     return Report([table, costs], goals)
@@ -338,6 +368,7 @@ def _row(name: str, outcome: Outcome) -> Row:
     stops = sorted(1000 * each for each in outcome.stop_times)
     return {
         "network": name,
+        "drives": outcome.counted,
         "changes": len(ages),
         "oldest": ages[-1] if ages else None,
         "p99": quantile(ages, 0.99) if ages else None,
@@ -347,3 +378,18 @@ def _row(name: str, outcome: Outcome) -> Row:
         "keys not taken": outcome.froze,
         "stop": stops[-1] if stops else None,
     }
+
+
+def main(names: Sequence[str]) -> None:
+    """Drive through some of the networks, as for a first look, and print the figures of each."""
+    if reason := why_not():
+        raise SystemExit(reason)
+    if unknown := [each for each in names if each not in NETWORKS]:
+        raise SystemExit(f"no network {unknown[0]!r}; there are: {', '.join(map(repr, NETWORKS))}")
+    options = Options(quick=True, tlog=None, say=lambda text: print(text, file=sys.stderr, flush=True))
+    for name in names or NETWORKS:
+        print(_row(name, _drive_through(name, options, random.Random(5))), flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

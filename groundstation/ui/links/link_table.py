@@ -10,14 +10,14 @@ from textual.strip import Strip
 
 from groundstation.ui.display.wrap import wrap
 from groundstation.ui.links.vehicle_table import age_text
-from groundstation.ui.look.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
+from groundstation.ui.look.colours import AMBER, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 from groundstation.views.links import LinkRow, LinksView
 
 COLUMNS = (
-    Column("", 1),
-    Column("endpoint", 22, most=34),
+    Column("", 2),
+    Column("endpoint", 21, most=34),
     Column("peer", 16, 5, most=26),
     Column("in/s", 5, 1, right=True),
     Column("out/s", 5, 1, right=True),
@@ -98,7 +98,7 @@ def _row(link: LinkRow, widths: tuple[int, ...], *, marked: bool, counts: bool) 
         COLUMNS,
         widths,
         [
-            ("›", style(BLUE, bold=True)) if marked else (mark, style(colour, bold=True)),
+            (f"{'›' if marked else ' '}{mark}", style(colour, bold=True)),
             (link.name, style(RED if link.problem else TEXT)),
             (_peers(link), style(DIM)),
             (f"{link.frames_in:.0f}", style(TEXT if heard else DIM)),

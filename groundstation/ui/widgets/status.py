@@ -83,9 +83,11 @@ class StatusBar(Instrument[StatusBarValue]):
         """Draw the badges left, the rest right; on two lines the link readings go below."""
         snapshot = self.value.snapshot
         badges, health = self._badges(), [*_health(snapshot.vehicle), *_recording(snapshot.recording)]
-        fields = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
-        signing = _signing(snapshot.signing)
-        fields[1:1] = signing
+        links, signing = _links(snapshot), _signing(snapshot.signing)
+        numbered = len(_live_links(snapshot)) > 1
+        fields = [*links, *_command(snapshot), *_terminal(self.value.terminal)]
+        place = len(links) if numbered else 1
+        fields[place:place] = signing
         if height > 1:
             goto = goto_parts(self.value.keymap)
             if sum(length(each.parts) for each in fields) + length(goto) > width:
@@ -94,7 +96,7 @@ class StatusBar(Instrument[StatusBarValue]):
                 _spread(badges, _fitting(health, width - length(badges)), width),
                 _spread(_fitting(fields, width - length(goto)), goto, width),
             ]
-        readings = [*(fields if width >= WIDE else [fields[0], *signing]), *health]
+        readings = [*(fields if width >= WIDE else [min(links, key=lambda each: each.weight), *signing]), *health]
         return [_spread(badges, _fitting(readings, width - length(badges) - 1), width)]
 
     def _badges(self) -> list[Part]:
@@ -196,8 +198,8 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
     if not snapshot.links:
         return [_field(1, "link", "none", DIM)]
     alive = snapshot.vehicle is not None and snapshot.vehicle.alive
-    several = [(number, each) for number, each in enumerate(snapshot.links, 1) if each.age is not None]
-    if alive and len(several) > 1:
+    several = _live_links(snapshot)
+    if len(several) > 1:
         return [_numbered(number, each) for number, each in several]
     link = min(snapshot.links, key=_by_loss)
     loss, trip = finite_or_none(link.loss), finite_or_none(link.round_trip)
@@ -210,6 +212,12 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
         _field(2, "loss", "--" if loss is None else f"{100 * loss:.1f}%", TEXT if (loss or 0) < 0.05 else AMBER),
         _field(2, "rtt", "--" if trip is None else f"{1000 * trip:.0f} ms", TEXT if (trip or 0) < 0.2 else AMBER),
     ]
+
+
+def _live_links(snapshot: Snapshot) -> list[tuple[int, LinkView]]:
+    """Return the links on which the selected vehicle is heard, with their numbers; none while it is lost."""
+    alive = snapshot.vehicle is not None and snapshot.vehicle.alive
+    return [(number, each) for number, each in enumerate(snapshot.links, 1) if alive and each.age is not None]
 
 
 def _by_loss(link: LinkView) -> tuple[bool, bool, float]:

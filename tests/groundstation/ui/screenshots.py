@@ -26,6 +26,7 @@ with needing("test,pictures"):
     from tests.groundstation.ui.screenshots_connect import connect, files, links
     from tests.groundstation.ui.screenshots_drive import drive, mission, params
     from tests.groundstation.ui.screenshots_flight import flight
+    from tests.groundstation.ui.screenshots_obstacles import obstacles
 
 
 SIZES = ((80, 24), (140, 45))
@@ -38,6 +39,7 @@ GROUPS: dict[str, Callable[[tuple[int, int]], Awaitable[dict[str, frames.Picture
     "files": files,
     "links": links,
     "flight": flight,
+    "obstacles": obstacles,
     "replay": replay,
 }
 """Name -> what takes the pictures of a size, by name. They become files later: that holds up the app's loop."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from groundstation.snapshot import EmergencyProgress, RecordingView
+from groundstation.snapshot import EmergencyProgress, LinkView, RecordingView
 from groundstation.snapshot.signing import SigningState, SigningView
 from groundstation.ui.display.display_state import DisplayState, ScreenInfo
 from groundstation.ui.look.ascii import to_ascii
@@ -148,3 +148,13 @@ def test_the_word_behind_the_dot_is_whole_or_not_there() -> None:
 def test_no_dot_without_a_file_that_is_being_written(recording: RecordingView | None) -> None:
     line = StatusBar(StatusBarValue(snapshot(recording=recording), STANDARD)).draw(140, 1)[0].text
     assert "●" not in line
+
+
+def test_of_two_links_the_one_that_counts_stays_longest() -> None:
+    links = tuple(LinkView(name=f"udpin:{n}", loss=0.0, round_trip=0.01, age=0.1, counts=n == 1) for n in range(2))
+    picture = snapshot(links=links, signing=SigningView(SigningState.OFF))
+    both = texts(StatusBar(StatusBarValue(picture, STANDARD)).draw(80, 2))[1]
+    assert both.index("1 ▂") < both.index("★2 ▂") < both.index("unsigned"), both
+    one = texts(StatusBar(StatusBarValue(picture, STANDARD)).draw(80, 1))[0]
+    assert "★2 ▂" in one
+    assert "1 ▂" not in one
