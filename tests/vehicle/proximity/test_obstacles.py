@@ -229,6 +229,11 @@ def test_other_ground_stations_see_the_obstacle() -> None:
     assert around.distances[0] == pytest.approx(100 * (WALL - NOSE), abs=6)
     assert around.distances[36] == around.max_distance + 1
     assert (nearest.orientation, nearest.current_distance) == (0, around.distances[0])
+    before = [len(field.all(kind)) for kind in (m.ObstacleDistance, m.DistanceSensor)]
+    field.wait(3.0)
+    scans, distances = (len(field.all(kind)) for kind in (m.ObstacleDistance, m.DistanceSensor))
+    assert 2 <= scans - before[0] <= 4
+    assert 11 <= distances - before[1] <= 14
 
 
 @pytest.mark.parametrize("kind", [1, 2, 4])
