@@ -16,6 +16,8 @@ from textual.dom import DOMNode
 from textual.widget import Widget
 
 Key = tuple[object, ...]
+PLACES = "places"
+"""Key of Textual's cache of one pass over nodes, which change no class and no focus meanwhile, for their places."""
 
 
 class Match(NamedTuple):
@@ -35,12 +37,14 @@ class Matches:
         """Of the nodes for which Textual itself looks for rules, the outermost first."""
         self._styles: dict[int, RulesMap] = {}
         """Rules of `_found`, by their id -> the styles of a new node with them."""
+        self._places: dict[Key, int] = {}
+        """All of a node that a selector can ask for, and the place of the one around it -> its place."""
         self._sheets: dict[tuple[int, ...], int] = {}
         """Rules of a stylesheet, which `parsed_css` keeps alive, by their ids -> a number."""
 
     def apply(self, sheet: Stylesheet, node: DOMNode, *, animate: bool = False, cache: Any = None) -> None:
         """Give a node the rules of a stylesheet."""
-        key = self._number(sheet), *_path(node)
+        key = self._number(sheet), self._place(node, {} if cache is None else cache.setdefault(PLACES, {}))
         match = self._found.get(key)
         if match is None:
             self._noted.append(None)
@@ -66,7 +70,10 @@ class Matches:
         if animate and rules.get("transitions"):
             self._replace(node, rules, animate=True)
         elif animate or base._rules or node._is_mounted:
-            changed = [key for key in base._rules.keys() | rules.keys() if base._rules.get(key) is not rules.get(key)]
+            old = base._rules
+            changed = (
+                [] if old == rules else [key for key in old.keys() | rules.keys() if old.get(key) != rules.get(key)]
+            )
             for key in changed:
                 setattr(base, key, rules.get(key))
             if changed or not animate:
@@ -78,6 +85,21 @@ class Matches:
             self._replace(node, rules)
             self._styles[id(rules)] = base.get_rules()
 
+    def _place(self, node: Any, known: dict[int, int]) -> int:
+        """Return a number for all of a node and of those around it that a selector can ask for, but their order."""
+        if not isinstance(node, DOMNode):
+            return 0
+        place = known.get(id(node))
+        if place is None:
+            parts: Key = (type(node), node.id, node.classes, node._pseudo_classes_cache_key)
+            if isinstance(node, Widget):
+                parts += (node.can_focus,)
+            elif isinstance(node, App):
+                parts += (node.app_focus, node.theme, node.is_inline, node.native_ansi_color, node.no_color)
+            parts += (self._place(node._parent, known),)
+            place = known[id(node)] = self._places.setdefault(parts, len(self._places) + 1)
+        return place
+
     def _number(self, sheet: Stylesheet) -> int:
         rules = sheet.rules
         known = sheet.__dict__.get("_numbered")
@@ -85,20 +107,6 @@ class Matches:
             known = rules, self._sheets.setdefault(tuple(map(id, rules)), len(self._sheets))
             sheet.__dict__["_numbered"] = known
         return int(known[1])
-
-
-def _path(node: DOMNode) -> Key:
-    """Return all of a node and of those around it that a selector can ask for, but for their places among others."""
-    parts: list[object] = []
-    each: Any = node
-    while isinstance(each, DOMNode):
-        parts.append((type(each), each.id, each.classes, each._pseudo_classes_cache_key))
-        if isinstance(each, Widget):
-            parts.append(each.can_focus)
-        elif isinstance(each, App):
-            parts.append((each.app_focus, each.theme, each.is_inline, each.native_ansi_color, each.no_color))
-        each = each._parent
-    return tuple(parts)
 
 
 def share(patch: pytest.MonkeyPatch) -> None:
