@@ -34,11 +34,9 @@ def test_verbs_beside_it_drive_until_it_ends(number: signal.Signals, tmp_path: P
             wait_until(lambda: "link up" in printed.read_text())
             [station] = running_stations()
             assert printed.read_text().startswith(f"station {station} on {endpoint}; ")
-            armed = subprocess.run([*PROGRAM, "arm"], capture_output=True, text=True, timeout=PATIENCE, check=False)
-            assert (armed.returncode, core.armed) == (0, True), armed.stderr
-            wait_until(lambda: "state ARMED" in printed.read_text())
-            with subprocess.Popen([*PROGRAM, "drive", "--throttle", "50", "--for", "9"]) as driving:
+            with subprocess.Popen([*PROGRAM, "drive", "--arm", "--throttle", "50", "--for", "9"]) as driving:
                 wait_until(lambda: core.moves, "the wheels do not turn")
+                wait_until(lambda: "state ARMED" in printed.read_text())
                 plain.send_signal(number)
                 at = time.monotonic()
                 wait_until(lambda: not core.moves, "the wheels turn on")

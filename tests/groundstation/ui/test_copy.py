@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import pytest
-
 from groundstation.screens import SCREENS
 from groundstation.ui.app.navigation import load_screen
 from groundstation.ui.base.screen import ConsoleScreen
@@ -19,6 +17,7 @@ from tests.groundstation.ui.pilots import Console, console
 from tests.waits import until
 
 Keys = tuple[str, ...]
+SIZE = (80, 24)
 
 CASES: list[tuple[str, Sequence[View], Keys, str]] = [
     ("messages", (MESSAGES_PAGE, SYS_STATUS_VIEW), (), "SYS_STATUS"),
@@ -51,25 +50,22 @@ async def open_screen(screen: Console, name: str, views: Sequence[View]) -> Cons
     return top
 
 
-@pytest.mark.parametrize(
-    ("name", "views", "keys", "part"), CASES, ids=lambda each: each if isinstance(each, str) else ""
-)
-async def test_y_copies_what_is_under_the_cursor(
-    name: str, views: Sequence[View], keys: Keys, part: str, tmp_path: Path
-) -> None:
+async def test_y_copies_what_is_under_the_cursor(tmp_path: Path) -> None:
     (tmp_path / "a.tlog").write_bytes(log(HEARTBEATS, 60.0))
     async with console(folder=tmp_path) as screen:
-        await screen.show(snapshot())
-        top = await open_screen(screen, name, views)
-        if name == "messages":
-            await screen.press(*["down"] * 8)
-            for view in views:
-                top.show_view(view)
-        await screen.press(*keys, "y")
-        copied = screen.app.clipboard
-        assert copied
-        assert part in copied
-        assert "copied" in top.hint
+        for name, views, keys, part in CASES:
+            await screen.begin_anew(SIZE, snapshot())
+            screen.app.copy_to_clipboard("")
+            top = await open_screen(screen, name, views)
+            if name == "messages":
+                await screen.press(*["down"] * 8)
+                for view in views:
+                    top.show_view(view)
+            await screen.press(*keys, "y")
+            copied = screen.app.clipboard
+            assert copied, name
+            assert part in copied, name
+            assert "copied" in top.hint, name
 
 
 async def test_y_with_nothing_under_the_cursor_copies_nothing(tmp_path: Path) -> None:

@@ -110,7 +110,7 @@ def test_what_was_left_of_another_file_is_not_used(capsys: Capture, vehicle: For
 
 def test_a_killed_download_is_resumed(capsys: Capture, vehicle: ForeignVehicle, here: Path) -> None:
     assert vehicle.files is not None
-    big = random.Random(6).randbytes(3_000_000)
+    big = random.Random(6).randbytes(1_500_000)
     vehicle.files.files["/logs/1.bin"] = big
     command = [sys.executable, "-m", "groundstation", "ftp", "get", "/logs/1.bin", "-e", vehicle.endpoint, "-v", "1"]
     with subprocess.Popen(command, stderr=subprocess.PIPE) as process:
