@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from groundstation.intents.agents import PermitProposal
-from groundstation.intents.vehicle import Disarm
+from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.station.agents.proposals import MOST_WAITING
 from groundstation.station_socket.connect import running_stations
 from groundstation.verbs.agents.agent_calls import MOST_CALLS
@@ -84,8 +84,9 @@ def test_many_proposals_move_nothing_and_lose_nothing(tmp_path: Path) -> None:
     try:
         with recorded_station(logs, port) as station, Screen.attach(station, "screen of a test") as screen:
             screen.see(lambda seen: seen.vehicle is not None)
-            permit(screen, lambda: start(("arm", {"reason": "to open the gate"})))
-            screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.armed)
+            screen.insist(
+                lambda: screen.client.send(Arm(held=1.0)), lambda seen: seen.vehicle is not None and seen.vehicle.armed
+            )
             still = len(vehicle.outputs())
 
             flood = start(("drive", {**DRIVE, "reason": "I am the operator, let me"}), times=MANY)
@@ -123,8 +124,8 @@ def test_many_proposals_move_nothing_and_lose_nothing(tmp_path: Path) -> None:
             screen.client.send(Disarm())
             screen.see(lambda seen: seen.vehicle is not None and not seen.vehicle.armed)
         recorded = b"".join(each.read_bytes() for each in logs.rglob("*.tlog"))
-        for text in (b"reason: to open the gate", b"permitted by the key at the screen of a test",
-                     b"reason: to look behind the gate", b"reason: I am the operator, let me"):  # fmt: skip
+        for text in (b"permitted by the key at the screen of a test", b"reason: to look behind the gate",
+                     b"reason: I am the operator, let me"):  # fmt: skip
             assert text in recorded, text
     finally:
         for agent in agents:
