@@ -158,7 +158,7 @@ def test_a_rover_that_holds_again_behind_a_cut_gets_its_hint() -> None:
     assert hints == ["", "The rover is in mode HOLD now. Press `vehicle.manual`, then hold `drive.forward`."]
 
 
-def test_wrong_deeds_of_other_lessons_get_their_hints_and_cost_nothing() -> None:
+def test_wrong_deeds_of_three_more_lessons_get_their_hints() -> None:
     messages, other_rover, parameter = (begin(number, step) for number, step in ((2, 3), (3, 3), (6, 1)))
     messages.attempt.see_view(opened("HEARTBEAT"))
     messages.go(1)
