@@ -79,9 +79,15 @@ def turned(before: float, after: float) -> float:
 
 @pytest.mark.parametrize("kind", [DriveType.SKID, DriveType.ACKERMANN, DriveType.OMNI, DriveType.MECANUM])
 def test_every_key_and_chord_moves_our_rover_as_its_label_says(kind: DriveType) -> None:
+    """Chords with the same demand, which is all that the rover gets of them, are driven once."""
+    moved: dict[Axes, tuple[int, int]] = {}
     for keys in HELD:
-        speed, turn, _ = drive_ours(kind, keys)
-        assert (sign(speed), sign(turn)) == expected(keys, car=kind in WITH_A_STEERED_AXLE), keys
+        demand = axes_of(keys)
+        if demand not in moved:
+            speed, turn, _ = drive_ours(kind, keys)
+            moved[demand] = sign(speed), sign(turn)
+        assert moved[demand] == expected(keys, car=kind in WITH_A_STEERED_AXLE), keys
+    assert len(moved) >= len(KEYS)
 
 
 @pytest.mark.parametrize("kind", [DriveType.SKID, DriveType.ACKERMANN, DriveType.MECANUM])

@@ -37,7 +37,9 @@ SHOWN = 10.0
 PRESSED_AGAIN = 10.0
 """s for a key to show, before it is pressed again: a screen ignores what was typed while it was frozen."""
 PAUSE = 0.04
-"""s between two polls or two key repeats."""
+"""s between two repeats of a key."""
+LOOK = 0.1
+"""s between two looks at the screen, each of which starts a program and takes 5 ms of CPU."""
 
 
 class Tmux:
@@ -88,9 +90,11 @@ class Tmux:
         patience = Patience(within)
         while not condition(screen := self.screen()):
             assert not patience.ended, f"not within {within} s:\n{screen}"
-            if holding:
-                self.press(holding, held=True)
-            select.select([], [], [], PAUSE)
+            for _ in range(round(LOOK / PAUSE) if holding else 0):
+                self.press(holding or "", held=True)
+                select.select([], [], [], PAUSE)
+            if not holding:
+                select.select([], [], [], LOOK)
         return screen
 
     def press_until(self, key: str, condition: Callable[[str], bool]) -> str:

@@ -167,15 +167,18 @@ def freeze_the_connection(program: Program) -> None:
         os.kill(pid, signal.SIGSTOP)
 
 
-@pytest.mark.parametrize(
-    "way",
-    [kill, interrupt, terminate, freeze, reach_a_breakpoint, kill_the_connection],
-    ids=lambda way: str(way.__name__),
-)
-def test_a_call_that_drives_ends_with_its_program(road: Road, way: Callable[[Program], None]) -> None:
+def test_a_call_that_drives_ends_with_its_program(road: Road) -> None:
+    """Frozen programs and killed connections: the tests below."""
+    for way in (kill, interrupt, terminate, reach_a_breakpoint):
+        see_it_end(road, way)
+
+
+def see_it_end(road: Road, way: Callable[[Program], None]) -> None:
+    """Let a program of its own drive, end it in one way, and see the wheels stop."""
     program = road.start_driving()
     way(program)
     road.see_it_stop()
+    program.end()
 
 
 def test_a_program_that_goes_on_does_not_drive_on(road: Road) -> None:
@@ -367,12 +370,10 @@ def station(road: Road) -> Iterator[subprocess.Popen[bytes]]:
     process.wait()
 
 
-@pytest.mark.parametrize("way", [kill, interrupt, freeze], ids=lambda way: str(way.__name__))
 @pytest.mark.usefixtures("station")
-def test_through_a_station_a_call_ends_with_its_program(road: Road, way: Callable[[Program], None]) -> None:
-    program = road.start_driving()
-    way(program)
-    road.see_it_stop()
+def test_through_a_station_a_call_ends_with_its_program(road: Road) -> None:
+    for way in (kill, interrupt, freeze):
+        see_it_end(road, way)
 
 
 def test_a_station_that_is_killed_ends_the_call(road: Road, station: subprocess.Popen[bytes]) -> None:
@@ -397,14 +398,20 @@ with rover:
         wait_until(lambda: "the screen of a test drives" in program.said, lambda: program.errors)
 
 
-@pytest.mark.parametrize(
-    ("intent", "why"),
-    [(Stop(), "a person has stopped it at a screen"), (RequestControl(), "the screen of a test drives")],
-    ids=["stop", "take_the_keys"],
+ENDED_BY: tuple[tuple[AnyIntent, str], ...] = (
+    (Stop(), "a person has stopped it at a screen"),
+    (RequestControl(), "the screen of a test drives"),
 )
-def test_a_program_drives_while_a_screen_watches_and_ends_it(
-    road: Road, station: subprocess.Popen[bytes], intent: AnyIntent, why: str
-) -> None:
+"""What a screen does, and what the program is told."""
+
+
+def test_a_program_drives_while_a_screen_watches_and_ends_it(road: Road, station: subprocess.Popen[bytes]) -> None:
+    for intent, why in ENDED_BY:
+        see_a_screen_end_it(road, station, intent, why)
+
+
+def see_a_screen_end_it(road: Road, station: subprocess.Popen[bytes], intent: AnyIntent, why: str) -> None:
+    """Let a program drive beside a screen that watches, which then ends it."""
     with Screen.attach(station.pid, "screen of a test") as screen:
         screen.see(lambda seen: not seen.lease.driver and seen.vehicle is not None)
         screen.client.send(GiveUpKeys())
