@@ -7,6 +7,7 @@ from groundstation.recording.station_recording import StationRecording
 from groundstation.station.station import Station
 from groundstation.stream.orders import StreamOrders
 from groundstation.stream.receiver_link import ReceiverLink
+from groundstation.stream.sender_lock import choose_senders
 from groundstation.views.camera import CameraRequest
 
 
@@ -40,7 +41,8 @@ class CameraReceiver:
             return StreamOrders()
         requests = self._station.views.requests(CameraRequest)
         screens = tuple(sorted({each.port for each in requests if each.port}))
+        senders = choose_senders(stream.hosts)
         current = self._recording.folder.current if self._recording is not None else None
         if self._recording is None or current is None:
-            return StreamOrders(stream.port, screens, stream.stamped)
-        return StreamOrders(stream.port, screens, stream.stamped, str(current.path), self._recording.offset)
+            return StreamOrders(stream.port, screens, stream.stamped, senders=senders)
+        return StreamOrders(stream.port, screens, stream.stamped, str(current.path), self._recording.offset, senders)

@@ -18,6 +18,8 @@ class StreamOrders(msgspec.Struct, frozen=True):
     """Path of the telemetry log beside which pictures are recorded; "": do not record."""
     offset: int = 0
     """us to add to the monotonic clock for the times in that log."""
+    senders: tuple[str, ...] = ()
+    """IP addresses that may send it; (): the first one that does."""
 
 
 class StreamReport(msgspec.Struct, frozen=True):

@@ -19,6 +19,7 @@ import msgspec
 
 from groundstation.stream.orders import StreamOrders, StreamReport
 from groundstation.stream.rtp import AccessUnit, Depacketizer, is_video
+from groundstation.stream.sender_lock import SenderLock
 from groundstation.stream.video_file import encode_unit
 from groundstation.stream.video_folder import VideoFolder
 from link.runtime.local_socket import take_over
@@ -92,6 +93,7 @@ class StreamReceiver:
         self._orders = StreamOrders()
         self._recording = PictureRecording(limit)
         self._units = Depacketizer()
+        self._lock = SenderLock()
         self._socket: socket.socket | None = None
         self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._sender.setblocking(False)
@@ -114,7 +116,8 @@ class StreamReceiver:
         self._recording.close()
 
     def _report(self) -> None:
-        report = StreamReport(self._problem, self._recording.written, self._recording.failure)
+        problem = self._problem or self._lock.complaint(time.monotonic())
+        report = StreamReport(problem, self._recording.written, self._recording.failure)
         with contextlib.suppress(OSError):
             self._pipe.send(msgspec.json.encode(report))
 
@@ -134,6 +137,7 @@ class StreamReceiver:
 
     def _obey(self, orders: StreamOrders) -> None:
         before, self._orders = self._orders, orders
+        self._lock.allowed = orders.senders
         if orders.port != before.port:
             self._close()
             self._problem = ""
@@ -148,7 +152,8 @@ class StreamReceiver:
             self._problem = f"UDP port {self._orders.port}: {error.strerror}; which program has it: `ss -ulp`"
             self._retry_at = time.monotonic() + RETRY
             return
-        self._problem, self._units = "", Depacketizer()
+        self._problem, self._units, self._lock = "", Depacketizer(), SenderLock()
+        self._lock.allowed = self._orders.senders
         asyncio.get_running_loop().add_reader(self._socket, self._receive)
 
     def _close(self) -> None:
@@ -164,10 +169,10 @@ class StreamReceiver:
             if self._socket is None:
                 return
             try:
-                packet = self._socket.recv(PACKET_MAX)
+                packet, (host, *_) = self._socket.recvfrom(PACKET_MAX)
             except OSError:
                 return
-            if not is_video(packet):
+            if not is_video(packet) or not self._lock.passes(host, now):
                 continue
             for port in self._orders.screens:
                 with contextlib.suppress(OSError):  # its decoder starts, or has no room

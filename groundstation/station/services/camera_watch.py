@@ -15,7 +15,7 @@ from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.views.base import ViewRequest
 from groundstation.views.camera import CameraRequest, CameraView
-from link.core import Received
+from link.core import Peer, Received
 from link.services.timesync import TimesyncClient
 from link.services.video_stream import RTP_UDP, STAMPED
 
@@ -39,6 +39,8 @@ class _Stream(msgspec.Struct):
     tries: int = 0
     due: float = -math.inf
     started: bool = False
+    hosts: set[str] = msgspec.field(default_factory=set)
+    """IP addresses from which the vehicle has sent HEARTBEATs."""
 
 
 class WantedStream(NamedTuple):
@@ -47,6 +49,8 @@ class WantedStream(NamedTuple):
     port: int
     """UDP port of this machine; 0: nothing."""
     stamped: bool
+    hosts: frozenset[str] = frozenset()
+    """IP addresses of the vehicle that sends it; empty: it may come from any, as that of another computer on board."""
 
 
 NOTHING = WantedStream(0, stamped=False)
@@ -68,7 +72,7 @@ class CameraWatch:
         stream = None if selected is None else self._streams.get(selected.state.system)
         if stream is None or now >= self._wanted_until:
             return NOTHING
-        return WantedStream(stream.port, stream.stamped)
+        return WantedStream(stream.port, stream.stamped, frozenset(stream.hosts) if stream.stamped else frozenset())
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -78,9 +82,12 @@ class CameraWatch:
     def receive(self, contact: Contact, received: Received) -> None:
         """Take the announcement of a stream."""
         message = received.message
+        if isinstance(message, m.Heartbeat) and (known := self._streams.get(contact.state.system)) is not None:
+            known.hosts |= _host_of(received.peer)
         if not isinstance(message, m.VideoStreamInformation) or contact.state.system not in self._streams:
             return
         stream = self._streams[contact.state.system]
+        stream.hosts |= _host_of(received.peer)
         port = int(message.uri) if message.uri.isascii() and message.uri.isdigit() else 0
         if message.type == RTP_UDP and 0 < port < 65536:
             stream.port, stream.stamped, stream.problem = port, message.name == STAMPED, ""
@@ -128,3 +135,11 @@ class CameraWatch:
             selected.state.system, stream.port, stream.stamped, stream.problem or self.receiver_problem,
             self._timesync.offset if stream.stamped else None, self._timesync.offset_error,
         )  # fmt: skip
+
+
+def _host_of(peer: Peer) -> set[str]:
+    """Return the IP address of a peer; nothing for one on a serial line."""
+    match peer.address:
+        case (str(host), int(), *_):
+            return {host}
+    return set()
