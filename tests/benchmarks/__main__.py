@@ -21,6 +21,7 @@ with needing("test"):
         calls,
         cost,
         document,
+        drive_picture,
         fleet,
         fleet_load,
         fleet_outages,
@@ -83,6 +84,7 @@ BENCHMARKS: dict[str, tuple[Benchmark, str]] = {
     "rover": (rover_program.run, "a program with Rover: start to first motion, memory and CPU while it drives"),
     "recording": (recording.run, "what recording costs the station at 1000 messages/s"),
     "calls": (calls.run, "functions that a key, a view and a snapshot call, counted in virtual time"),
+    "drive_picture": (drive_picture.run, "driving by a picture: age of what is seen, key to motor, CPU"),
     "video_frames": (video_frames.run, "a frame of video: CPU and bytes for each way to draw it"),
     "replay": (replay.run, "a log of 1 GB: first snapshot, index, jumps, memory"),
 }

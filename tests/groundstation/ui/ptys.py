@@ -31,11 +31,13 @@ PRESS_W, REPEAT_W, RELEASE_W = "\x1b[119;1:1;119u", "\x1b[119;1:2;119u", "\x1b[1
 Value = TypeVar("Value")
 
 
-def attach_pty(command: list[str], folder: Path) -> tuple[subprocess.Popen[bytes], int]:
+def attach_pty(
+    command: list[str], folder: Path, size: tuple[int, int] = (100, 30), **environment: str
+) -> tuple[subprocess.Popen[bytes], int]:
     """Start a program on a pseudo-terminal of its own session; return it and the person's end."""
     master, slave = pty.openpty()
-    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
-    environment = {**os.environ, "TERM": "xterm-256color"}
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+    environment = {**os.environ, "TERM": "xterm-256color", **environment}
     process = subprocess.Popen(
         command, cwd=folder, env=environment, start_new_session=True, stdin=slave, stdout=slave, stderr=slave
     )
