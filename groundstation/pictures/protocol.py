@@ -62,8 +62,10 @@ class TerminalAnswers:
             self.cell = (int(found[2]), int(found[1]))
 
 
-def choose_protocol(answers: TerminalAnswers, environment: Mapping[str, str], *, ascii_only: bool) -> Protocol:
-    """Return the best way. `ascii_only`: the terminal or the locale has no half blocks.
+def choose_protocol(
+    answers: TerminalAnswers, environment: Mapping[str, str], *, ascii_only: bool, sixel: bool = True
+) -> Protocol:
+    """Return the best way. `ascii_only`: the terminal or the locale has no half blocks. `sixel`: it may be used.
 
     tmux passes no kitty graphics on, even where the terminal around it has them; sixel it draws itself, if it says so.
     """
@@ -72,7 +74,7 @@ def choose_protocol(answers: TerminalAnswers, environment: Mapping[str, str], *,
         return Protocol.ASCII
     if answers.kitty and not environment.get("TMUX"):
         return Protocol.KITTY
-    if answers.sixel:
+    if answers.sixel and sixel:
         return Protocol.SIXEL
     if environment.get("COLORTERM") in ("truecolor", "24bit") or any(each in term for each in TRUE_COLOUR_TERMS):
         return Protocol.BLOCKS

@@ -48,6 +48,7 @@ from groundstation.ui.terminal.console_driver import PING, ConsoleDriver, Termin
 from groundstation.ui.terminal.frozen_terminal import find_proxy, style_refusal
 from groundstation.ui.terminal.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.terminal.mouse import MouseReport
+from groundstation.ui.terminal.picture_output import PictureOutput
 from groundstation.ui.terminal.tmux import TmuxSession
 from groundstation.ui.terminal.tty_output import TerminalFile
 from groundstation.views.base import View
@@ -99,9 +100,12 @@ class ConsoleApp(App[int]):
         self._proxy = find_proxy()
         self.gate = KeyGate(client, keymap, clock, find_proxy=self._find_proxy)
         self._first = first
+        pictures = PictureOutput(None if terminal is None else self._write_to_terminal, self.gate.ping)
         driver: type[Driver] | None = None
         if terminal is not None:
-            driver = ConsoleDriver.bind(self.gate, terminal, lambda: bool(self.gate.ping.waited(self._clock())))
+            driver = ConsoleDriver.bind(
+                self.gate, terminal, lambda: bool(self.gate.ping.waited(self._clock())), pictures.answers.handle
+            )
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
         self._snapshot, self._outage = Snapshot(), client.outage
@@ -127,6 +131,7 @@ class ConsoleApp(App[int]):
             numbers=RequestNumbers(first_request),
             lesson=lesson,
             came_from=lambda: self._navigator.before,
+            pictures=pictures,
         )
         self._kept = context.kept
         self.drive = DriveScreen(context)
@@ -378,6 +383,10 @@ class ConsoleApp(App[int]):
         driver, lent = self._driver, self._log_child.running  # a ping would go unanswered
         if isinstance(driver, ConsoleDriver) and driver.reads and not lent and self.gate.ping.next_due(self._clock()):
             driver.write(PING)
+
+    def _write_to_terminal(self, text: str) -> None:
+        if isinstance(self._driver, ConsoleDriver):
+            self._driver.write(text)
 
     def _gate_closure(self, now: float) -> GateClosure | None:
         """Return why keys must not drive now, as far as the UI knows; None when they may."""

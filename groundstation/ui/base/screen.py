@@ -30,6 +30,7 @@ from groundstation.ui.learn.pane import LessonPane
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.terminal.mouse import MouseReport
 from groundstation.ui.terminal.painting import LineCompositor, painted_at_once
+from groundstation.ui.terminal.picture_output import PictureOutput
 from groundstation.ui.widgets.footer import KeyFooter
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.ui.widgets.line_field import LineField
@@ -72,6 +73,8 @@ class ScreenContext(msgspec.Struct, frozen=True):
     """The lesson whose pane is docked beside every screen; None without one."""
     came_from: Callable[[], ScreenRow] = lambda: SCREENS[0]
     """Returns the screen that was shown before this one."""
+    pictures: PictureOutput = msgspec.field(default_factory=PictureOutput)
+    """How the terminal shows pictures."""
 
     def keep(self, kind: type[Kept], *args: Any) -> Kept:
         """Return the object of this class that lives as long as the app: a screen itself ends when it is closed.

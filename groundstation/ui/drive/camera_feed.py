@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import math
-import os
 import socket
 import time
 from collections.abc import Callable
@@ -13,9 +12,10 @@ from pathlib import Path
 import msgspec
 
 from groundstation.intents.driving import CLOCK_ERROR, OLDEST_PICTURE
-from groundstation.pictures.budget import LOCAL_BYTES, REMOTE_BYTES
 from groundstation.pictures.freshness import Freshness, PictureState
 from groundstation.pictures.picture import Picture
+from groundstation.pictures.protocol import Protocol
+from groundstation.ui.terminal.picture_output import PictureOutput
 from groundstation.video.decoder import find_program
 from groundstation.video.feed import Feed
 from groundstation.video.ffmpeg_command import Shape
@@ -25,10 +25,6 @@ from groundstation.views.camera import CameraRequest, CameraView
 
 RATE = 30.0
 """Pictures a second at most that are decoded: each tells how old the picture is. Fewer are drawn."""
-DRAW_PERIOD = 0.1
-"""s between two pictures that are drawn, at least."""
-CELL_BYTES = 25
-"""Bytes of a cell of a picture, all of whose cells have changed."""
 WRAP = 2**32 / 1000
 """s after which a stamp begins again at 0."""
 RECORDED_RATE = 1000.0
@@ -43,7 +39,12 @@ class CameraValue(msgspec.Struct, frozen=True):
     picture: Picture | None = None
     text: str = "waiting for the station"
     grey: bool = True
-    ascii: bool = False
+    protocol: Protocol = Protocol.BLOCKS
+    """How it is drawn."""
+    level: int = 0
+    """How coarse; 0 is fine."""
+    number: int = 0
+    """Pictures that were shown so far."""
 
 
 class _Wanted(msgspec.Struct, frozen=True):
@@ -59,7 +60,9 @@ class _Wanted(msgspec.Struct, frozen=True):
 class CameraFeed:
     """One stream or recording at a time. Times are those of the monotonic clock that station and screen share."""
 
-    def __init__(self, on_picture: Callable[[], None]) -> None:
+    def __init__(self, on_picture: Callable[[], None], output: PictureOutput | None = None) -> None:
+        """`output`: the terminal; None: one of which nothing is known."""
+        self.output = PictureOutput() if output is None else output
         self._on_picture = on_picture
         self._view: CameraView | None = None
         self._feed: Feed | None = None
@@ -68,9 +71,11 @@ class CameraFeed:
         self._wanted: _Wanted | None = None
         self._port = 0
         self._picture: Picture | None = None
+        self._shown: Picture | None = None
+        """The newest one that was to be drawn."""
+        self._number = 0
+        self._taken_at = 0.0
         self._problem = ""
-        self._draw_at = 0.0
-        self._limit = REMOTE_BYTES if os.environ.get("SSH_CONNECTION") else LOCAL_BYTES
 
     def update(self, view: CameraView | None, size: tuple[int, int]) -> None:
         """Show the stream of a view at this size in pixels; both are even. Without a view nothing runs."""
@@ -82,6 +87,7 @@ class CameraFeed:
             self.stop()
             self._wanted = wanted
             if wanted is not None:
+                self.output.ask()
                 self._problem = ""
                 self._task = asyncio.get_running_loop().create_task(self._run(wanted))
         if view is not None and self._recorded is not None:
@@ -92,17 +98,20 @@ class CameraFeed:
         """Return what the station is asked for."""
         return CameraRequest(self._port)
 
-    def is_draw_due(self, cells: int) -> bool:
-        """Return whether a picture of so many cells may be drawn now: bytes a second to the terminal are bounded."""
-        now = time.monotonic()
-        if now < self._draw_at:
-            return False
-        self._draw_at = now + max(DRAW_PERIOD, cells * CELL_BYTES / self._limit)
-        return True
+    def report(self) -> None:
+        """Tell again that there is a picture."""
+        self._on_picture()
+
+    def choose_newest(self) -> None:
+        """Show the newest picture from now on: the terminal may have it."""
+        if self._shown is not self._picture:
+            self._shown = self._picture
+            self._number += 1
+            self._taken_at = self._find_taken()
 
     def stop(self) -> None:
         """End the decoder."""
-        self._wanted = self._feed = self._recorded = self._picture = None
+        self._wanted = self._feed = self._recorded = self._picture = self._shown = None
         if self._task is not None:
             self._task.cancel()
             self._task = None
@@ -130,8 +139,12 @@ class CameraFeed:
 
     @property
     def taken_at(self) -> float:
-        """When the newest picture was taken, as far as is known: of a stream without stamps, when it came; 0: none."""
-        if self._feed is None or self._picture is None:
+        """When the picture that is shown was taken, as far as is known: without stamps, when it came; 0: none."""
+        return 0.0 if self._feed is None or self._shown is None else self._taken_at
+
+    def _find_taken(self) -> float:
+        """Return when the newest picture was taken."""
+        if self._feed is None:
             return 0.0
         if self._feed.stamp is None or self._view is None or self._view.offset is None:
             return self._feed.new_at
@@ -142,11 +155,11 @@ class CameraFeed:
         return now - age if age >= -CLOCK_ERROR else 0.0
 
     def state(self) -> PictureState:
-        """Return what the newest picture is worth."""
-        if self._recorded is not None and self._picture is not None and self._recorded.age < math.inf:
+        """Return what the picture that is shown is worth."""
+        if self._recorded is not None and self._shown is not None and self._recorded.age < math.inf:
             age = self._recorded.age
             return PictureState(Freshness.FRESH if age <= OLDEST_PICTURE else Freshness.LATE, age)
-        if self._feed is None or self._picture is None:
+        if self._feed is None or self._shown is None:
             return PictureState(Freshness.NONE)
         came, age = self._feed.state(), max(0.0, time.monotonic() - self.taken_at)
         if age <= OLDEST_PICTURE and came.fresh:
@@ -155,13 +168,16 @@ class CameraFeed:
 
     def value(self, *, ascii: bool, command_age: float | None) -> CameraValue:  # noqa: A002
         """Return what the pane shows now."""
+        protocol, level = self.output.protocol(ascii_only=ascii), self.output.level
         state = self.state()
-        if state.freshness is Freshness.NONE or self._picture is None:
+        if state.freshness is Freshness.NONE or self._shown is None:
             word = "NO PICTURE" if self._recorded is not None else "NO PICTURE YET"
-            return CameraValue(None, f"{word}: {self._why()}", ascii=ascii)
+            return CameraValue(None, f"{word}: {self._why()}", protocol=protocol)
         word = {Freshness.LATE: "OLD: ", Freshness.FROZEN: "FROZEN: "}.get(state.freshness, "")
         command = "" if command_age is None else f", command {_seconds(command_age)}"
-        return CameraValue(self._picture, f"{word}picture {self._age(state.age)}{command}", not state.fresh, ascii)
+        coarse = f", {level} coarser" if level else ""
+        text = f"{word}picture {self._age(state.age)}{command}{coarse}"
+        return CameraValue(self._shown, text, not state.fresh, protocol, level, self._number)
 
     def _age(self, age: float) -> str:
         if self._recorded is not None:

@@ -71,14 +71,15 @@ class PaneFrame(Vertical, can_focus=False):
         return self._index
 
     @property
-    def camera_pixels(self) -> tuple[int, int] | None:
-        """Size of the camera's picture; None while another pane is shown."""
+    def camera(self) -> CameraPicture | None:
+        """The picture of the camera; None while another pane is shown."""
         shown = self._built.get(PANES[CAMERA].id)
-        return shown.pixels if self._index == CAMERA and isinstance(shown, CameraPicture) else None
+        return shown if self._index == CAMERA and isinstance(shown, CameraPicture) else None
 
-    def redraw(self) -> None:
-        """Draw what has changed at once."""
-        self._draw()
+    @property
+    def given(self) -> PaneInput:
+        """What it draws from."""
+        return self._given
 
     def turn_on(self) -> None:
         """Show the pane after this one."""

@@ -113,7 +113,8 @@ def speed_samples(given: PaneInput) -> ChartValue:
     return ChartValue(samples, SPAN * 0.5**given.zoom)
 
 
-def _camera(given: PaneInput) -> CameraValue:
+def camera_value(given: PaneInput) -> CameraValue:
+    """Return the picture of the camera, and its age."""
     vehicle = given.now.snapshot.vehicle
     age = None if vehicle is None else finite_or_none(vehicle.command_age)
     return CameraValue() if given.camera is None else given.camera.value(ascii=given.now.ascii, command_age=age)
@@ -135,7 +136,7 @@ PANES: tuple[Pane, ...] = (
     _pane("log", LogPanel, _log),
     _pane("links", LinksPanel, lambda given: given.now.snapshot.links),
     _pane("horizon", Horizon, lambda given: HorizonValue.from_vehicle(given.now.snapshot.vehicle), period=FAST),
-    _pane("camera", CameraPicture, _camera, CameraRequest(), period=FAST),
+    _pane("camera", CameraPicture, camera_value, CameraRequest(), period=FAST),
 )
 """In the order in which the key shows them; the first one is shown at the start."""
 

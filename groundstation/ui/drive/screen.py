@@ -17,8 +17,9 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState
-from groundstation.ui.drive.camera_feed import DRAW_PERIOD, CameraFeed
+from groundstation.ui.drive.camera_feed import CameraFeed, CameraValue
 from groundstation.ui.drive.instrument_table import INSTRUMENTS
+from groundstation.ui.drive.instruments.camera import CameraPicture
 from groundstation.ui.drive.instruments.links import LinksPanel, vehicle_links
 from groundstation.ui.drive.instruments.stops import StopsPanel
 from groundstation.ui.drive.instruments.strip import DrivingStrip, StripValue
@@ -32,7 +33,8 @@ from groundstation.ui.drive.layout import (
     layout_classes,
 )
 from groundstation.ui.drive.pane import CLOSER, WIDER, PaneFrame
-from groundstation.ui.drive.panes import CAMERA, SECOND, SPEED_CHART, PaneInput, speed_samples
+from groundstation.ui.drive.panes import CAMERA, SECOND, SPEED_CHART, PaneInput, camera_value, speed_samples
+from groundstation.ui.drive.picture_drawing import PictureDrawing
 from groundstation.ui.map.plan.copies import PlanCopies
 from groundstation.ui.terminal.key_parser import KeyRepeat
 from groundstation.ui.widgets.chart import ChartValue
@@ -61,7 +63,8 @@ class DriveScreen(ConsoleScreen):
         self._too_small_text = ""
         self._strip = DrivingStrip(StripValue.from_state(self._state), id="strip")
         self._plans = PlanCopies()
-        self._camera = CameraFeed(self._show_picture)
+        self._camera = CameraFeed(self._show_picture, context.pictures)
+        self._drawing = PictureDrawing(self, self._camera, self._picture_value)
         self._pane_before: int | None = None
         """The pane that the full picture replaces; None while it is not shown."""
         self._panes = (
@@ -70,8 +73,6 @@ class DriveScreen(ConsoleScreen):
         )
         self._chart = SPEED_CHART(ChartValue(), id="speeds")
         self._views: dict[type[View], View] = {}
-        self._draws_later = False
-        """A picture waits until the terminal may have it."""
         self._reported = False
         """The station was told that the driver drives by the picture."""
         # Before the first style update, which would have to be made again.
@@ -225,34 +226,28 @@ class DriveScreen(ConsoleScreen):
             self._reported = drives
             self.context.send(DriveByPicture(drives, self._camera.taken_at))
 
+    def _picture_value(self) -> CameraValue:
+        return camera_value(self._panes[0].given)
+
+    @property
+    def _pictures(self) -> list[CameraPicture]:
+        return [] if self._small else [each for pane in self._shown_panes if (each := pane.camera) is not None]
+
     def _show_picture(self) -> None:
         """Show a new picture."""
-        if self._pane_before is not None:
+        if self._drawing.show(self._pictures) and self._pane_before is not None:
             self._report_picture()
-        shown = [(pane, size) for pane in self._shown_panes if (size := pane.camera_pixels) is not None]
-        if not shown or self._draws_later:
-            return
-        if self._camera.is_draw_due(sum(width * height // 2 for _, (width, height) in shown)):
-            for pane, _ in shown:
-                pane.redraw()
-        else:  # the last one before the stream stands still is drawn, too
-            self._draws_later = True
-            self.set_timer(DRAW_PERIOD, self._draw_late)
-
-    def _draw_late(self) -> None:
-        self._draws_later = False
-        self._show_picture()
 
     def _follow_camera(self) -> None:
         """Let the decoder run while a pane shows the camera."""
-        sizes = [] if self._small else [size for pane in self._shown_panes if (size := pane.camera_pixels) is not None]
+        shown = self._pictures
         view, vehicle = self._views.get(CameraView), self.snapshot.vehicle
         known = isinstance(view, CameraView) and vehicle is not None and view.system == vehicle.system
-        self._camera.update(view if known and sizes else None, sizes[0] if sizes else (0, 0))  # type: ignore[arg-type]
+        self._drawing.follow(view if known else None, shown)  # type: ignore[arg-type]
 
     def leave(self) -> None:
         """End the decoder: another screen is on top."""
-        self._camera.stop()
+        self._drawing.stop()
 
     def _show_next_pane(self) -> None:
         if self._pane_before is not None:
@@ -266,6 +261,7 @@ class DriveScreen(ConsoleScreen):
         for pane in self._shown_panes:
             pane.show(self._state, self._views)
         self._panes[0].set_hint(self._state.key("view.pane"))
+        self._drawing.draw_pixels(self._pictures)
 
     # ---- instruments ----
 

@@ -23,6 +23,7 @@ from groundstation.ui.drive.instruments.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.drive.instruments.sticks import StickBars, build_bars
 from groundstation.ui.drive.instruments.track import TrackMap, TrackValue
 from groundstation.ui.drive.panes import SPEED_CHART, PaneInput, speed_samples
+from groundstation.ui.drive.picture_drawing import PictureDrawing
 from groundstation.ui.files.export import ChosenLog, FileExport
 from groundstation.ui.files.exports import Exports
 from groundstation.ui.files.local_folder import LocalFolder
@@ -74,7 +75,8 @@ class ReplayScreen(ConsoleScreen):
         self._export = FileExport(self, self._chosen_log, context.folder, exports, context.numbers.take)
         self._track = TrackMap(TrackValue(), id="track")
         self._picture = CameraPicture(CameraValue(), id="picture")
-        self._camera = CameraFeed(self._show_picture)
+        self._camera = CameraFeed(self._show_picture, context.pictures)
+        self._drawing = PictureDrawing(self, self._camera, self._picture_value)
         self._bars = StickBars((), id="bars")
         self._caps = Keycaps(KeycapsValue(context.keymap), id="caps")
         self._chart = SPEED_CHART(ChartValue(), id="chart")
@@ -135,13 +137,19 @@ class ReplayScreen(ConsoleScreen):
         self.set_class(not self._shows_picture, "-picture")
         self.show_body(self._state)
 
+    def _picture_value(self) -> CameraValue:
+        return self._camera.value(ascii=self._state.ascii, command_age=None)
+
+    @property
+    def _pictures(self) -> list[CameraPicture]:
+        return [self._picture] if self._shows_picture else []
+
     def _show_picture(self) -> None:
-        if self._shows_picture:
-            self._picture.show(self._camera.value(ascii=self._state.ascii, command_age=None))
+        self._drawing.show(self._pictures)
 
     def leave(self) -> None:
         """End the decoder: another screen is on top."""
-        self._camera.stop()
+        self._drawing.stop()
 
     def show_body(self, now: DisplayState) -> None:
         """Show the log and its moment, or the logs that are here."""
@@ -150,8 +158,10 @@ class ReplayScreen(ConsoleScreen):
         track = given.view(TrackView)
         points = track.points if track is not None else ()
         self._track.show(TrackValue.from_vehicle(now.snapshot.vehicle, points, ascii=now.ascii))
-        self._camera.update(given.view(CameraView) if self._shows_picture else None, self._picture.pixels)
-        self._show_picture()
+        self._drawing.follow(given.view(CameraView), self._pictures)
+        for picture in self._pictures:
+            picture.show(self._picture_value())
+        self._drawing.draw_pixels(self._pictures)
         self._bars.show(build_bars(now.snapshot))
         self._caps.show(KeycapsValue.from_state(now))
         if given.view(SpeedView) is not None:

@@ -58,6 +58,8 @@ class ConsoleDriver(LinuxDriver):
     terminal: TerminalFile
     awaits_answer: Callable[[], bool]
     """Return whether the terminal, which answers pings, has not answered the last one. Called from any thread."""
+    take_answer: Callable[[str], None]
+    """Takes each answer of the terminal that is no key, in the input thread."""
 
     def __init__(self, app: App[Any], **options: Any) -> None:
         super().__init__(app, **options)
@@ -70,10 +72,19 @@ class ConsoleDriver(LinuxDriver):
 
     @classmethod
     def bind(
-        cls, sink: KeySink, terminal: TerminalFile, awaits_answer: Callable[[], bool] = lambda: False
+        cls,
+        sink: KeySink,
+        terminal: TerminalFile,
+        awaits_answer: Callable[[], bool] = lambda: False,
+        take_answer: Callable[[str], None] = lambda _: None,
     ) -> type[ConsoleDriver]:
         """Return a driver class for one app: Textual creates the driver itself and passes no arguments of ours."""
-        bound = {"sink": sink, "terminal": terminal, "awaits_answer": staticmethod(awaits_answer)}
+        bound = {
+            "sink": sink,
+            "terminal": terminal,
+            "awaits_answer": staticmethod(awaits_answer),
+            "take_answer": staticmethod(take_answer),
+        }
         return type("BoundConsoleDriver", (cls,), bound)
 
     def start_application_mode(self) -> None:
@@ -162,7 +173,7 @@ class ConsoleDriver(LinuxDriver):
 
     def run_input_thread(self) -> None:
         """Read until the app or the terminal ends. The stock loop does not notice the end of the terminal."""
-        parser = KeyEventParser(self.sink, self._debug)
+        parser = KeyEventParser(self.sink, self._debug, on_answer=self.take_answer)
         decode = getincrementaldecoder("utf-8")(errors="replace").decode
         with selectors.DefaultSelector() as selector:
             for descriptor in (self.fileno, self._end_signal):

@@ -51,3 +51,17 @@ def test_answers_after_a_silence_do_not_claim_a_long_round_trip() -> None:
     ping.next_due(2.25)
     ping.handle_answer(2.26)
     assert ping.round_trip == pytest.approx(0.01)
+
+
+def test_the_answer_behind_a_picture_tells_its_time() -> None:
+    ping = TerminalPing()
+    ping.next_due(0.0)
+    ping.send_behind_frame(0.1)
+    ping.next_due(0.25)
+    ping.handle_answer(0.26)
+    assert ping.pop_frame_time() is None
+    ping.handle_answer(0.3)
+    assert ping.pop_frame_time() == pytest.approx(0.2)
+    assert ping.pop_frame_time() is None
+    ping.handle_answer(0.31)
+    assert ping.quickest == pytest.approx(0.06)

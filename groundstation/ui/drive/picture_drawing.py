@@ -1,0 +1,72 @@
+"""Draws the newest picture of a feed in the widgets of a screen, whenever the terminal may have one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from msgspec.structs import replace
+from textual.screen import Screen
+
+from groundstation.ui.drive.camera_feed import CameraFeed, CameraValue
+from groundstation.ui.drive.instruments.camera import CameraPicture
+from groundstation.ui.terminal.painting import painted_at_once
+from groundstation.views.camera import CameraView
+
+
+class PictureDrawing:
+    """One screen. `value` returns what its widgets show now."""
+
+    def __init__(self, screen: Screen[None], feed: CameraFeed, value: Callable[[], CameraValue]) -> None:
+        self._screen, self._feed, self._value = screen, feed, value
+        self._output = feed.output
+        self._waits = False
+        """A picture waits until the terminal may have it."""
+        self._pictures: Sequence[CameraPicture] = ()
+
+    def follow(self, view: CameraView | None, pictures: Sequence[CameraPicture]) -> None:
+        """Decode the stream of a view at the size of the widgets that show it; without them nothing runs."""
+        if not pictures or view is None:
+            self._feed.update(None, (0, 0))
+            return
+        protocol = self._value().protocol
+        self._feed.update(view, pictures[0].fit(protocol, self._output.answers.cell))
+
+    def show(self, pictures: Sequence[CameraPicture]) -> bool:
+        """Draw the newest picture, or later if the terminal may not have it yet. Return whether it was drawn."""
+        self._pictures = pictures
+        if not pictures or self._waits:
+            return False
+        if wait := self._output.wait():  # the last one before the stream stands still is drawn, too
+            self._waits = True
+            self._screen.set_timer(wait, self._show_late)
+            return False
+        self._feed.choose_newest()
+        value = self._value()
+        self._output.choose_level(
+            lambda level: sum(each.measure(replace(value, level=level)) for each in pictures),
+            pictures[0].coarsest(value.protocol),
+        )
+        value = self._value()
+        size = sum(each.measure(value) for each in pictures)
+        with painted_at_once(self._screen):
+            for each in pictures:
+                each.show(value)
+        self.draw_pixels(pictures)
+        self._output.note_frame(size)
+        return True
+
+    def _show_late(self) -> None:
+        self._waits = False
+        self._feed.report()
+
+    def draw_pixels(self, pictures: Sequence[CameraPicture]) -> None:
+        """Draw what stands over the cells of the widgets, where it has changed; remove it from the others."""
+        for each in {*self._pictures, *pictures}:
+            shown = each in pictures and self._screen.is_current
+            self._output.write(each.overlay(self._output.answers.cell) if shown else each.uncover())
+
+    def stop(self) -> None:
+        """End the decoder, and remove what stands over the cells."""
+        self._feed.stop()
+        for each in self._pictures:
+            self._output.write(each.uncover())
