@@ -18,7 +18,7 @@ from groundstation.station.driving.stops.shutdown import StationShutdown
 from groundstation.station.links.link_monitor import LinkMonitor
 from groundstation.station.links.path_routing import PathRouting
 from groundstation.station.notes.operator_log import OperatorLog
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.station.services.service_requests import ServiceRequests, TransferPause
 from groundstation.station.services.vehicle_queries import VehicleQueries
 from groundstation.station.verbs.refusals import Refusals
@@ -50,7 +50,7 @@ class CoreParts:
         ids = self.ids = (system, component)
         self.started = now
         log = self.log = MessageLog()
-        outbox = self.outbox = Outbox()
+        outbox = self.outbox = StationOutbox()
         operator = self.operator = OperatorSession(style, speed, session)
         fleet = self.fleet = Fleet(log, *ids)
         log.name_of = fleet.name_of

@@ -1,4 +1,4 @@
-"""Outbox: what the station sends next, in three lanes: demands, then commands, then services."""
+"""StationOutbox: what the station sends next, in three lanes: demands, then commands, then services."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Demands:
         return found
 
 
-class Outbox:
+class StationOutbox:
     """The parts of a station put their messages into its lanes; a lane that is later gives way on a slow link."""
 
     def __init__(self) -> None:

@@ -30,7 +30,7 @@ from groundstation.station.doctor.doctor_facts import (
 from groundstation.station.driving.motor_test import THROTTLE_MAX, MotorTester
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.station.services.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewSource
@@ -62,7 +62,7 @@ class Diagnostics:
         queries: VehicleQueries,
         links: LinkStats,
         operator: OperatorSession,
-        outbox: Outbox,
+        outbox: StationOutbox,
         ids: tuple[int, int],
         shown: Callable[[float], Snapshot],
     ) -> None:

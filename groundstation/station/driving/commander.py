@@ -15,7 +15,7 @@ from groundstation.station.driving.command_results import CommandResults
 from groundstation.station.driving.stops.blind_stops import EVERYBODY, BlindStops
 from groundstation.station.driving.stops.emergency import EmergencyLock
 from groundstation.station.driving.stops.stop_questions import FALLS, StopQuestions
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.vehicles.demand.repeated_stop import RepeatedStop, StopEnd, StopTimes, disarm_stop, mode_stop
 from groundstation.vehicles.demand.stop_commands import DANGEROUS, StopKind
 from groundstation.vehicles.demand.take_off import find_fence_refusal, find_refusal, take_off_params
@@ -43,7 +43,7 @@ class Commander:
     def __init__(
         self,
         log: MessageLog,
-        outbox: Outbox,
+        outbox: StationOutbox,
         system: int,
         component: int,
         *,

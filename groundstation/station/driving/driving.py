@@ -13,7 +13,7 @@ from groundstation.station.driving.driven import DEMAND_MEMORY, WatchdogTarget
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.station.driving.permission import Permission
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.paths.paths import SILENCE
 from groundstation.vehicles.readings.latency import SentDemand
@@ -27,7 +27,7 @@ class DrivingController:
     """Connects the operator with the selected vehicle. `ids` are our system and component id."""
 
     def __init__(
-        self, operator: OperatorSession, fleet: Fleet, commander: Commander, outbox: Outbox, ids: tuple[int, int]
+        self, operator: OperatorSession, fleet: Fleet, commander: Commander, outbox: StationOutbox, ids: tuple[int, int]
     ) -> None:
         self._operator = operator
         self._fleet = fleet

@@ -18,7 +18,7 @@ from dialects.enums import Autopilot, Command, Result, result_token
 from groundstation.input.key_repeat import REPEAT_WINDOW_MAX, KeyTrace, RepeatWindows
 from groundstation.intents.setup import TurnMotor
 from groundstation.station.driving.operator import OperatorSession
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.readings.motor_outputs import TURN_TIME, TestedMotor, build_stop, build_turn, is_turn
 from groundstation.views.doctor import MotorTestView
@@ -71,7 +71,7 @@ class _Stop(msgspec.Struct):
 class MotorTester:
     """Turns one motor at a time. `ids` are our system and component id."""
 
-    def __init__(self, fleet: Fleet, operator: OperatorSession, outbox: Outbox, ids: tuple[int, int]) -> None:
+    def __init__(self, fleet: Fleet, operator: OperatorSession, outbox: StationOutbox, ids: tuple[int, int]) -> None:
         self._fleet, self._operator, self._ids = fleet, operator, ids
         self._windows = RepeatWindows()
         self._run: _Run | None = None

@@ -15,7 +15,7 @@ from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
@@ -66,7 +66,7 @@ class ServiceRequests:
         fleet: Fleet,
         commander: Commander,
         log: MessageLog,
-        outbox: Outbox,
+        outbox: StationOutbox,
         system: int,
         component: int,
         *,

@@ -10,7 +10,7 @@ from dialects.enums import Command, Severity
 from groundstation.snapshot.log_origin import LogOrigin
 from groundstation.station.driving.commander import Commander
 from groundstation.station.links.link_stats import LinkStats
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.station.services.service_requests import ServiceRequests
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS
@@ -37,7 +37,7 @@ class VehicleQueries:
         links: LinkStats,
         log: MessageLog,
         services: ServiceRequests,
-        outbox: Outbox,
+        outbox: StationOutbox,
     ) -> None:
         self._services = services
         self._fleet = fleet

@@ -22,7 +22,7 @@ from dialects import messages as m
 from dialects.enums import Severity
 from dialects.traits import ACKED, is_stop, only_asks
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
-from groundstation.station.outbox import Outbox
+from groundstation.station.outbox import StationOutbox
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.vehicles.demand.demand_neutrals import DEMANDS
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
@@ -121,7 +121,7 @@ class _Ending(msgspec.Struct):
 class RunningVerbs:
     """The verbs of one station."""
 
-    def __init__(self, fleet: Fleet, operator: OperatorSession, log: MessageLog, outbox: Outbox) -> None:
+    def __init__(self, fleet: Fleet, operator: OperatorSession, log: MessageLog, outbox: StationOutbox) -> None:
         self._fleet = fleet
         self._operator = operator
         self._log = log
