@@ -124,35 +124,35 @@ async def join(phone: Phone) -> None:
 
 
 Act = Callable[[Phone], Awaitable[None]]
-STOPS: list[tuple[Act, float, Act | None]] = [
-    (lift, 0.0, None),
-    (kill_the_page, 0.0, None),
-    (kill_the_browser, 0.0, None),
-    (freeze_the_page, PAD_WINDOW, go_on),
-    (put_to_sleep, 0.0, None),
-    (hide, 0.0, None),
-    (cut, PAD_WINDOW, join),
-    (drop, 0.0, None),
-]
-"""What happens, s until the demand ends, and how it is undone while the finger is still there."""
+Stop = tuple[Act, float, Act | None]
+STOPS: dict[str, list[Stop]] = {
+    "lifted, frozen, cut or killed": [
+        (lift, 0.0, None),
+        (freeze_the_page, PAD_WINDOW, go_on),
+        (cut, PAD_WINDOW, join),
+        (kill_the_page, 0.0, None),
+    ],
+    "killed with its browser": [(kill_the_browser, 0.0, None)],
+    "put to sleep": [(put_to_sleep, 0.0, None)],
+    "hidden": [(hide, 0.0, None)],
+    "dropped": [(drop, 0.0, None)],
+}
+"""What happens to one tab, in this order: the act, s until the demand ends, and how it is undone under the finger."""
 
 
-@pytest.mark.parametrize(("act", "within", "undo"), STOPS, ids=[row[0].__name__ for row in STOPS])
-async def test_the_stick_of_a_tab_drives_until(
-    rig: Rig, tmp_path: Path, act: Act, within: float, undo: Act | None
-) -> None:
+@pytest.mark.parametrize("stops", STOPS.values(), ids=STOPS)
+async def test_the_stick_of_a_tab_drives_until(rig: Rig, tmp_path: Path, stops: list[Stop]) -> None:
     async with TcpRelay(rig.port) as network:
         rules = f"--host-resolver-rules=MAP localhost:{rig.port} 127.0.0.1:{network.port}"
         async with Browser(tmp_path, (390, 844), rules) as browser:
             phone = Phone(rig, browser, network)
             await phone.begin()
-            await phone.drive()
             assert browser.problems == []
-            await rig.stops(lambda: act(phone), within)
-            if undo is not None:
-                at = time.monotonic()
-                await undo(phone)
-                await pause(1.5)
-                assert not rig.vehicle.moved_since(at), "it must be lifted first"
+            for act, within, undo in stops:
                 await phone.drive()
-                await rig.stops(lambda: lift(phone))
+                await rig.stops(lambda act=act: act(phone), within)  # type: ignore[misc]
+                if undo is not None:
+                    at = time.monotonic()
+                    await undo(phone)
+                    await pause(1.5)
+                    assert not rig.vehicle.moved_since(at), f"{act.__name__}: it must be lifted first"
