@@ -143,7 +143,7 @@ def ask_for_control(drive: LinksDrive) -> None:
 
 
 @pytest.mark.parametrize("sound", [0, 1])
-def test_a_request_for_control_comes_over_whichever_link_is_there(sound: int) -> None:
+def test_a_request_for_control_comes_over_the_link_that_is_there(sound: int) -> None:
     drive = LinksDrive(Path(SOUND), Path(SOUND * 2))
     drive.get_going()
     drive.paths[1 - sound].cut = True  # in the moment before the request: nothing knows it yet
