@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from difflib import unified_diff
 from pathlib import Path
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -20,9 +21,12 @@ def check(shown: Mapping[str, str]) -> None:
         GOLDEN.mkdir(exist_ok=True)
         for name, text in shown.items():
             (GOLDEN / f"{name}.txt").write_text(text, "utf-8")
-    golden = {name: read(name) for name in shown}
-    wrong = [name for name in shown if shown[name] != golden[name]]
-    assert [(name, shown[name]) for name in wrong] == [(name, golden[name]) for name in wrong]
+    changed = [
+        "\n".join(unified_diff(read(name).splitlines(), text.splitlines(), name, "shown", lineterm=""))
+        for name, text in shown.items()
+        if text != read(name)
+    ]
+    assert changed == [], "\n".join(changed)
 
 
 def check_sizes(sizes: Iterable[tuple[str, tuple[int, int]]]) -> None:
@@ -33,4 +37,4 @@ def check_sizes(sizes: Iterable[tuple[str, tuple[int, int]]]) -> None:
         lines = text.splitlines()
         fits = len(lines) <= height and max(map(len, lines)) <= width
         wrong += [] if fits and (text.isascii() or not name.startswith("ascii")) else [name]
-    assert wrong == []
+    assert wrong == [], wrong
