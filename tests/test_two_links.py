@@ -189,7 +189,7 @@ def test_what_a_second_link_repeats_leaves_nothing_to_send() -> None:
     def note(received: Received, now: float) -> None:
         receive(received, now)
         seen.append((type(received.message), received.peer.link, core.repeats))
-        assert not core.repeats or not core._outbox
+        assert not core.repeats or not core.messages_to_send()
 
     drive.near.core.receive = note  # type: ignore[method-assign]
     drive.run(2.0)
