@@ -386,17 +386,16 @@ class Runner:
 
     def _send(self, outgoing: Outgoing) -> None:
         payload, taken, refusal = encode_payload(outgoing.message), False, None
-        allowed_at = -math.inf
+        allowed_at, clock = -math.inf, asyncio.get_running_loop().time
         for link in self._links.values():
             if link.watch_only:
                 continue
-            now = asyncio.get_running_loop().time()
-            for data, address, sequence in link.channel.send(outgoing, payload, now):
-                if now - allowed_at >= LONG_ANSWER:  # else the answer is as fresh as one for this link alone may be
+            for data, address, sequence in link.channel.send(outgoing, payload, clock()):
+                now = clock()  # of each: this process may have stood still in the send before
+                if now - allowed_at >= LONG_ANSWER:  # else the answer is as fresh as one for this frame alone may be
                     if not self._is_allowed(outgoing.message):
                         return
-                    allowed_at = now
-                now = asyncio.get_running_loop().time()
+                    allowed_at, now = now, clock()
                 why = link.send(data, address)
                 taken, refusal = taken or why is None, refusal or why
                 if self._sent:
