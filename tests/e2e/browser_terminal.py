@@ -108,6 +108,7 @@ def tab_of(folder: Path, url: str) -> Iterator[Tmux]:
         wait(browser.__aexit__())
         loop.call_soon_threadsafe(loop.stop)
         thread.join()
+        loop.close()
         picture.end()
 
 
