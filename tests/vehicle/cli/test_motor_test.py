@@ -224,7 +224,7 @@ def test_a_reversed_motor_turns_as_the_vehicle_turns_it(line: OnPty, tmp_path: P
     words = command(line, tmp_path, "right", "--throttle", "0.25", "--time", "3", "--yes")
     process = subprocess.Popen(words, stderr=subprocess.PIPE)
     wanted = 0.25 if where == "neither" else -0.25
-    line.until(lambda: line.controller.outputs[1] == pytest.approx(wanted, abs=1e-4))
+    line.until(lambda: any(right == pytest.approx(wanted, abs=1e-4) for _, right in line.history))
     process.send_signal(signal.SIGTERM)
     process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
