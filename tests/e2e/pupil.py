@@ -44,6 +44,8 @@ class Deed(NamedTuple):
     key: str
     seconds: float = 0.0
     times: int = 1
+    chooses: str = ""
+    """The vehicle that the key chooses, as the first line names it: pressed again, the key would choose another."""
 
 
 def read_deeds(task: str) -> list[Deed]:
@@ -72,7 +74,9 @@ def _find_deeds(task: str) -> Iterator[Deed]:
             continue  # a key that is only named
         times = re.match(r" (\d+) times", after)
         if verb != "hold":
-            yield Deed(verb, key[1], times=int(times[1]) if times else 1)
+            chosen = re.match(r": rover (\d+) is chosen", after)
+            chooses = f"Rover {chosen[1]} " if chosen else ""
+            yield Deed(verb, key[1], times=int(times[1]) if times else 1, chooses=chooses)
         elif "until" in after:
             yield Deed("hold", key[1], UNTIL)
         else:
@@ -183,9 +187,11 @@ class Pupil:
             self.terminal.until(lambda screen: self.step(screen) != -1, PATIENCE)
 
     def _perform(self, deed: Deed, step: int) -> None:
-        key = self._tmux_name(deed.key)
-        if deed.what == "hold" and key == ARMS and " ARMED " in self.terminal.screen().split("\n", 1)[0]:
+        key, header = self._tmux_name(deed.key), self.terminal.screen().split("\n", 1)[0]
+        if deed.what == "hold" and key == ARMS and " ARMED " in header:
             return  # as the first line says
+        if deed.chooses and deed.chooses in header:
+            return
         if deed.what == "type":
             self.terminal.press(*("Space" if each == " " else each for each in deed.key))
         elif deed.what == "press":
