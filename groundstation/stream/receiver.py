@@ -152,8 +152,7 @@ class StreamReceiver:
             self._problem = f"UDP port {self._orders.port}: {error.strerror}; which program has it: `ss -ulp`"
             self._retry_at = time.monotonic() + RETRY
             return
-        self._problem, self._units, self._lock = "", Depacketizer(), SenderLock()
-        self._lock.allowed = self._orders.senders
+        self._problem, self._units, self._lock = "", Depacketizer(), SenderLock(self._orders.senders)
         asyncio.get_running_loop().add_reader(self._socket, self._receive)
 
     def _close(self) -> None:

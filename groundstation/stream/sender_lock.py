@@ -38,8 +38,8 @@ def _is_loopback(host: str) -> bool:
 class SenderLock:
     """Lets packets of the given senders pass; without any, those of the first one until it is silent."""
 
-    def __init__(self) -> None:
-        self.allowed: tuple[str, ...] = ()
+    def __init__(self, allowed: tuple[str, ...] = ()) -> None:
+        self.allowed = allowed
         self.refused = ""
         """The newest sender that was refused since the last packet that passed."""
         self._sender = ""
@@ -61,7 +61,7 @@ class SenderLock:
         return passes
 
     def complaint(self, now: float) -> str:
-        """Return what is wrong if only others send, in one line; "" else."""
-        if not self.refused or now - self._heard_at <= SILENT_AFTER:
+        """Return what is wrong if only others than the given senders send, in one line; "" else."""
+        if not self.allowed or not self.refused or now - self._heard_at <= SILENT_AFTER:
             return ""
         return f"pictures come from {self.refused}, not from the vehicle at {' or '.join(self.allowed)}: refused"

@@ -26,11 +26,11 @@ def test_the_first_sender_keeps_the_port_until_it_is_silent() -> None:
     assert lock.passes(ROVER, 1.3)
     assert lock.passes(OTHER, 1.4 + SILENT_AFTER)
     assert not lock.passes(ROVER, 1.5 + SILENT_AFTER)
+    assert lock.complaint(1.5 + 3 * SILENT_AFTER) == "", "no sender was given from which it could have come"
 
 
 def test_only_the_vehicle_may_send_where_its_address_is_known() -> None:
-    lock = SenderLock()
-    lock.allowed = choose_senders([ROVER, "fe80::1%eth0"])
+    lock = SenderLock(choose_senders([ROVER, "fe80::1%eth0"]))
     assert lock.passes(f"::ffff:{ROVER}", 1.0)
     assert lock.passes("fe80::1%wlan0", 1.0)
     assert not lock.passes(OTHER, 1.0 + 10 * SILENT_AFTER)
