@@ -34,7 +34,8 @@ class CameraPicture(Instrument[CameraValue]):
     def __init__(self, value: CameraValue, *, id: str | None = None) -> None:  # noqa: A002
         super().__init__(value, id=id)
         self._lines = {protocol: CellLines(ink) for protocol, ink in INKS.items()}
-        self._painted: tuple[object, list[Strip]] = (None, [])
+        self._painted: tuple[object, dict[int, list[Strip]]] = (None, {})
+        """The picture and its area, and its lines at each level that was measured or drawn."""
         self._painter = KittyPainter()
         self._overlaid: object = None
         """What the pixels over the cells show; None: nothing."""
@@ -109,11 +110,14 @@ class CameraPicture(Instrument[CameraValue]):
         """Return the lines of the picture, from before if they are the same."""
         if value.picture is None or value.protocol is Protocol.KITTY:
             return []
-        key = (value.number, id(value.picture), value.grey, value.level, value.protocol, width, rows)
+        key = (value.number, id(value.picture), value.grey, value.protocol, width, rows)
         if self._painted[0] != key:
+            self._painted = key, {}
+        levels = self._painted[1]
+        if value.level not in levels:
             shown = value.picture.greyed() if value.grey else value.picture
-            self._painted = key, self._paint(shown, value, width, rows)
-        return self._painted[1]
+            levels[value.level] = self._paint(shown, value, width, rows)
+        return levels[value.level]
 
     def _paint(self, picture: Picture, value: CameraValue, width: int, rows: int) -> list[Strip]:
         if value.protocol is Protocol.ASCII:
