@@ -30,9 +30,8 @@ FOOTER_ITEMS: tuple[FooterItem, ...] = (
     (None, ("vehicle.manual",)),
     (None, ("vehicle.hold",)),
     (None, ("view.pane",)),
-    (None, ("vehicle.control",)),
 )
-"""The most important first: the last ones may not fit."""
+"""The most important first: the last ones may not fit. The key that takes or releases control follows them."""
 
 TAKE_OFF: FooterItem = ("Take off", ("vehicle.take_off",))
 LAND: FooterItem = ("Land", ("vehicle.land",))
@@ -58,6 +57,8 @@ class FooterValue(msgspec.Struct, frozen=True):
     keys_mode: str = ""
     """The mode for keys of what flies; "" for what does not fly."""
     in_air: bool = False
+    in_control: bool = False
+    """The vehicle obeys this screen: what is left is to release control."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> FooterValue:
@@ -69,7 +70,11 @@ class FooterValue(msgspec.Struct, frozen=True):
         several = len(systems) > 1 and vehicle.system in systems
         place = f"{systems.index(vehicle.system) + 1}/{len(systems)}" if several else ""
         keys_mode = vehicle.keys_mode if vehicle.flies else ""
-        return cls(now.keymap, vehicle.armed, place, now.screen, keys_mode=keys_mode, in_air=vehicle.may_fall)
+        in_control = vehicle.in_control and not now.snapshot.lease.driver
+        return cls(
+            now.keymap, vehicle.armed, place, now.screen, keys_mode=keys_mode, in_air=vehicle.may_fall,
+            in_control=in_control,
+        )  # fmt: skip
 
 
 class KeyFooter(Instrument[FooterValue]):
@@ -122,7 +127,8 @@ class KeyFooter(Instrument[FooterValue]):
         """Return the table; with several vehicles the key that selects the next one takes the place of the speed."""
         if self.value.replay:
             return [("Pause", ("drive.stop",)), *((None, (name,)) for name in REPLAY_ACTIONS)]
-        items = self._flight_items() if self.value.keys_mode else list(FOOTER_ITEMS)
+        control: FooterItem = (None, ("vehicle.release" if self.value.in_control else "vehicle.control",))
+        items = [*(self._flight_items() if self.value.keys_mode else FOOTER_ITEMS), control]
         if not self.value.place:
             return items
         following: FooterItem = (f"Vehicle {self.value.place}", ("vehicle.next",))
@@ -136,7 +142,7 @@ class KeyFooter(Instrument[FooterValue]):
         return [
             ("Hover", ("drive.stop",)), (emergency, ("stop.emergency",)), *ends, *(() if in_air else (TAKE_OFF,)),
             SPEED, (None, ("app.help",)), (None, ("app.quit",)), (self.value.keys_mode, ("vehicle.manual",)),
-            ("Hold", ("vehicle.hold",)), (None, ("view.pane",)), (None, ("vehicle.control",)),
+            ("Hold", ("vehicle.hold",)), (None, ("view.pane",)),
         ]  # fmt: skip
 
     def _stop_key(self) -> str:
