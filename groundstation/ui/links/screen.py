@@ -304,7 +304,7 @@ class LinksScreen(ConsoleScreen):
 
 
 def describe_links(view: LinksView) -> str:
-    """Return how many links there are, and how many have a problem: where the rows are few, it may be out of sight."""
-    count, bad = len(view.rows), sum(each.problem is not None for each in view.rows)
+    """Return how many links there are, and which have a problem: where the rows are few, they may be out of sight."""
+    count, bad = len(view.rows), [each.name for each in view.rows if each.problem is not None]
     links = f"{count} link{'' if count == 1 else 's'}"
-    return f"{links}, {bad} with a problem" if bad else links if count else ""
+    return f"{links}, {len(bad)} with a problem: {', '.join(bad)}" if bad else links if count else ""

@@ -175,7 +175,7 @@ async def test_tab_gives_each_panel_the_room_in_turn() -> None:
     async with console(picture=FLEET) as screen:
         await open_links(screen)
         assert "/dev/ttyACM0 has gone" not in screen.text
-        assert "4 links, 1 with a problem" in screen.text
+        assert "4 links, 1 with a problem: serial:/dev/ttyACM0:115200" in screen.text
         await screen.press("tab")
         await until(lambda: "/dev/ttyACM0 has gone; it is opened again when it is plugged in" in screen.text)
         assert "68% of 5.8 kB/s each way, the radio allows 80%" in screen.text
@@ -191,6 +191,14 @@ async def test_enter_chooses_nothing_while_another_panel_has_arrows() -> None:
         await open_links(screen)
         await screen.press("down", "tab", "enter")
         assert not screen.station.of(SelectVehicle)
+
+
+async def test_links_with_a_problem_are_named_as_far_as_there_is_room() -> None:
+    broken = tuple(LinkRow(name=f"udpin:0.0.0.0:{14550 + each}", index=each, problem="cut") for each in range(12))
+    async with console(picture=FLEET) as screen:
+        await open_links(screen, views=(SIX, LinksView(broken), CONTROL))
+        assert "12 links, 12 with a problem: udpin:0.0.0.0:14550, udpin:0.0.0.0:" in screen.text
+        assert all(len(line) <= 80 for line in screen.text.splitlines())
 
 
 async def test_many_links_scroll() -> None:
