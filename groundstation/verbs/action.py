@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 if TYPE_CHECKING:
+    from groundstation.vehicles.state.vehicle_state import VehicleState
     from groundstation.verbs.common.arguments import Argument
     from groundstation.verbs.common.channel import CompanionChannel
     from groundstation.verbs.common.output import Output
@@ -16,6 +17,27 @@ if TYPE_CHECKING:
 
 ONLY = ""
 """Name of the action of a verb that has only one, and takes no name for it."""
+
+
+class LineRule(msgspec.Struct, frozen=True):
+    """What a line of the screens (`:`) makes of an action."""
+
+    elsewhere: str = ""
+    """Where to do it; then a line does not run it."""
+    asks: Callable[[argparse.Namespace, VehicleState], bool] = lambda options, state: False
+    """Whether the operator must answer y first, as for the same key of a screen."""
+
+
+RUNS, ASKS = LineRule(), LineRule(asks=lambda options, state: True)
+IN_A_SHELL, USE_DRIVE = LineRule("use it in a shell"), LineRule("use the Drive screen (F1)")
+USE_MAP, USE_MESSAGES = LineRule("use the Map screen (F2)"), LineRule("use the Messages screen (F3)")
+USE_PARAMS, USE_LINKS = LineRule("use the Params screen (F4)"), LineRule("use the Links screen (F7)")
+USE_SETUP, USE_FILES = LineRule("use the Setup screen (F8)"), LineRule("use the Files screen (^g 9)")
+
+
+def held_key(key: str) -> LineRule:
+    """Return the rule of what a key of the Drive screen does."""
+    return LineRule(f"is a key that is held for 1 s on Drive, so that no text does it: {key}")
 
 
 class VerbAction(msgspec.Struct, frozen=True):
@@ -65,3 +87,5 @@ class VerbAction(msgspec.Struct, frozen=True):
     """Whether it sends demands, so that a watchdog must outlive it."""
     tap: Callable[[argparse.Namespace, tuple[int, int]], LogTap | None] = lambda *_: None
     """Returns what takes all frames; gets our system and component id. Raises VerbError before any link is opened."""
+    line: LineRule = IN_A_SHELL
+    """How a line of the screens runs it."""

@@ -7,6 +7,7 @@ import argparse
 from dialects.mode_tables import HOLD
 from groundstation.vehicles.requests.mode_requests import VehicleMode
 from groundstation.vehicles.requests.requests import RequestState
+from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.session.reports import finish
@@ -27,6 +28,12 @@ async def list_modes(session: VerbSession, options: argparse.Namespace, output: 
     if report.detail:
         output.note(f"{session.vehicle.name}: {report.detail}, by its autopilot and type")
     return ExitCode.DONE
+
+
+def may_move(options: argparse.Namespace, state: VehicleState) -> bool:
+    """Return whether the vehicle may move by itself in the mode of these arguments."""
+    number = state.model.number_of(options.name)
+    return number is None or state.model.moves_itself(state.model.mode_name(number))
 
 
 async def set_mode(session: VerbSession, options: argparse.Namespace, output: Output) -> int:

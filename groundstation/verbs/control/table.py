@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from groundstation.verbs.action import ONLY, VerbAction
+from groundstation.verbs.action import ASKS, ONLY, RUNS, USE_SETUP, LineRule, VerbAction, held_key
 from groundstation.verbs.common.arguments import LONGEST_HOLD, seconds, system_id
 from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.verb import Example, Group, Stage, Verb
@@ -30,40 +30,41 @@ VERBS: dict[str, Verb] = {
     "arm": Verb(Group.DRIVE, (
         Example("mavhelm arm --wait 20", "waits until the vehicle is ready, then arms it", Stage.ARMED),
     ), {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
-                             needs_session=True, many=True)}, mavproxy={"arm throttle": "arm"}),
+                             needs_session=True, many=True, line=held_key("r"))}, mavproxy={"arm throttle": "arm"}),
     "disarm": Verb(Group.DRIVE, (
         Example("mavhelm disarm", "repeated until the heartbeat reports it; so are stop, estop", Stage.STOPPING),
         Example("mavhelm disarm --all",
                 "all vehicles at once, with a table of the results; also with --group NAME", Stage.STOPPING),
     ), {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm, finds=False,
-                                own_timeout=True, many=True, stops=True)}),
+                                own_timeout=True, many=True, stops=True, line=RUNS)}),
     "stop": Verb(Group.DRIVE, (
         Example("mavhelm stop", "to HOLD", Stage.STOPPED),
     ), {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop, finds=False,
-                              own_timeout=True, many=True, stops=True)}, mavproxy={"hold": "stop"}),
+                              own_timeout=True, many=True, stops=True, line=RUNS)}, mavproxy={"hold": "stop"}),
     "estop": Verb(Group.DRIVE, (
         Example("mavhelm estop", "motors off and locked; what flies lands", Stage.STOPPING),
         Example("mavhelm estop --clear", "releases the lock", Stage.STOPPING),
     ), {ONLY: VerbAction("stop the motors and lock them, or land what flies; repeated until the vehicle reports it",
         stops.estop, (("--clear", {"action": "store_true", "help": "release the emergency stop"}),
          ("--cut", {"action": "store_true", "help": "cut the motors of what flies, too: it falls"})), own_timeout=True,
-        finds=False, many=True, stops=True)}),
+        finds=False, many=True, stops=True, line=RUNS)}),
     "control": Verb(Group.DRIVE, (
         Example("mavhelm control show", "who is in control", Stage.ARMED),
         Example("mavhelm control request", "take control, or ask the driver for it", Stage.IN_CONTROL),
         Example("mavhelm control release", "our own vehicle changes to HOLD", Stage.AFTERWARDS),
         Example("mavhelm control give 255", "release control once 255 asks for it; show, release", Stage.AFTERWARDS),
     ), {
-        "show": VerbAction("print who is in control", control.show, watches=True, many=True),
+        "show": VerbAction("print who is in control", control.show, watches=True, many=True, line=RUNS),
         "request": VerbAction(
             "take control, or ask the driver for it", control.request,
             (("--takeover", {"action": "store_true", "help": "others may take control without asking"}),),
-            needs_session=True, many=True),
+            needs_session=True, many=True, line=RUNS),
         "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, needs_session=True,
-                              many=True),
+                              many=True, line=RUNS),
         "give": VerbAction(
             "release control once another ground station asks for it, within --wait", control.give,
-            (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), needs_session=True),
+            (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), needs_session=True,
+            line=LineRule("Y on Drive gives control to the ground station that asks for it")),
     }, "show, request, release or give control of a vehicle"),
     "drive": Verb(Group.DRIVE, (
         Example("mavhelm drive --throttle 30 --for 2", "by hand: %; then neutral. It must be armed", Stage.ARMED),
@@ -79,16 +80,18 @@ VERBS: dict[str, Verb] = {
          ("--speed", {"type": drive.limit, "metavar": "LIMIT", "help": "of the keys, 0.1 to 1, as for the screen"}),
          ("--arm", {"action": "store_true", "help": "arm first, and disarm at the end"}),
          ("--stay-armed", {"action": "store_true", "help": "do not disarm at the end what --arm has armed"})),
-        needs_session=True, prepare=drive.prepare, guarded=lambda _: True)}),
+        needs_session=True, prepare=drive.prepare, guarded=lambda _: True,
+        line=LineRule("the keys of the Drive screen (F1) drive"))}),
     "takeoff": Verb(Group.DRIVE, (
         Example("mavhelm takeoff 5 --arm", "a copter: arm, climb to 5 m and hover", Stage.OTHER_VEHICLE),
     ), {ONLY: VerbAction("have a copter take off to an altitude above the ground, and hover there", flight.take_off,
         (("altitude", {"type": flight.altitude, "metavar": "M", "help": "1 to 30 m above the ground"}),
          ("--arm", {"action": "store_true", "help": "arm first"})),
-        needs_session=True, guarded=lambda _: True)}),
+        needs_session=True, guarded=lambda _: True, line=held_key("T, to the altitude of the setting take_off"))}),
     "land": Verb(Group.DRIVE, (
         Example("mavhelm land", "a copter: land here; done when it reports that it lands", Stage.OTHER_VEHICLE),
-    ), {ONLY: VerbAction("have a copter land where it is; repeated until the heartbeat reports it", flight.land)}),
+    ), {ONLY: VerbAction("have a copter land where it is; repeated until the heartbeat reports it", flight.land,
+                         line=LineRule("L lands, on the Drive screen (F1)"))}),
     "turn": Verb(Group.DRIVE, (
         Example("mavhelm turn 90", "on the spot, degrees to the right, then neutral. It must be armed", Stage.ARMED),
     ), {ONLY: VerbAction("turn on the spot by an angle, as the vehicle's heading reports it, then neutral", turn.run,
@@ -102,20 +105,21 @@ VERBS: dict[str, Verb] = {
          ("throttle", {"type": motor.percent, "metavar": "PERCENT", "help": "up to 30, negative for backward"}),
          ("--for", {"dest": "seconds", "type": motor.duration, "default": 1.0, "metavar": "S",
                     "help": "how long, up to 2 s (default: 1)"})),
-        examines=True)}),
+        examines=True, line=USE_SETUP)}),
     "modes": Verb(Group.DRIVE, (
         Example("mavhelm modes", "the modes of the vehicle; > marks the current one"),
     ), {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes,
-                               watches=True, many=True)}),
+                               watches=True, many=True, line=RUNS)}),
     "mode": Verb(Group.DRIVE, (
         Example("mavhelm mode HOLD", "done when the heartbeat reports it"),
     ), {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
-                              (("name", {"metavar": "MODE"}),), needs_session=True, shows_neutral=True, many=True)},
+                              (("name", {"metavar": "MODE"}),), needs_session=True, shows_neutral=True, many=True,
+                              line=LineRule(asks=mode.may_move))},
        mavproxy={"auto": "mode AUTO", "manual": "mode MANUAL", "loiter": "mode LOITER",
                  "steering": "mode STEERING"}),
     "reboot": Verb(Group.VEHICLE, (
         Example("mavhelm reboot", "the vehicle refuses while it is armed", Stage.AFTERWARDS),
     ), {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run, needs_session=True,
-                                many=True)}),
+                                many=True, line=ASKS)}),
 }  # fmt: skip
 """Verb -> its row."""

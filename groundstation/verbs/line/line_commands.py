@@ -17,6 +17,7 @@ from groundstation.vehicles.fleet import Contact
 from groundstation.verbs.collected_output import CollectedOutput
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
+from groundstation.verbs.line.overrides import OVERRIDES
 from groundstation.verbs.line.parser import ParsedLine, parse_line
 from groundstation.verbs.line.session import LineSession, here
 from groundstation.verbs.line.words import complete
@@ -53,7 +54,7 @@ class LineCommands:
         except (VerbError, FileFormatError) as error:
             self._end(intent, FAILED, [], here(str(error)))
             return
-        if parsed.rule.asks(parsed.options, contact.state) and not intent.confirmed:
+        if parsed.action.line.asks(parsed.options, contact.state) and not intent.confirmed:
             self._show(intent, ASKS, f"{contact.state.name}: {intent.text}?")
             return
         self._show(intent, RUNNING, f"{intent.text} ...")
@@ -101,7 +102,7 @@ class LineCommands:
     async def _perform(self, intent: RunLine, parsed: ParsedLine, contact: Contact) -> None:
         session, output = LineSession(self._station, contact, self._flush), CollectedOutput(here)
         session.seat.join(session.now)
-        run: Any = parsed.rule.own or parsed.action.run
+        run: Any = OVERRIDES.get(parsed.name, parsed.action.run)
         try:
             async with asyncio.timeout(parsed.options.timeout):
                 code = await run(session, parsed.options, output)

@@ -1,9 +1,9 @@
-"""What a line does in place of a verb's function: by an intent of the station, as the key of a screen does it."""
+"""OVERRIDES: what a line does in place of a verb's function: by an intent of the station, as a key of a screen."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 from dialects.mode_tables import HOLD
 from groundstation.intents.driving import EmergencyStop, Stop
@@ -105,3 +105,10 @@ async def release_control(session: LineSession, options: argparse.Namespace, out
     await session.wait_for(lambda: not session.contact.in_control, STOPPED_WITHIN)
     output.note(f"{session.vehicle.name}: control released")
     return ExitCode.DONE
+
+
+OVERRIDES: dict[str, Callable[[LineSession, argparse.Namespace, CollectedOutput], Awaitable[int]]] = {
+    "disarm": disarm, "stop": stop, "estop": emergency_stop,
+    "control show": show_control, "control request": request_control, "control release": release_control,
+}  # fmt: skip
+"""Verb, or verb and action -> its function here. A line that stops imports nothing for it."""

@@ -11,7 +11,6 @@ import msgspec
 
 from groundstation.verbs.action import VerbAction
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
-from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES, LineRule
 from groundstation.verbs.line.session import here
 from groundstation.verbs.main import build_parser
 from groundstation.verbs.mavproxy_words import describe_action, describe_word
@@ -45,7 +44,6 @@ class ParsedLine(msgspec.Struct, frozen=True):
     name: str
     """Verb, or verb and action."""
     action: VerbAction
-    rule: LineRule
     options: argparse.Namespace
 
 
@@ -66,16 +64,16 @@ def parse_line(text: str, modes: Collection[str] = ()) -> ParsedLine:
     _refuse_elsewhere(verb)
     options = build_parser(verb, LineParser).parse_args(words[1:])
     name = f"{verb} {options.action}".strip()
-    rule, action = LINE_RULES.get(name, IN_A_SHELL), VERBS[verb].actions[options.action]
-    if rule.elsewhere:
-        raise VerbError(ExitCode.USAGE, f"{name}: {rule.elsewhere}")
+    action = VERBS[verb].actions[options.action]
+    if action.line.elsewhere:
+        raise VerbError(ExitCode.USAGE, f"{name}: {action.line.elsewhere}")
     if any(getattr(options, each) for each in FOR_SHELLS):
         raise VerbError(ExitCode.USAGE, f"{name}: a line uses the links and the dialect of this ground station")
     if options.all or options.group:
         raise VerbError(ExitCode.USAGE, f"{name}: a line is for the selected vehicle; use --all and --group in a shell")
     if action.check is not None:
         action.check(options)
-    return ParsedLine(name, action, rule, options)
+    return ParsedLine(name, action, options)
 
 
 def _split(text: str) -> list[str]:
@@ -90,6 +88,6 @@ def _split(text: str) -> list[str]:
 
 def _refuse_elsewhere(verb: str) -> None:
     """Name the screen at once, before the arguments, where no action of the verb runs here."""
-    rules = [LINE_RULES.get(f"{verb} {action}".strip(), IN_A_SHELL) for action in VERBS[verb].actions]
-    if all(rule.elsewhere for rule in rules):
-        raise VerbError(ExitCode.USAGE, f"{verb}: {rules[0].elsewhere}")
+    rules = [action.line.elsewhere for action in VERBS[verb].actions.values()]
+    if all(rules):
+        raise VerbError(ExitCode.USAGE, f"{verb}: {rules[0]}")

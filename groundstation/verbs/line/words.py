@@ -9,7 +9,6 @@ from groundstation.station_socket.names import MODES, plain_names
 from groundstation.vehicles.services import VehicleServices
 from groundstation.verbs.action import ONLY, VerbAction
 from groundstation.verbs.completion import NAMES, USUAL
-from groundstation.verbs.line.rules import IN_A_SHELL, LINE_RULES
 from groundstation.verbs.table import VERBS
 
 MOST = 40
@@ -26,18 +25,18 @@ def complete(text: str, services: VehicleServices | None) -> tuple[str, ...]:
 
 def _candidates(before: Sequence[str], services: VehicleServices | None) -> Iterable[str]:
     if not before:
-        return [verb for verb, row in VERBS.items() if any(_runs(verb, action) for action in row.actions)]
+        return [verb for verb, row in VERBS.items() if any(_runs(action) for action in row.actions.values())]
     actions = VERBS[before[0]].actions if before[0] in VERBS else {}
     if ONLY in actions:
         return _arguments(actions[ONLY], len(before) - 1, services)
     if len(before) == 1:
-        return [action for action in actions if _runs(before[0], action)]
+        return [name for name, action in actions.items() if _runs(action)]
     action = actions.get(before[1])
     return [] if action is None else _arguments(action, len(before) - 2, services)
 
 
-def _runs(verb: str, action: str) -> bool:
-    return not LINE_RULES.get(f"{verb} {action}".strip(), IN_A_SHELL).elsewhere
+def _runs(action: VerbAction) -> bool:
+    return not action.line.elsewhere
 
 
 def _arguments(action: VerbAction, at: int, services: VehicleServices | None) -> list[str]:

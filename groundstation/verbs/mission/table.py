@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from groundstation.verbs.action import ONLY, VerbAction
+from groundstation.verbs.action import ASKS, ONLY, RUNS, USE_MAP, VerbAction
 from groundstation.verbs.common.arguments import FILE, YES, finite, metres_per_second
 from groundstation.verbs.common.lazy import LazyAttribute, LazyModule, lazy_call
 from groundstation.verbs.verb import Example, Group, Stage, Verb
@@ -24,15 +24,15 @@ def _plan_actions(name: str) -> dict[str, VerbAction]:
     """Return the actions of a verb about a plan. `name`: in capitals, that of its MAV_MISSION_TYPE."""
     kind = LazyAttribute("dialects.enums", f"MissionType.{name.upper()}")
     return {
-        "show": VerbAction(f"print the {name}", lazy_call(plan.show, kind), watches=True, many=True),
+        "show": VerbAction(f"print the {name}", lazy_call(plan.show, kind), watches=True, many=True, line=RUNS),
         "get": VerbAction(f"download the {name} into a file: .plan or .waypoints", lazy_call(plan.get, kind),
-                          (FILE, YES), watches=True),
+                          (FILE, YES), watches=True, line=USE_MAP),
         "put": VerbAction(f"upload the {name} of a file", lazy_call(plan.put, kind), (FILE,), aliases=("set",),
-                          needs_session=True, many=True),
+                          needs_session=True, many=True, line=USE_MAP),
         "check": VerbAction(f"compare the {name} of the vehicle with a file", lazy_call(mission.check, kind), (FILE,),
-                            watches=True, many=True),
+                            watches=True, many=True, line=USE_MAP),
         "clear": VerbAction(f"clear the {name} on the vehicle", lazy_call(plan.clear, kind), needs_session=True,
-                            many=True),
+                            many=True, line=ASKS),
         **_MORE_PLAN_ACTIONS.get(name, {}),
     }  # fmt: skip
 
@@ -41,14 +41,16 @@ _ITEM = {"type": mission.item_number, "metavar": "N", "help": "number of the ite
 _MORE_PLAN_ACTIONS: dict[str, dict[str, VerbAction]] = {
     "mission": {
         "start": VerbAction("start the mission, or go on with it", mission.start, (("item", {"nargs": "?", **_ITEM}),),
-                            needs_session=True, shows_neutral=True, many=True),
-        "pause": VerbAction("stop where the vehicle is; start goes on", mission.pause, many=True),
+                            needs_session=True, shows_neutral=True, many=True, line=ASKS),
+        "pause": VerbAction("stop where the vehicle is; start goes on", mission.pause, many=True, line=RUNS),
         "jump": VerbAction("make an item the current one", mission.jump, (("item", _ITEM),), needs_session=True,
-                           shows_neutral=True, many=True),
+                           shows_neutral=True, many=True, line=ASKS),
     },
     "fence": {
-        "on": VerbAction("enable the fence", lazy_call(mission.enable_fence, True), needs_session=True, many=True),
-        "off": VerbAction("disable the fence", lazy_call(mission.enable_fence, False), needs_session=True, many=True),
+        "on": VerbAction("enable the fence", lazy_call(mission.enable_fence, True), needs_session=True, many=True,
+                         line=RUNS),
+        "off": VerbAction("disable the fence", lazy_call(mission.enable_fence, False), needs_session=True, many=True,
+                          line=ASKS),
     },
 }  # fmt: skip
 """Plan -> its actions beside those of all plans."""
@@ -64,16 +66,17 @@ VERBS: dict[str, Verb] = {
                         "help": "degrees; or `wp`, and the number of an item of the mission in place of LON"}),
          ("longitude", {"nargs": "?", "type": finite, "metavar": "LON", "help": "degrees"}),
          ("--by", {"nargs": 2, "type": finite, "metavar": ("NORTH", "EAST"), "help": "m from where it is"})),
-        needs_session=True, shows_neutral=True, check=go_to.check_place)}, mavproxy={"guided": "goto LAT LON"}),
+        needs_session=True, shows_neutral=True, check=go_to.check_place, line=ASKS)},
+       mavproxy={"guided": "goto LAT LON"}),
     "home": Verb(Group.DRIVE, (
         Example("mavhelm home", "RTL", Stage.MOVING),
     ), {ONLY: VerbAction("drive home by itself; done when the heartbeat reports RTL", go_to.home,
-                              needs_session=True, shows_neutral=True, many=True)}, mavproxy={"rtl": "home"}),
+                              needs_session=True, shows_neutral=True, many=True, line=ASKS)}, mavproxy={"rtl": "home"}),
     "speed": Verb(Group.DRIVE, (
         Example("mavhelm speed 0.6", "m/s of modes that drive by themselves", Stage.MOVING),
     ), {ONLY: VerbAction("set the speed of modes that drive by themselves", go_to.speed,
         (("speed", {"type": metres_per_second, "metavar": "M/S"}),), needs_session=True, shows_neutral=True,
-        many=True)}, mavproxy={"setspeed": "speed M/S"}),
+        many=True, line=RUNS)}, mavproxy={"setspeed": "speed M/S"}),
     "mission": Verb(Group.PLANS, (
         Example("mavhelm mission put patrol.plan", "upload it; the old one stays until it is accepted"),
         Example("mavhelm mission check patrol.plan", "is it the vehicle's? code 7 if not"),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from groundstation.verbs.action import ONLY, VerbAction
+from groundstation.verbs.action import ONLY, USE_SETUP, VerbAction
 from groundstation.verbs.common.arguments import YES, seconds
 from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.verb import Example, Group, Stage, Verb
@@ -33,7 +33,7 @@ VERBS: dict[str, Verb] = {
         (("--report", {"metavar": "FILE", "help": "write a report for a bug, without keys and public addresses"}),
          YES, ("--driver", {"type": int, "default": 255, "metavar": "ID",
                              "help": "system id of the ground station that will drive (default: 255)"})),
-        examines=True, watches=True)}),
+        examines=True, watches=True, line=USE_SETUP)}),
     "calibrate": Verb(Group.VEHICLE, (
         Example("mavhelm calibrate gyro", "also level and pressure; the vehicle is at rest"),
         Example("mavhelm calibrate compass", "turn it until all compasses have a fit", Stage.OTHER_VEHICLE),
@@ -41,8 +41,7 @@ VERBS: dict[str, Verb] = {
     ), {ONLY: VerbAction("calibrate gyros, level or pressure at rest, compass or RC sticks by hand", calibrate.run,
         (("kind", {"choices": calibrate.CHOICES, "metavar": "KIND", "help": "gyro, level, pressure, compass, sticks"}),
          ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "for the sticks (default: 20)"})),
-        check=calibrate.check, needs_session=True, only_reads=calibrate.only_reads,
-    )}),
+        check=calibrate.check, needs_session=True, only_reads=calibrate.only_reads, line=USE_SETUP)}),
     "sign": Verb(Group.SETUP, (
         Example("mavhelm sign new rover",
                 "a key for MAVLink signing; docs/keys.md pairs in a minute", Stage.KEYS),

@@ -11,7 +11,7 @@ from groundstation.intents.vehicle import Disarm
 from groundstation.intents.watch import Watch
 from groundstation.ui.app.command_line import CommandLine
 from groundstation.ui.app.palette import LINES, MODES_TEXT, rank
-from groundstation.verbs.line.rules import LINE_RULES
+from groundstation.verbs.table import VERBS
 from groundstation.views.line import RUNNING, LineRequest, LineView
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
@@ -110,5 +110,6 @@ async def test_a_mode_of_the_palette_is_written_on_the_line_first() -> None:
 
 
 def test_the_palette_has_every_verb_that_a_line_runs() -> None:
-    runnable = {name for name, rule in LINE_RULES.items() if not rule.elsewhere} - {"mode"}
+    actions = ((f"{verb} {name}".strip(), each) for verb, row in VERBS.items() for name, each in row.actions.items())
+    runnable = {name for name, action in actions if not action.line.elsewhere} - {"mode"}
     assert set(LINES) == runnable

@@ -8,15 +8,15 @@ from dialects.enums import Autopilot, VehicleType
 from dialects.kinds import find_kind
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.common.exit_codes import VerbError
+from groundstation.verbs.line.overrides import OVERRIDES
 from groundstation.verbs.line.parser import parse_line
-from groundstation.verbs.line.rules import LINE_RULES
 from groundstation.verbs.line.words import complete
 from groundstation.verbs.table import VERBS
 
 
-def test_every_rule_is_of_a_verb() -> None:
-    names = {f"{verb} {action}".strip() for verb, row in VERBS.items() for action in row.actions}
-    assert set(LINE_RULES) <= names
+def test_every_override_is_of_a_verb_that_a_line_runs() -> None:
+    actions = ((f"{verb} {name}".strip(), each) for verb, row in VERBS.items() for name, each in row.actions.items())
+    assert set(OVERRIDES) <= {name for name, action in actions if not action.line.elsewhere}
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_what_asks_first(text: str, asks: bool) -> None:
     parsed = parse_line(text)
     rover = VehicleState(1, 1)
     rover.model = find_kind(Autopilot.GENERIC, VehicleType.GROUND_ROVER)
-    assert parsed.rule.asks(parsed.options, rover) is asks
+    assert parsed.action.line.asks(parsed.options, rover) is asks
 
 
 @pytest.mark.parametrize(
