@@ -129,7 +129,7 @@ class CommandRequests:
             else:
                 explained = outcome.command != Command.REQUEST_MESSAGE  # of which programs send many in a row
                 text = _refusal(outcome.command, outcome.number)
-                self._book.refuse(number, text, now, by_vehicle=explained)
+                self._book.refuse(number, text, now, by_vehicle=explained, answer=outcome.number)
 
 
 def _refusal(command: int, result: int) -> str:

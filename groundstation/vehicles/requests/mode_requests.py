@@ -133,7 +133,7 @@ class ModeRequests:
         elif outcome.number is None:
             self._book.fail(change.number, f"after {TRIES} tries")
         else:
-            self._book.refuse(change.number, result_token(outcome.number), now)
+            self._book.refuse(change.number, result_token(outcome.number), now, answer=outcome.number)
 
     def _give_up(self, now: float) -> None:
         """End a change that was accepted and is not confirmed in time."""

@@ -206,7 +206,7 @@ class ParamRequests:
                 self._book.keep(access.number, access.name)
             detail = self._fault_text(outcome)
             by_vehicle = outcome.wanted is not None and outcome.tries > 0
-            self._book.refuse(access.number, detail, now, by_vehicle=by_vehicle, name=access.name)
+            self._book.refuse(access.number, detail, now, by_vehicle=by_vehicle, name=access.name, answer=outcome.fault)
         elif outcome.value is not None:
             self._book.keep(access.number, access.name)
             self._book.refuse(access.number, f"the vehicle keeps {value_text(outcome.value)}", now, name=access.name)

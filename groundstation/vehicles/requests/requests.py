@@ -45,6 +45,10 @@ class RequestReport(msgspec.Struct, frozen=True):
     """Why it was refused, or what came of it."""
     reason: str = ""
     """STATUSTEXT of the vehicle that explains a refusal."""
+    answer: int | None = None
+    """Why it was refused, as a number: MAV_RESULT of a command, MAV_PARAM_ERROR of a parameter; None: neither.
+
+    The latter also where the request cannot be encoded and nothing was sent."""
     done: int = 0
     total: int | None = None
     """Items or bytes that were transferred, and all, where known."""
@@ -112,14 +116,25 @@ class RequestBook:
         """End a request as accepted."""
         self._end(number, RequestState.ACCEPTED, detail)
 
-    def refuse(self, number: int, detail: str, now: float, *, by_vehicle: bool = True, name: str = "") -> None:
+    def refuse(
+        self,
+        number: int,
+        detail: str,
+        now: float,
+        *,
+        by_vehicle: bool = True,
+        name: str = "",
+        answer: int | None = None,
+    ) -> None:
         """End a request as refused; `by_vehicle`: with the vehicle's STATUSTEXT, for which it waits REASON_WITHIN.
 
         `name`: the parameter that is refused. Texts that name it explain it, in place of those about its neighbours.
+        `answer`: see RequestReport.
         """
         report = self._running.get(number)
         if report is None:
             return
+        self._running[number] = report = replace(report, answer=answer)
         if not by_vehicle or self.busy:
             why = f": {self.busy}" if by_vehicle else ""
             self._end(number, RequestState.REFUSED, f"{detail}{why}")

@@ -14,7 +14,7 @@ from collections.abc import Callable
 import msgspec
 
 from dialects import messages as m
-from dialects.enums import Command, Result, result_token
+from dialects.enums import Command, Result
 from groundstation.station.driving.arming import ArmSequence, ArmStep, find_arming_doubt
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.requests.requests import RequestBook, RequestReport, RequestState
@@ -29,7 +29,6 @@ from link.services.command.client import CommandClient, CommandOutcome
 
 ASK_PERIOD = 1.0
 """s between two questions whether the pre-arm checks are passed."""
-FOR_NOW = result_token(Result.TEMPORARILY_REJECTED)
 ANSWER_WITHIN = 0.3
 """s for SYS_STATUS behind the acknowledgement of its request; a vehicle without pre-arm checks never reports them."""
 
@@ -61,11 +60,13 @@ class ArmJob(msgspec.Struct):
             self.claim(now)
         if before is ArmStep.DONE or self.sequence.step is not ArmStep.DONE:
             return
-        mode = "MANUAL: " if outcome.command == Command.DO_SET_MODE else ""
+        of_mode = outcome.command == Command.DO_SET_MODE
+        mode = "MANUAL: " if of_mode else ""
         if outcome.number is None:
             book.fail(self.number, f"{mode}after all tries")
         elif outcome.result is not Result.ACCEPTED:
-            book.refuse(self.number, f"{mode}{refusal_words(outcome)}", now)
+            answer = None if of_mode else outcome.number
+            book.refuse(self.number, f"{mode}{refusal_words(outcome)}", now, answer=answer)
 
 
 async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
@@ -138,8 +139,7 @@ async def _arm_when_possible(session: VerbSession, until: float) -> RequestRepor
         report = await run_job(
             session, "arm", lambda number, now: ArmJob(number, ArmSequence.start(contact.state, now), contact.claim)
         )
-        for_now = report.state is RequestState.REFUSED and report.detail.startswith(FOR_NOW)
-        if not for_now or session.now + ASK_PERIOD > until:
+        if report.answer != Result.TEMPORARILY_REJECTED or session.now + ASK_PERIOD > until:
             return report
         await session.wait_for(lambda: False, ASK_PERIOD)
 

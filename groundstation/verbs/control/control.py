@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.enums import Command
+from dialects.enums import Command, Result
 from groundstation.station.driving.handover import ANSWER_WITHIN, RELEASE, RELEASE_WITHIN, REQUEST
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
@@ -72,15 +72,15 @@ async def give(session: VerbSession, options: argparse.Namespace, output: Output
     return finish(session, report, output, f"is driven by GCS {options.station}")
 
 
-UNMANAGED = "UNSUPPORTED"
+UNMANAGED = Result.UNSUPPORTED
 """Answer of vehicles that take demands from any ground station: ArduPilot and PX4."""
 
 
 def _finish(session: VerbSession, report: RequestReport, output: Output, done: str) -> int:
-    if report.state is RequestState.REFUSED and report.detail == UNMANAGED:
+    if report.answer == UNMANAGED:
         text = "this vehicle does not manage control: it takes demands from any ground station"
         output.note(f"{session.vehicle.name}: {text}")
-        output.result(True, session.vehicle.system, detail=UNMANAGED, text=text)
+        output.result(True, session.vehicle.system, detail=report.detail, text=text)
         return ExitCode.DONE
     return finish(session, report, output, done)
 

@@ -48,7 +48,7 @@ class StopJob(msgspec.Struct):
         """Note an answer; end with a refusal."""
         self.stop.handle_outcome(outcome, now)
         if self.stop.end is StopEnd.REFUSED:
-            book.refuse(self.number, refusal_words(outcome), now)
+            book.refuse(self.number, refusal_words(outcome), now, answer=outcome.number)
 
 
 def disarm_job(number: int, state: VehicleState, times: StopTimes) -> StopJob:
@@ -128,7 +128,7 @@ class EmergencyJob(msgspec.Struct):
         """Note an answer. A vehicle that refuses both commands is not stopped."""
         self.lock.handle_outcome(outcome)
         if self.lock.progress(now) is EmergencyProgress.REFUSED and not self.lock.clearing:
-            book.refuse(self.number, refusal_words(outcome), now)
+            book.refuse(self.number, refusal_words(outcome), now, answer=outcome.number)
 
 
 def refusal_words(outcome: CommandOutcome) -> str:

@@ -8,7 +8,6 @@ import fnmatch
 from collections.abc import Iterable, Sequence
 
 from dialects.enums import ParamErrorCode
-from dialects.result_texts import param_error_text
 from groundstation.natural_order import natural_key
 from groundstation.vehicles.requests.param_requests import param_type_name
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
@@ -23,7 +22,6 @@ from link.services.param.float32 import value_text
 from link.services.param.values import value_fault
 
 WILDCARDS = "*?["
-NO_SUCH = param_error_text(ParamErrorCode.DOES_NOT_EXIST)
 ANSWERED_WITHIN = 1.5
 """s for one parameter: 0.1 s over UDP, up to 1 s over 57600 baud."""
 
@@ -91,7 +89,7 @@ async def _get_named(session: VerbSession, names: Sequence[str], output: Output)
             _print(session.services.params.client.params[name], output)
         else:
             output.error(f"{session.vehicle.name}: {report.text}")
-        codes.add(ExitCode.DIFFERS if report.detail == NO_SUCH else code_of(report))
+        codes.add(ExitCode.DIFFERS if report.answer == ParamErrorCode.DOES_NOT_EXIST else code_of(report))
     return codes.pop() if len(codes) == 1 else ExitCode.PARTLY
 
 

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Result, SystemState, result_token, state_name
+from dialects.enums import Result, SystemState, state_name
 from groundstation.snapshot import VehicleView
 from groundstation.station.links.link_stats import lost_frames
 from groundstation.vehicles.requests.requests import RequestState
@@ -27,7 +27,7 @@ ASKED = (m.SysStatus, m.BatteryStatus, m.GpsRawInt, m.GlobalPositionInt, m.VfrHu
 """Messages that `status` requests where they are not heard: ArduPilot sends nothing that nobody has requested."""
 ASKED_ONCE = (m.AutopilotVersion, m.ControlStatus)
 """Those of them that do not change."""
-NOT_YET = result_token(Result.TEMPORARILY_REJECTED)
+NOT_YET = Result.TEMPORARILY_REJECTED
 ARRIVES_WITHIN = 2.0
 """s for a message after its request was accepted. It comes at once unless a frame is lost or a program late."""
 ARRIVES_LATER = 0.3
@@ -159,7 +159,7 @@ class _Asker:
             report = await self._session.request_message(kind, within)
             if report.state is RequestState.NO_ANSWER:
                 return False
-            if report.state is RequestState.REFUSED and report.detail == NOT_YET:
+            if report.answer == NOT_YET:
                 break
             if report.state is not RequestState.ACCEPTED:
                 self._refused.add(kind)

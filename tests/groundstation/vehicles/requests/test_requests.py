@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dialects.enums import Severity
+from dialects.enums import ParamErrorCode, Severity
 from groundstation.vehicles.requests.requests import MAX_REQUESTS, RequestBook, RequestReport, RequestState
 
 WARNING = Severity.WARNING
@@ -100,6 +100,18 @@ def test_our_own_refusal_ends_at_once() -> None:
     book.begin(1, "x")
     book.refuse(1, "no such file", 10.0, by_vehicle=False)
     assert [report.text for report in ended(book)] == ["x: refused, no such file"]
+
+
+def test_a_refusal_keeps_the_number_of_the_answer() -> None:
+    book = RequestBook()
+    for number, by_vehicle in ((1, True), (2, False)):
+        book.begin(number, "read A")
+        book.refuse(number, "no such parameter", 10.0, by_vehicle=by_vehicle, answer=ParamErrorCode.DOES_NOT_EXIST)
+    book.begin(3, "read B")
+    book.accept(3)
+    book.tick(20.0)
+    answers = {report.number: report.answer for report in ended(book)}
+    assert answers == {1: ParamErrorCode.DOES_NOT_EXIST, 2: ParamErrorCode.DOES_NOT_EXIST, 3: None}
 
 
 def test_each_request_ends_once() -> None:
