@@ -121,6 +121,9 @@ CONDITIONS: Mapping[str, LessonCheck] = {
     "key_while_disarmed": LessonCheck(
         "a drive key was held while the rover was disarmed", lambda deeds, asked: deeds.held_disarmed
     ),
+    "held_briefly": LessonCheck(
+        "a drive key was let go within N s, armed", _at_most(lambda deeds: deeds.shortest_hold), "s"
+    ),
     "stands": LessonCheck("the rover stands", _vehicle(lambda vehicle: abs(vehicle.speed or 0.0) < STANDING)),
     "waited": LessonCheck("N s went by", _at_least(lambda deeds: deeds.waited), "s"),
 }

@@ -41,6 +41,8 @@ class Deeds:
         self.top_speed = 0.0
         self.stop_time: float | None = None
         """s from the release of the last key until the rover stood, the shortest."""
+        self.shortest_hold: float | None = None
+        """s for which a drive key was held while the rover was armed, the shortest."""
         self.late = 0
         """Snapshots in which the rover refused demands as too old."""
         self.silence = 0.0
@@ -56,11 +58,12 @@ class Deeds:
         """Names that the screen lists now."""
         self.texts: list[str] = []
         """What the vehicles said."""
-        self.held_disarmed = self.held_elsewhere = self.short_arm = False
+        self.held_disarmed = False
         self.recorded = 0.0
         self.paused_at_stop = False
         self._line = -1
         self._keyed_at = -math.inf
+        self._held_since: float | None = None
         self._released_at: float | None = None
         self._lost_at: tuple[float, float] | None = None
 
@@ -84,8 +87,6 @@ class Deeds:
             self.began = now.uptime
             self._line = max((line.number for line in now.texts), default=-1)
         self._see_texts(now)
-        if now.operator.held and screen not in ("drive", "map"):
-            self.held_elsewhere = True
         self.recorded = 0.0 if now.recording is None else now.recording.seconds
         vehicle, old = now.vehicle, before.vehicle
         if vehicle is None:
@@ -119,6 +120,7 @@ class Deeds:
         if vehicle.armed:
             self.top_speed = max(self.top_speed, speed if keyed else 0.0)
         self._see_release(now, keyed, speed)
+        self._see_hold(now.uptime, keyed)
         self.late += "stale" in vehicle.limits and bool(now.operator.held)
 
     def _see_keys(self, now: Snapshot, vehicle: VehicleView, path: float, turn: float) -> None:
@@ -141,6 +143,13 @@ class Deeds:
                 took = now.uptime - self._released_at
                 self.stop_time = took if self.stop_time is None else min(self.stop_time, took)
                 self._released_at = None
+
+    def _see_hold(self, at: float, keyed: bool) -> None:
+        if keyed:
+            self._held_since = at if self._held_since is None else self._held_since
+        elif self._held_since is not None:
+            took, self._held_since = at - self._held_since, None
+            self.shortest_hold = took if self.shortest_hold is None else min(self.shortest_hold, took)
 
     def _see_link(self, now: Snapshot, vehicle: VehicleView) -> None:
         """Note what a rover did that was not heard."""

@@ -48,6 +48,16 @@ class Deed(NamedTuple):
     """The vehicle that the key chooses, as the first line names it: pressed again, the key would choose another."""
 
 
+class Mistake(NamedTuple):
+    """What is done first in place of a task, and what the pane says of it."""
+
+    step: int
+    key: str
+    hint: str
+    """Its beginning: the rest may be on another page."""
+    held: bool = True
+
+
 def read_deeds(task: str) -> list[Deed]:
     """Return what a task or a hint asks for, in its order."""
     return list(_find_deeds(task))
@@ -92,6 +102,8 @@ class Pupil:
     ) -> None:
         """`sizes`: those of the terminal, which takes the next one for each task."""
         self.terminal, self._columns, self._others = terminal, columns, others
+        self.mistakes: list[Mistake] = []
+        """Those that are still to be made."""
         self._sizes = deque(sizes)
         self._text: list[str] = []
         """The pages before the first task, for what is typed into other terminals."""
@@ -162,6 +174,8 @@ class Pupil:
         """Do one task, again where a late machine did not see it; return the screen when another one is due."""
         patience, tries, heeded = Patience(2 * PATIENCE), 0, ""
         self._take_next_size()
+        for mistake in [each for each in self.mistakes if each.step == step]:
+            self._make(mistake)
         while True:
             assert not patience.ended, "\n".join([*self.log, self.terminal.screen()])
             if self.step(screen := self.terminal.screen()) not in (step, -1):
@@ -177,6 +191,19 @@ class Pupil:
             with suppress(AssertionError):
                 return self.terminal.until(lambda screen: self.step(screen) not in (step, -1), UNTIL)
             self.terminal.until(lambda screen: self.step(screen) != -1, PATIENCE)  # another program has the terminal
+
+    def _make(self, mistake: Mistake) -> None:
+        """Do what is wrong until the hint is seen. It stays, so that a late screen shows it, too."""
+
+        def told(screen: str) -> bool:
+            return self.marked(screen, "!").startswith(mistake.hint)
+
+        if mistake.held:
+            self.terminal.hold_until(mistake.key, told, 2 * PATIENCE)
+        else:
+            self.terminal.press_until(mistake.key, told)
+        self.mistakes.remove(mistake)
+        self.terminal.pause(LET_GO)
 
     def _take_next_size(self) -> None:
         if self._sizes:
@@ -200,9 +227,13 @@ class Pupil:
             self._use_another(deed)
         else:
             with suppress(AssertionError):
-                self.terminal.until(lambda screen: self.step(screen) != step, deed.seconds, holding=key)
+                self.terminal.until(lambda screen: self._is_done(screen, step, key), deed.seconds, holding=key)
             self.terminal.pause(LET_GO)
         self.terminal.pause(0.8)
+
+    def _is_done(self, screen: str, step: int, key: str) -> bool:
+        """Return whether there is nothing to hold this key for any more."""
+        return self.step(screen) != step or (key == ARMS and " ARMED " in screen.split("\n", 1)[0])
 
     def _use_another(self, deed: Deed) -> None:
         assert self._others is not None

@@ -17,7 +17,7 @@ from tests.e2e.browser_terminal import tab_of
 from tests.e2e.chromium import PROGRAM
 from tests.e2e.other_terminals import OtherTerminals
 from tests.e2e.programs import LET_GO
-from tests.e2e.pupil import Pupil, Size
+from tests.e2e.pupil import Mistake, Pupil, Size
 from tests.e2e.ros1.marks import NEEDS_ROS
 from tests.e2e.test_in_tmux import Tmux, tmux
 from tests.e2e.tmux_marks import IN_TMUX
@@ -36,6 +36,14 @@ NUMBERS = range(1, 11)
 LESSONS = [pytest.param(each, marks=[NEEDS_ROS] if each == 9 else []) for each in NUMBERS]
 IN_A_TAB = [each for each in LESSONS if EVERY_SIZE or each.values[0] in (2, 10)]
 """What is driven, found and typed in a browser, and the keys that are given up."""
+
+
+MISTAKES = {
+    6: Mistake(1, "i", "You held a drive key, but the rover is disarmed."),
+    7: Mistake(3, "r", "A rover is armed. Press"),
+    8: Mistake(5, "r", "The rover is disarmed. Press", held=False),
+}
+"""Lesson -> what its pupil does wrong on the way."""
 
 
 @pytest.fixture(autouse=True)
@@ -63,8 +71,9 @@ def test_a_lesson_is_passed_by_its_text_alone(
         sizes = sizes[::-1]
     terminal = tmux(*SMALL, "learn", str(number))
     pupil = Pupil(terminal, SMALL[0], others if number > 8 else None, sizes)
+    pupil.mistakes = [MISTAKES[number]] if number in MISTAKES else []
     last = pupil.learn()
-    assert pupil.step(last) == 0
+    assert (pupil.step(last), pupil.mistakes) == (0, []), "a mistake has got its hint, and cost nothing"
     wait_until(lambda: Progress(tmp_path / "state" / "mavhelm" / "learn.json").done == (str(number),), "it is saved")
     terminal.press("C-q")
     if number == 7:  # the replay has ended; the session has noted that the lesson is done there

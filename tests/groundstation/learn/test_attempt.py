@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from msgspec.structs import replace
 
@@ -17,6 +19,15 @@ NEUTRAL = OperatorView(gate_open=True)
 FORWARD = OperatorView(gate_open=True, held=("i",), throttle=0.6)
 LEFT = OperatorView(gate_open=True, held=("j",), steering=-0.6)
 TICK = 0.2
+
+
+class Did(NamedTuple):
+    """What went on for some time."""
+
+    seconds: float
+    operator: OperatorView = NEUTRAL
+    changes: Mapping[str, Any] = MappingProxyType({})
+    speed: float = 0.0
 
 
 class Course:
@@ -86,6 +97,18 @@ def test_a_stop_counts_after_motion_and_in_time() -> None:
     course.go(1)
     assert not course.attempt.done
     course.go(2, FORWARD, speed=1.0)
+    course.go(1)
+    assert course.attempt.done
+
+
+def test_a_short_hold_is_told_from_a_long_one() -> None:
+    course = passes(step("held_briefly", 2))
+    course.go(3, FORWARD)
+    course.go(1)
+    course.go(1, FORWARD, armed=False)
+    course.go(1)
+    assert not course.attempt.done
+    course.go(1, FORWARD, armed=True)
     course.go(1)
     assert course.attempt.done
 
@@ -173,6 +196,51 @@ def test_wrong_deeds_of_three_more_lessons_get_their_hints() -> None:
     parameter.go(3, FORWARD, speed=1.0, armed=True)
     assert [each.attempt.step for each in (messages, other_rover, parameter)] == [3, 3, 1]
     assert [each.attempt.hint for each in (messages, other_rover, parameter)] == ["", "", ""]
+
+
+WRONG_DEEDS: tuple[tuple[int, int, tuple[Did, ...], str], ...] = (
+    (5, 2, (Did(1, FORWARD, {"armed": True}), Did(1)), "Hold `drive.forward` longer"),
+    (5, 2, (Did(1, FORWARD, {"armed": False}),), "The rover is disarmed. Hold `vehicle.arm` for 2 s"),
+    (5, 2, (Did(21, changes={"mode": "HOLD"}),), "Is the mode HOLD?"),
+    (7, 1, (Did(1, FORWARD, {"armed": False}),), "You held a drive key, but the rover is disarmed."),
+    (7, 1, (Did(1, changes={"mode": "HOLD"}),), "The rover is in mode HOLD now."),
+    (7, 3, (Did(1),), "A rover is armed. Press `app.drive`"),
+    (7, 4, (Did(41, changes={"armed": False}),), "Press `/` and `ENTER` again."),
+    (8, 1, (Did(31, FORWARD),), "Arrows move the cursor"),
+    (8, 3, (Did(41),), "It is not written yet"),
+    (8, 5, (Did(1, changes={"armed": False}),), "The rover is disarmed. Press `app.drive`"),
+    (9, 2, (Did(61, changes={"armed": False}),), "Does the third terminal say that there is no master?"),
+    (9, 3, (Did(1, FORWARD, speed=1.0),), "That was your key. Let go, and let the topic drive."),
+    (10, 2, (Did(1, FORWARD, speed=1.0),), "That was your key. Let go, and run the program"),
+    (10, 2, (Did(121),), "Is mavhelm installed for that Python?"),
+)
+"""Lesson and task, what is done in its place, and the beginning of the hint."""
+
+
+def test_wrong_deeds_of_the_later_lessons_get_their_hints() -> None:
+    for number, task, deeds, hint in WRONG_DEEDS:
+        course = begin(number, task)
+        course.go(0.4, armed=deeds[0].changes.get("armed", True))
+        for each in deeds:
+            course.go(each.seconds, each.operator, each.speed, **each.changes)
+        assert (course.attempt.step, course.attempt.hint.startswith(hint)) == (task - 1, True), (number, task, hint)
+
+
+RIGHT_DEEDS: tuple[tuple[int, int, tuple[Did, ...]], ...] = (
+    (5, 2, (Did(4, FORWARD, {"armed": True, "limits": ("stale",)}),)),
+    (7, 1, (Did(3, FORWARD, {"armed": True, "mode": "MANUAL"}, speed=1.0),)),
+    (9, 3, (Did(4, NEUTRAL, {"demand": (0.5, 0.0)}, speed=1.0),)),
+    (10, 2, (Did(4, NEUTRAL, {"demand": (0.5, 0.0)}, speed=1.0),)),
+)
+
+
+def test_a_task_is_done_behind_a_wrong_deed() -> None:
+    for number, task, deeds in RIGHT_DEEDS:
+        course = begin(number, task)
+        [wrong, *_] = [each for each in WRONG_DEEDS if each[:2] == (number, task)]
+        for each in (*wrong[2], Did(2), *deeds):
+            course.go(each.seconds, each.operator, each.speed, **each.changes)
+        assert (course.attempt.step, course.attempt.hint) == (task, ""), (number, task)
 
 
 def begin(number: int, task: int) -> Course:
