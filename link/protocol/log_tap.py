@@ -4,7 +4,8 @@ Frames are recorded without their signatures, as https://mavlink.io/en/guide/mes
 at all if signing refuses them.
 
 Our own messages are numbered for the log as those of one peer that loses nothing, so that tools that count losses count
-none. For the same reason a frame that several links bring is recorded once. Left out are messages with the traits
+none. For the same reason a frame that several links bring is recorded once, also of a vehicle that numbers or signs
+the frames of each link for itself, if the message has the vehicle's time. Left out are messages with the traits
 SECRET and UNLOGGED (dialects/traits.py), and those with LOG_ONLY that arrive: notes of the program that records stand
 in its log, and nobody can add any over a link.
 """
@@ -14,12 +15,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from dialects import codec
+from dialects.codec import HEADER_V2, MAGIC_V2
+from dialects.messages import MESSAGES
 from dialects.traits import LOG_ONLY, SECRET, UNLOGGED
 from link.protocol.frame import Frame
 from link.protocol.sent_frames import SentFrames
 from link.signing.signature import is_signed, strip_signature
 
 _NOT_RECEIVED = SECRET | LOG_ONLY
+_TIMED = frozenset(number for number, message in MESSAGES.items() if "time_boot_ms" in message.fieldnames)
+"""Messages of which two of one content are of one moment."""
 
 COPY_WINDOW = 1.0
 """s, at least, within which a frame from another link is a copy; twice as long at most."""
@@ -36,7 +41,7 @@ class _Copies:
         self._since = 0.0
 
     def is_copy(self, raw: bytes, link: int, now: float) -> bool:
-        """Return whether another link has brought this frame just before; else remember it."""
+        """Return whether another link has brought this frame, or its content, just before; else remember it."""
         age = now - self._since
         if age >= COPY_WINDOW or len(self._links) >= MAX_REMEMBERED:
             older = self._links if age < 2 * COPY_WINDOW else {}
@@ -47,6 +52,13 @@ class _Copies:
             return True
         self._links[raw] = link
         return False
+
+
+def _content(raw: bytes) -> bytes:
+    """Return what a copy over another link has as well: without number, checksum and signature if it has a time."""
+    if raw[0] != MAGIC_V2 or int.from_bytes(raw[7:10], "little") not in _TIMED:
+        return raw
+    return raw[5 : HEADER_V2 + raw[1]]
 
 
 class LogTap:
@@ -77,7 +89,7 @@ class LogTap:
     def record_received(self, frames: Sequence[Frame], link: int, now: float) -> None:
         """Record complete frames of any sender. `link` is the index of the link that brought them."""
         kept = [raw for number, _, _, _, raw in frames if number not in _NOT_RECEIVED]
-        kept = [raw for raw in kept if not self._copies.is_copy(raw, link, now) and raw not in self._sent]
+        kept = [raw for raw in kept if not self._copies.is_copy(_content(raw), link, now) and raw not in self._sent]
         if kept:
             keep = self._signatures
             self._add(now, kept if keep else [strip_signature(raw) if is_signed(raw) else raw for raw in kept])

@@ -74,6 +74,24 @@ def test_a_frame_that_two_links_bring_is_recorded_once() -> None:
     assert tapped.frames == [demand(number) for number in range(4)]
 
 
+def test_a_vehicle_may_number_and_sign_each_link_for_itself() -> None:
+    """Messages with its time count once; others, of which two may be alike, each time."""
+    tapped = Tapped()
+    for number in range(3):
+        for message in (m.Attitude(number * 50, 0, 0, 0, 0, 0, 0), m.Heartbeat(0, 10, 3, 81, 4, 3)):
+            payload = codec.encode_payload(message)
+            first = codec.frame(type(message).id, payload, number, 1, 1)
+            second = codec.frame(type(message).id, payload, 90 + number, 1, 1)
+            of_another = codec.frame(type(message).id, payload, 90 + number, 2, 1)
+            for link, raw in ((0, first), (1, second), (1, of_another), (0, first)):
+                tapped.log_tap.record_received([framed(raw)], link, float(number))
+    systems = [(int.from_bytes(raw[7:10], "little"), raw[5]) for raw in tapped.frames]
+    attitude, heartbeat = m.Attitude.id, m.Heartbeat.id
+    assert systems.count((attitude, 1)) == 2 * 3, "the repeat on one link is none of two links"
+    assert systems.count((attitude, 2)) == 3
+    assert systems.count((heartbeat, 1)) == 3 * 3
+
+
 def test_repeat_on_one_link_and_late_one_on_another_are_recorded() -> None:
     tapped = Tapped()
     for link, now in ((0, 0.0), (0, 0.1), (1, 0.2), (1, 2 * COPY_WINDOW + 0.3)):

@@ -11,7 +11,7 @@ from gpiozero.pins.mock import MockFactory, MockPin, MockTriggerPin
 from dialects.enums import DriveLimit, DriveType
 from tests.vehicle.sensors.ranging.frames import Line, ld06_turn, tfmini_frame
 from tests.waits import wait_until
-from vehicle.params import Params
+from vehicle.params import TABLE, Params
 from vehicle.proximity.obstacles import Obstacles
 from vehicle.sensors.ranging.serial_ranger import SerialRanger
 from vehicle.sensors.ranging.settings import Lidar, Tfmini, Ultrasonic
@@ -106,6 +106,24 @@ def test_an_hc_sr04_pings_and_names_a_broken_wire() -> None:
     finally:
         sensor.close()
         sensor.close()
+
+
+async def test_a_rangefinder_that_is_not_installed_limits_nothing() -> None:
+    """Only rover.toml says what is installed: there is no RNGFND1_TYPE, and the other parameters make no sensor."""
+    assert [each.name for each in TABLE if each.name.startswith("RNGFND") and each.name.endswith("_TYPE")] == []
+    suite = open_sensors(SensorSettings(computer=False))
+    try:
+        now = time.monotonic()
+        readings = suite.read(now)
+        assert (readings.ranges, readings.faults, readings.configured) == ((), (), ())
+        obstacles = Obstacles(Params({"RNGFND1_ORIENT": 4, "RNGFND1_MAX": 0.5, "AVOID_LOST_SPD": 0.0}), DriveType.SKID)
+        for later in (0.0, 60.0):
+            obstacles.sense(suite.read(now + later).ranges)
+            obstacles.move(STILL, None, None, now + later, 0.02, armed=True)
+            assert obstacles.share(AHEAD, STILL) == obstacles.share(BACK, STILL) == (1.0, 0)
+        assert obstacles.faults == {}
+    finally:
+        suite.close()
 
 
 def test_two_rangefinders_have_two_numbers() -> None:
