@@ -13,6 +13,7 @@ from textual.widgets import Input
 from groundstation.snapshot import Snapshot
 from groundstation.speech.announcements import Announcement, Priority, is_worth_saying, spoken_state, text_announcement
 from groundstation.speech.voice import Voice
+from groundstation.ui.terminal.painting import visible_regions
 from groundstation.ui.widgets.instrument import Instrument
 
 SHOW_CURSOR = "\x1b[?25h"
@@ -89,8 +90,8 @@ class WithoutLooking:
 
 def find_cursor(screen: Screen[Any]) -> Offset | None:
     """Return where a list draws its cursor, in cells of the terminal; None where no list has one."""
-    for each in screen.query(Instrument):
-        line = each.cursor_line() if each.display and each.region else None
+    for each, region in visible_regions(screen):
+        line = each.cursor_line() if isinstance(each, Instrument) else None
         if line is not None:
-            return each.content_region.offset + Offset(0, line)
+            return region.shrink(each.styles.gutter).offset + Offset(0, line)
     return None

@@ -108,13 +108,15 @@ def _stop_question(now: DisplayState) -> Iterator[Alert]:
 def handover_text(now: DisplayState) -> str:
     """Return the request of another screen or ground station with the keys that answer it; "" without one."""
     notice, lease = now.snapshot.handover, now.snapshot.lease
-    left = lease.left if lease.asks else notice.left if notice else 0.0
-    answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({left:.0f} s)"
     if lease.asks:
-        return f"{lease.asks} asks to drive: {answers}"
+        return f"{lease.asks} asks to drive: {_answers(now, lease.left)}"
     if notice is None:
         return ""
-    return f"GCS {notice.station} requests control of {notice.vehicle}: {answers}"
+    return f"GCS {notice.station} requests control of {notice.vehicle}: {_answers(now, notice.left)}"
+
+
+def _answers(now: DisplayState, left: float) -> str:
+    return f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({left:.0f} s)"
 
 
 def _handover(now: DisplayState) -> Iterator[Alert]:

@@ -126,6 +126,11 @@ def find_background(widget: Widget) -> Background | None:
     return Background(colour, inner.rich_style)
 
 
+def visible_regions(screen: Screen[Any]) -> Iterator[tuple[Widget, Region]]:
+    """Yield each widget that is on the screen, and where it is. Costs no search of all widgets, as a query does."""
+    return ((widget, region) for widget, (region, _) in screen._compositor.visible_widgets.items())
+
+
 def mark_changed(widget: Widget, regions: Iterable[Region]) -> None:
     """Have parts of a widget painted, which keeps its size: at the end of `painted_at_once`, else a little later."""
     screen = widget.screen

@@ -58,6 +58,8 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         super().__init__(id=id, classes=classes)
         self._value = value
         self._strips: list[Strip] = []
+        self._cursor: tuple[list[Strip], int | None] = ([], None)
+        """Lines, and which of them has the cursor."""
         self._drawn_for = (Size(0, 0), theme_changes())
         self._ground: tuple[int, Background | None] = (-1, None)
 
@@ -73,7 +75,10 @@ class Instrument(Widget, Generic[Value], can_focus=False):
 
     def cursor_line(self) -> int | None:
         """Return the line on which the cursor is drawn."""
-        return next((y for y, drawn in enumerate(self._strips) if drawn.text.startswith(CURSOR)), None)
+        if self._cursor[0] is not self._strips:
+            line = next((y for y, drawn in enumerate(self._strips) if drawn.text.startswith(CURSOR)), None)
+            self._cursor = self._strips, line
+        return self._cursor[1]
 
     def show(self, value: Value) -> None:
         """Show another value."""
