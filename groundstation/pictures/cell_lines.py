@@ -56,16 +56,24 @@ class CellLines:
 
     def __init__(self, ink: Ink) -> None:
         self._texts, self._grounds = _Codes(ink, ground=False), _Codes(ink, ground=True)
+        self._drawn: dict[bytes, str] = {}
+        """Pixels of two rows of the last picture -> their line: what stands still is not drawn again."""
 
     def draw(self, picture: Picture) -> list[str]:
         """Return one line for two rows of pixels."""
-        width, values = picture.width, pixel_numbers(picture)
         self._texts.tidy()
         self._grounds.tidy()
-        return [
-            self._draw_line(values[y * width : (y + 1) * width], values[(y + 1) * width : (y + 2) * width])
-            for y in range(0, picture.height - 1, 2)
-        ]
+        before, self._drawn = self._drawn, {}
+        lines = []
+        for y in range(0, picture.height - 1, 2):
+            rows = picture.rows(y, y + 2)
+            line = self._drawn[rows] = before.get(rows) or self._draw_rows(rows, picture.width)
+            lines.append(line)
+        return lines
+
+    def _draw_rows(self, rows: bytes, width: int) -> str:
+        values = pixel_numbers(rows)
+        return self._draw_line(values[:width], values[width:])
 
     def _draw_line(self, upper: Sequence[int], lower: Sequence[int]) -> str:
         texts, grounds = self._texts, self._grounds
@@ -87,11 +95,11 @@ class CellLines:
         return "".join(parts)
 
 
-def pixel_numbers(picture: Picture) -> list[int]:
+def pixel_numbers(pixels: bytes) -> list[int]:
     """Return each pixel as a number, which is compared and looked up sooner than three bytes."""
-    padded = bytearray(4 * picture.width * picture.height)
+    padded = bytearray(len(pixels) // 3 * 4)
     for channel in range(3):
-        padded[channel::4] = picture.rgb[channel::3]
+        padded[channel::4] = pixels[channel::3]
     return memoryview(padded).cast("I").tolist()
 
 

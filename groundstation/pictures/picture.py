@@ -24,8 +24,12 @@ class Picture(msgspec.Struct, frozen=True):
 
     def row(self, number: int) -> bytes:
         """Return the pixels of a row, from 0."""
+        return self.rows(number, number + 1)
+
+    def rows(self, first: int, end: int) -> bytes:
+        """Return the pixels of some rows, without those of row `end`."""
         size = 3 * self.width
-        return self.rgb[number * size : (number + 1) * size]
+        return self.rgb[first * size : end * size]
 
     def brightness(self) -> bytes:
         """Return one byte for each pixel, 0 to 255."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Sequence
 
 from msgspec.structs import replace
@@ -19,8 +20,8 @@ class PictureDrawing:
     def __init__(self, screen: Screen[None], feed: CameraFeed, value: Callable[[], CameraValue]) -> None:
         self._screen, self._feed, self._value = screen, feed, value
         self._output = feed.output
-        self._waits = False
-        """A picture waits until the terminal may have it."""
+        self._late: asyncio.TimerHandle | None = None
+        """A picture waits until the terminal may have it. Not a timer of Textual, which takes a task and messages."""
         self._pictures: Sequence[CameraPicture] = ()
 
     def follow(self, view: CameraView | None, pictures: Sequence[CameraPicture]) -> None:
@@ -34,11 +35,10 @@ class PictureDrawing:
     def show(self, pictures: Sequence[CameraPicture]) -> bool:
         """Draw the newest picture, or later if the terminal may not have it yet. Return whether it was drawn."""
         self._pictures = pictures
-        if not pictures or self._waits:
+        if not pictures or self._late is not None:
             return False
         if wait := self._output.wait():  # the last one before the stream stands still is drawn, too
-            self._waits = True
-            self._screen.set_timer(wait, self._show_late)
+            self._late = asyncio.get_running_loop().call_later(wait, self._show_late)
             return False
         self._feed.choose_newest()
         value = self._value()
@@ -56,8 +56,13 @@ class PictureDrawing:
         return True
 
     def _show_late(self) -> None:
-        self._waits = False
-        self._feed.report()
+        self._late = None
+        if not self._screen.is_running:
+            return
+        try:
+            self._feed.report()
+        except Exception as error:
+            self._screen.app._handle_exception(error)
 
     def draw_pixels(self, pictures: Sequence[CameraPicture]) -> None:
         """Draw what stands over the cells of the widgets, where it has changed; remove it from the others."""
@@ -68,5 +73,8 @@ class PictureDrawing:
     def stop(self) -> None:
         """End the decoder, and remove what stands over the cells."""
         self._feed.stop()
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
         for each in self._pictures:
             self._output.write(each.uncover())

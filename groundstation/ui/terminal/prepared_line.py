@@ -14,15 +14,23 @@ from textual.strip import Strip
 class PreparedLine(Strip):
     """Textual's line with the text that draws it; its segments are only made where something lies over a part of it."""
 
-    __slots__ = ("_build", "_built", "drawn")
+    __slots__ = ("_build", "_built", "_written", "drawn")
 
     def __init__(self, drawn: str, width: int, build: Callable[[], list[Segment]]) -> None:
         """`build` returns the same line in segments, `width` cells together."""
         self._build = build
         self._built: list[Segment] | None = None
+        self._written: int | None = None
         self.drawn = drawn
         """What is written to the terminal."""
         super().__init__((), width)
+
+    @property
+    def written(self) -> int:
+        """Bytes that are written to the terminal."""
+        if self._written is None:
+            self._written = len(self.drawn.encode())
+        return self._written
 
     @property
     def _segments(self) -> list[Segment]:

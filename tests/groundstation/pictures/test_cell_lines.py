@@ -56,3 +56,15 @@ def test_a_line_begins_and_ends_without_colours_of_others() -> None:
     for line in CellLines(INKS[Protocol.BLOCKS]).draw(simplify(NOISE, COLUMNS, ROWS, 0)):
         assert line.startswith("\x1b[48;2;")
         assert line.endswith("\x1b[0m")
+
+
+OLD, NEW = (1, 2, 3, 4), (1, 2, 5, 6)
+"""Rows of two pictures, of which the first line of cells is the same."""
+
+
+def test_lines_that_stand_still_are_not_drawn_again() -> None:
+    lines = CellLines(INKS[Protocol.BLOCKS])
+    first, second = (Picture(1, 4, bytes(3 * row + part for row in rows for part in range(3))) for rows in (OLD, NEW))
+    before, after = lines.draw(first), lines.draw(second)
+    assert after[0] is before[0]
+    assert after[1] == CellLines(INKS[Protocol.BLOCKS]).draw(second)[1] != before[1]

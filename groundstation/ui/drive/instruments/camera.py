@@ -69,7 +69,7 @@ class CameraPicture(Instrument[CameraValue]):
             return int(self._share * _pixels_of(value) / (value.level + 1) ** 2)
         lines = self._cells(value, size.width, size.height - 1) if min(size) >= 2 else []
         changed = (line for line, before in zip_longest(lines, self._strips[: len(lines)]) if line != before)
-        return sum(len(line.drawn.encode()) for line in changed if isinstance(line, PreparedLine))
+        return sum(line.written for line in changed if isinstance(line, PreparedLine))
 
     def cursor_line(self) -> int | None:
         """Return None: pictures have no cursor."""

@@ -48,3 +48,7 @@ def test_parts_of_a_line_are_those_of_its_segments() -> None:
     assert line.crop(2, 6).text == "cdef"
     assert [each.style for each in line.apply_filter(NoColourFilter(), Color(0, 0, 0))] != [RED, None]
     assert maker.made == 1
+
+
+def test_the_size_of_a_line_counts_bytes() -> None:
+    assert PreparedLine("\x1b[31m▀", 1, Maker()).written == 5 + 3
