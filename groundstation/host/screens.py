@@ -13,7 +13,7 @@ import msgspec
 
 from dialects.enums import Severity
 from groundstation.host.screen_port import ScreenPort
-from groundstation.intents.driving import DriveKeyDown, Stop
+from groundstation.intents.driving import DriveByPicture, DriveKeyDown, Stop
 from groundstation.intents.session import Detach, Quit, RenewLease
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.watch import Watch
@@ -154,10 +154,14 @@ class ScreenSet:
         return not holds or self._station.renew_lease(now)
 
     def _prolongs(self, attached: _Attached, batch: IntentBatch, intent: AnyIntent, now: float) -> bool:
-        """Hold a key on that repeats 30 times a second: no message and no view follows from that."""
-        if not isinstance(intent, DriveKeyDown) or now - batch.time > MAX_INTENT_AGE:
+        """Hold a key on that repeats 30 times a second, or take a newer picture: no message and no view follows."""
+        if not isinstance(intent, DriveKeyDown | DriveByPicture) or now - batch.time > MAX_INTENT_AGE:
             return False
-        return attached.screen is self.lease.holder and self._station.prolong_key(intent, now)
+        if attached.screen is not self.lease.holder:
+            return False
+        if isinstance(intent, DriveByPicture):
+            return self._station.prolong_picture(intent, now)
+        return self._station.prolong_key(intent, now)
 
     def finish_read(self, port: ScreenPort, now: float) -> None:
         """Send the messages of the intents, and the views that they have changed."""

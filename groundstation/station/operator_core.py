@@ -23,7 +23,7 @@ from link.core import LinkReport, Outgoing, Received
 from link.services.timesync import handle_request
 
 if TYPE_CHECKING:
-    from groundstation.intents.driving import DriveKeyDown
+    from groundstation.intents.driving import DriveByPicture, DriveKeyDown
     from groundstation.intents.union import AnyIntent
     from groundstation.station.intent_handler import IntentHandler
 
@@ -325,6 +325,14 @@ class OperatorCore:
             return False
         self._listener.repeat_key(push, now)
         return True
+
+    def prolong_picture(self, intent: DriveByPicture, now: float) -> bool:
+        """Handle a newer picture of a driver whose keys drive by pictures, ten times a second.
+
+        Returns False if it changes more than until when they do: then it is an intent like any other.
+        """
+        self._expire_lease(now)
+        return self.operator.live and self.operator.prolong_picture(intent, now)
 
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""

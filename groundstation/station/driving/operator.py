@@ -149,6 +149,10 @@ class OperatorSession:
         """Note whether the driver drives by the picture, and when the newest one was taken."""
         self._picture.handle(intent, now)
 
+    def prolong_picture(self, intent: DriveByPicture, now: float) -> bool:
+        """Let keys drive by a newer picture. Returns False if it is more than that."""
+        return self._picture.prolong(intent, now)
+
     def blocked_reason(self, now: float) -> str | None:
         """Return why the screen keeps keys from driving; None when it does not."""
         shut = None if self._gate.open else self._gate_reason

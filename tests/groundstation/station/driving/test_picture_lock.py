@@ -7,7 +7,7 @@ import math
 import pytest
 
 from groundstation.intents.driving import CLOCK_ERROR, OLDEST_PICTURE, DriveByPicture, DriveKeyUp, EmergencyStop
-from groundstation.intents.session import SetKeyGate
+from groundstation.intents.session import LEASE_TIMEOUT, SetKeyGate
 from groundstation.station.driving.picture_lock import REASON, PictureLock
 from tests.groundstation.cockpits import FORWARD, Cockpit, driving_cockpit
 
@@ -100,3 +100,31 @@ def test_clocks_may_differ_a_little() -> None:
     lock.handle(DriveByPicture(drives=True, taken_at=5.0 + CLOCK_ERROR / 2), 5.0)
     assert lock.refusal(5.0 + OLDEST_PICTURE - 0.01) is None
     assert lock.refusal(5.0 + OLDEST_PICTURE + 0.01) == REASON
+
+
+def test_a_newer_picture_lets_keys_drive_on_and_sends_nothing() -> None:
+    cockpit = seeing_cockpit()
+    station = cockpit.station
+    for _ in range(20):
+        newest = cockpit.now - 0.1
+        assert station.prolong_picture(DriveByPicture(drives=True, taken_at=newest), cockpit.now)
+        assert not station.messages_to_send()
+        cockpit.run(0.1)
+        assert cockpit.operator.throttle == pytest.approx(0.6)
+    cockpit.run(newest + OLDEST_PICTURE - cockpit.now + 0.05)
+    assert not cockpit.operator.throttle
+    assert cockpit.demands()[-1][1] == 0
+    assert not station.prolong_picture(DriveByPicture(drives=True, taken_at=cockpit.now), cockpit.now), "it was locked"
+
+
+def test_what_changes_more_than_the_time_is_an_intent() -> None:
+    cockpit = seeing_cockpit()
+    for drives, taken_at in ((False, cockpit.now), (True, 0.0), (True, math.nan), (True, cockpit.now - 0.4)):
+        assert not cockpit.station.prolong_picture(DriveByPicture(drives=drives, taken_at=taken_at), cockpit.now)
+    cockpit.leasing = False
+    late = cockpit.now + LEASE_TIMEOUT + 0.05
+    assert not cockpit.station.prolong_picture(DriveByPicture(drives=True, taken_at=late), late), (
+        "the lease has run out"
+    )
+    by_eye = driving_cockpit()
+    assert not by_eye.station.prolong_picture(DriveByPicture(drives=True, taken_at=by_eye.now), by_eye.now)
