@@ -14,6 +14,7 @@ from textual.widgets import Static
 from groundstation.intents.driving import DriveByPicture
 from groundstation.intents.session import StartSimulator
 from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.ui.base.chrome import InstrumentRow
 from groundstation.ui.base.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.display.alerts import active_alerts
 from groundstation.ui.display.display_state import DisplayState
@@ -46,6 +47,9 @@ BORDERS = 2
 """Rows of the border of a panel."""
 MOST_LINKS = 6
 """Lines of the panel of the links: three links. The pane of the links and the Links screen show all."""
+
+BESIDE_PICTURE = ("motion", "heading", "drive", "readings")
+"""Places that the full picture hides, with all that is in them."""
 
 SLOW = 0.5
 """s between updates of slow rows. Each update changes all their lines, which is expensive over SSH."""
@@ -182,7 +186,7 @@ class DriveScreen(ConsoleScreen):
         if self._small or self.snapshot.vehicle is None:
             return ()
         wanted = [self._with_port(request) for pane in self._shown_panes for request in pane.requests]
-        chart = [SpeedRequest()] if self.has_class("-chart") else []
+        chart = [SpeedRequest()] if self.has_class("-chart") and self._pane_before is None else []
         return tuple(dict.fromkeys([*wanted, *chart]))
 
     def _with_port(self, request: ViewRequest) -> ViewRequest:
@@ -215,6 +219,9 @@ class DriveScreen(ConsoleScreen):
         else:
             pane.turn_to(self._pane_before)
             self._pane_before = None
+            for row in INSTRUMENTS:
+                if row.place in BESIDE_PICTURE:
+                    self.show_row(row)
         self.update_classes({"-picture": self._pane_before is not None})
         self._report_picture()
         self._show_panes()
@@ -279,6 +286,11 @@ class DriveScreen(ConsoleScreen):
         self._follow_camera()
         if self._pane_before is not None:
             self._report_picture()
+
+    def show_row(self, row: InstrumentRow) -> None:
+        """Show the state in an instrument, unless the full picture hides it."""
+        if self._pane_before is None or row.place not in BESIDE_PICTURE:
+            super().show_row(row)
 
     def _fit_panels(self) -> None:
         """Give the panel of the stop bounds no more rows than it has lines, and that of the links two for each."""

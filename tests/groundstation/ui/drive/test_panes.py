@@ -98,6 +98,21 @@ async def test_the_picture_fills_drive_and_the_station_is_told() -> None:
         assert len(screen.station.of(DriveByPicture)) == count
 
 
+async def test_what_the_picture_hides_is_up_to_date_after_it() -> None:
+    async with console((162, 70)) as screen:
+        await screen.show(snapshot(vehicle=vehicle(heading=0.2)))
+        before = screen.text
+        await until(lambda: SpeedRequest() in watched(screen))
+        await screen.press("f")
+        await screen.show(snapshot(vehicle=vehicle(heading=2.0)))
+        await until(lambda: SpeedRequest() not in watched(screen))
+        assert "115°" not in screen.text
+        await screen.press("f")
+        assert "115°" in screen.text
+        assert "115°" not in before
+        await until(lambda: SpeedRequest() in watched(screen))
+
+
 @pytest.mark.parametrize("keymap", KEYMAPS)
 def test_only_keys_of_speed_view_and_mute_stop_nothing(keymap: str) -> None:
     keys = Keymap(keymap, KEYMAPS[keymap])
