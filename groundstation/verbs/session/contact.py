@@ -62,7 +62,9 @@ class VehicleContact:
     @property
     def in_control(self) -> bool:
         """This program is in control, as the vehicle reports it."""
-        return bool(self.state.driver) and self.state.control.is_program(self.ids, self.session, accepted=False)
+        return bool(self.state.driver) and self.state.control.is_program(
+            self.ids, self.session, accepted=self._is_claimed
+        )
 
     @property
     def other_driver(self) -> int | None:
@@ -84,6 +86,11 @@ class VehicleContact:
         self._jobs.append(job)
         self.services.lasting.add(job.number)
         job.tick(self.client, self.services.book, now)
+
+    @property
+    def _is_claimed(self) -> bool:
+        """Whether it has accepted arming or a request for control from this program, and has not disarmed since."""
+        return self._station.parts.commander.is_claimed(self.state.system)
 
     def claim(self, now: float) -> None:
         """Note that the vehicle has accepted arming."""

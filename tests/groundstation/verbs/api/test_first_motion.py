@@ -38,6 +38,29 @@ def test_wheels_turn_soon_where_our_vehicle_takes_neutral() -> None:
     assert program.strays == []
 
 
+LATE = 0.4
+"""s each way: proofs are older than 0.45 s (OPR_ECHO_MAX) when they arrive, and prove nothing."""
+
+
+def test_a_call_drives_what_was_armed_while_the_link_was_late() -> None:
+    program = VirtualProgram(0.0, 1)
+
+    async def run(program: VirtualProgram) -> None:
+        await asyncio.sleep(2.0)
+        for pipe in program.pipes:
+            pipe.delay = LATE
+        await asyncio.sleep(2.0)
+        assert (await program.call(("arm", "--wait", "30")))["code"] == 0
+        for pipe in program.pipes:
+            pipe.delay = 0.0
+        await asyncio.sleep(2.0)
+        assert program.session.vehicle.control.session == 0, "the vehicle counts it as one without sessions"
+        assert await time_to_motion(program) < 1.0
+
+    program.run(run)
+    assert program.strays == []
+
+
 @pytest.mark.slow
 def test_each_drive_turns_the_wheels_where_frames_get_lost() -> None:
     for seed in (111, 181):  # without a look at the vehicle's reports one drive of each moved nothing

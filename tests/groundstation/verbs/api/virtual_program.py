@@ -83,6 +83,7 @@ class VirtualProgram:
         self.seat = StationSeat(self.core.station, self.core, "a program", lambda: None, needs_session=True, alone=True)
         up: LossyPipe[bytes] = LossyPipe(loss=loss, seed=seed)
         down: LossyPipe[bytes] = LossyPipe(loss=loss, seed=seed + 1)
+        self.pipes = (up, down)
         motors = self.motors
         vehicle = ControlLoop(self.rover, motors, SimulatedBody(lambda: motors.outputs))
         self.world = World(self.core.station, vehicle, near_ids=IDS, up=up, down=down)
