@@ -20,6 +20,7 @@ from groundstation.station.messages.message_traffic import MessageTraffic
 from groundstation.verbs.common.output import Output
 from link.endpoint import parse_endpoint
 from tests.groundstation.verbs.verb_runs import run_verb
+from tests.waits import PATIENCE
 from vehicle.cli.options import GROUND_STATION
 from vehicle.runtime.log import DaemonLog
 
@@ -85,7 +86,7 @@ with lock_state_folder(Path({str(folder)!r})):
     LogFile({str(folder / "vehicle.log")!r}).write(b"x")
     MotorLog({str(folder / "motors.log")!r}).write("x")
 """
-    subprocess.run([sys.executable, "-c", script], check=True, timeout=30, cwd=ROOT)
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=PATIENCE, cwd=ROOT)
     assert folder.stat().st_mode & 0o077 == 0
     files = {path.name: path.stat().st_mode & 0o777 for path in folder.iterdir()}
     assert files == {"parameters.json": 0o600, "vehicle.log": 0o600, "motors.log": 0o600}
@@ -131,6 +132,6 @@ def test_a_process_with_keys_dumps_no_core(tmp_path: Path) -> None:
         f"load_keys(Path({str(tmp_path / 'keys.toml')!r})); print(resource.getrlimit(resource.RLIMIT_CORE))"
     )
     done = subprocess.run(
-        [sys.executable, "-c", script], check=True, timeout=30, cwd=ROOT, capture_output=True, text=True
+        [sys.executable, "-c", script], check=True, timeout=PATIENCE, cwd=ROOT, capture_output=True, text=True
     )
     assert done.stdout.strip() == "(0, 0)"

@@ -11,17 +11,22 @@ from __future__ import annotations
 
 import asyncio
 import os
+import subprocess
 import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Value = TypeVar("Value")
 
-PATIENCE = 60.0
-"""s until a test gives up on what must come. Nothing may be asserted by it: it only ends a test that has failed."""
+PATIENCE = 120.0
+"""s until a test gives up on what must come. Nothing may be asserted by it: it only ends a test that has failed.
+
+An agent and its server start in 5 s of CPU, which take a minute where ten others want each processor, too."""
+MOST_DELAYS = 3.0
+"""Times the patience that delays may add: threads that wait at the same time are late by more than passes."""
 POLL = 0.01
 """s between two looks."""
 SHORT_POLL = 0.001
@@ -69,6 +74,15 @@ async def until(condition: Callable[[], Value], within: float = PATIENCE) -> Val
     return value
 
 
+def wait_for_end(process: subprocess.Popen[Any], within: float = PATIENCE) -> int:
+    """Wait until a program has ended, and return its exit code; its delays are added to `within`."""
+    patience, pause = Patience(within, process.pid), threading.Event()
+    while (code := process.poll()) is None:
+        assert not patience.ended, f"not ended within {within:g} s: {process.args!r}"
+        pause.wait(POLL)
+    return int(code)
+
+
 class Patience:
     """A wait of at most `within` s, to which the delays of this process and of those that are waited for are added.
 
@@ -82,11 +96,11 @@ class Patience:
     def ended(self) -> bool:
         """Return whether the time is over."""
         took = time.monotonic() - self._began
-        return took > self._within and took > self._within + self._waits.total()
+        return took > self._within and took > self._within + min(self._waits.total(), MOST_DELAYS * self._within)
 
 
 class Waits:
-    """The delays of processes, their children and this process: all their threads, from now on.
+    """The delays of processes, of what they have started, and of this process: all their threads, from now on.
 
     Call `total` now and then: of a thread that has ended, only what was read before is known. Without CONFIG_SCHED_INFO
     in the kernel, it is 0.
@@ -103,7 +117,7 @@ class Waits:
         """Return the s so far, of all threads together, and the time that other guests of the machine took."""
         for process in self._processes:
             self._look(process)
-            for child in _children(process) if process != os.getpid() else ():
+            for child in _descendants(process) if process != os.getpid() else ():
                 self._look(child)
         self._now["stolen"] = _stolen()
         return sum(waited - self._begun.get(thread, 0.0) for thread, waited in self._now.items())
@@ -115,10 +129,14 @@ class Waits:
                     self._now[task.name] = int((task / "schedstat").read_text().split()[1]) * SECOND
 
 
-def _children(process: int) -> list[int]:
+def _descendants(process: int) -> list[int]:
+    found: list[int] = []
     with suppress(OSError):
-        return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
-    return []
+        for task in Path(f"/proc/{process}/task").iterdir():
+            with suppress(OSError):
+                for child in map(int, (task / "children").read_text().split()):
+                    found += [child, *_descendants(child)]
+    return found
 
 
 def _stolen() -> float:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 COLUMNS, LINES = 140, 45
-PATIENCE = 60.0
+PATIENCE = 120.0
 """s for what takes a few on an idle machine: the machine is shared."""
 POLL = 0.02
 """s between two looks at who gets the keys."""

@@ -43,7 +43,7 @@ from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.killed_screen import ROOT, assert_said_neutral, killed_screen, moving, neutral
 from tests.groundstation.screen import FORWARD, Screen, running
 from tests.ports import free_port
-from tests.waits import wait_until
+from tests.waits import PATIENCE, wait_until
 
 pytestmark = pytest.mark.e2e
 
@@ -160,7 +160,7 @@ def test_a_station_without_screens_is_silent_and_outlives_them() -> None:
             assert [at for at, _ in vehicle.all(m.Heartbeat) if at > quiet] == [], "the failsafe must act"
             assert running_stations() == [station.pid]
         station.send_signal(signal.SIGINT)
-        assert station.wait(20) == 0
+        assert station.wait(PATIENCE) == 0
     finally:
         station.kill()
         station.wait()

@@ -99,7 +99,7 @@ class Conversation:
 def end(process: subprocess.Popen[Any], listener: threading.Thread) -> None:
     """End a program in any state, and the thread that reads its output."""
     process.kill()
-    process.wait(10)
+    process.wait(PATIENCE)
     listener.join(5)
     for pipe in (process.stdin, process.stdout):
         if pipe is not None:

@@ -14,6 +14,7 @@ from groundstation.intents.watch import Watch
 from groundstation.views.connect import ConnectRequest, ConnectView, HeardRow
 from tests.groundstation.screen import Screen
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.e2e
 pytest.importorskip("zeroconf", reason="the extra [discovery] is not installed")
@@ -54,7 +55,7 @@ def test_an_announced_vehicle_is_found_and_connected_to() -> None:
             find(screen, lambda rows: rows)
             vehicle.send_signal(signal.SIGTERM)
             find(screen, lambda rows: not rows)
-            assert vehicle.wait(10) == 0
+            assert vehicle.wait(PATIENCE) == 0
     finally:
         vehicle.kill()
         vehicle.wait()

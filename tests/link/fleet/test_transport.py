@@ -20,6 +20,7 @@ from link.fleet.router_session import direct
 from link.fleet.transport import FleetTransport, open_fleet
 from tests.link.frames import demand, frame, heartbeat
 from tests.ports import free_port
+from tests.waits import PATIENCE
 
 VEHICLE_BEAT = heartbeat(0, 1, 1)
 
@@ -40,7 +41,7 @@ class End:
 
 
 async def until(condition: Callable[[], object], again: Callable[[], object] = lambda: None) -> None:
-    deadline = time.monotonic() + 30.0
+    deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline
         again()
@@ -171,7 +172,7 @@ async def test_only_selected_vehicles_send_all_of_their_telemetry(port: int) -> 
         return sum(data[7] == m.Attitude.id for data, _ in station.received)
 
     async def until_it_sends(least: int, most: int) -> None:
-        deadline = time.monotonic() + 30.0
+        deadline = time.monotonic() + PATIENCE
         while not least <= await arrives(20) <= most:
             assert time.monotonic() < deadline
 
@@ -288,7 +289,7 @@ def test_a_zenoh_thread_keeps_its_python_state_between_callbacks(port: int) -> N
             heard.acquire(timeout=0.05)
         for _ in range(20):
             sender.put("kept", b"")
-            assert heard.acquire(timeout=30.0)
+            assert heard.acquire(timeout=PATIENCE)
         subscriber.undeclare()  # type: ignore[no-untyped-call]
     assert threading.get_ident() not in counts
     assert sum(counts.values()) >= 21, "none was forgotten"

@@ -15,6 +15,7 @@ from link.signing.clock import TICKS
 from link.signing.signature import link_and_stamp
 from tests.link.frames import heartbeat
 from tests.link.signing.signed import DAY, DRIVER, HERE, NOW, STRANGER, keep, signed, station
+from tests.waits import PATIENCE
 
 pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
 
@@ -42,7 +43,7 @@ def talk(program: Path, frames: Sequence[bytes]) -> tuple[list[str], bytes]:
         capture_output=True,
         text=True,
         check=True,
-        timeout=20,
+        timeout=PATIENCE,
     ).stdout.splitlines()
     return said[:-1], bytes.fromhex(said[-1])
 

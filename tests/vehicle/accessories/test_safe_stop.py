@@ -21,6 +21,7 @@ from tests.vehicle.motors.across_processes import NAME as MOTORS
 from tests.vehicle.motors.across_processes import FiledPca9685
 from tests.vehicle.motors.filed_pins import Header, installed
 from tests.vehicle.words import said_by
+from tests.waits import PATIENCE
 from vehicle.accessories.safe_stop import safe_stop
 
 PUMP, LAMP, TILT = 16, 20, 4
@@ -105,12 +106,12 @@ def test_after_a_kill_safe_stop_makes_accessories_safe(tmp_path: Path) -> None:
     with active(tmp_path) as (rig, ground, vehicle):
         ground.wait(lambda: heard(ground), "telemetry tells so")
         vehicle.process.kill()
-        vehicle.process.wait(10)
+        vehicle.process.wait(PATIENCE)
         assert rig.active  # nobody is there to end it
         rig.file.write_text("[motors\n")  # broken meanwhile: what the vehicle had is known all the same
         words = [sys.executable, "-m", "vehicle", "safe-stop", "--config", str(rig.file)]
         environment = {**os.environ, "XDG_STATE_HOME": str(tmp_path)}
-        ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=30, env=environment)
+        ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE, env=environment)
         assert ended.returncode == 0
         assert rig.safe, ended.stderr
         assert rig.chip.pulse(0) == pytest.approx(1.5e-3, abs=5e-6)

@@ -304,7 +304,7 @@ def test_the_journal_learns_how_bad_it_is(tmp_path: Path, text: str, marks: list
         [sys.executable, "-m", "vehicle", "safe-stop", "--config", str(file)],
         stderr=writer,
         check=False,
-        timeout=30,
+        timeout=PATIENCE,
         env={**os.environ, "JOURNAL_STREAM": f"{stream.st_dev}:{stream.st_ino}", "XDG_STATE_HOME": str(tmp_path)},
     )
     os.close(writer)

@@ -14,7 +14,7 @@ from groundstation.ui.links.screen import LinksScreen
 from groundstation.ui.log.screen import LogScreen
 from tests.groundstation.ui.example_map import pages, picture, plan_view, track
 from tests.groundstation.ui.pilots import console, type_in
-from tests.waits import until
+from tests.waits import PATIENCE, until
 
 ARMED = picture(armed=True, mode="HOLD", speed=0.0)
 
@@ -33,7 +33,7 @@ async def test_a_digit_behind_the_choice_of_the_menu_is_no_mode(below: str, read
             type_in(screen, data)
             if data == "\x07":
                 await screen.pilot.pause()
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(PATIENCE):
             while not isinstance(screen.app.screen, LogScreen):
                 type_in(screen, "1")
                 await asyncio.sleep(0)
@@ -49,7 +49,7 @@ async def test_a_screens_key_while_the_menu_closes_opens_that_screen(read: str) 
         type_in(screen, "\x07")
         await screen.pilot.pause()
         type_in(screen, "6")
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(PATIENCE):
             while isinstance(screen.app.screen, GoToMenu):  # noqa: ASYNC110, the keys come in the very next turn
                 await asyncio.sleep(0)
         type_in(screen, read)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from groundstation.ui.app.ticks import Ticks
+from tests.waits import PATIENCE
 
 PERIOD = 0.01
 
@@ -38,7 +39,7 @@ class Run:
     async def _run(self, ticks: Ticks) -> None:
         self.loop, self._ended = asyncio.get_running_loop(), asyncio.Event()
         ticks.start(self.loop)
-        await asyncio.wait_for(self._ended.wait(), 30.0)
+        await asyncio.wait_for(self._ended.wait(), PATIENCE)
         ticks.stop()
 
 

@@ -15,6 +15,7 @@ from groundstation.verbs.common.exit_codes import ExitCode
 from link.services.ftp.protocol import crc32
 from tests.fakes.services import PX4, ForeignVehicle, foreign_vehicle
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.waits import PATIENCE
 
 Capture = pytest.CaptureFixture[str]
 LOG_ERASE = 121
@@ -116,7 +117,7 @@ def test_a_killed_download_is_resumed(capsys: Capture, vehicle: ForeignVehicle, 
     with subprocess.Popen(command, stderr=subprocess.PIPE) as process:
         vehicle.wait_for("FILE_TRANSFER_PROTOCOL", 20)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 128 + signal.SIGINT, errors
     assert b"Traceback" not in errors
     part = (here / "1.bin.part").read_bytes()

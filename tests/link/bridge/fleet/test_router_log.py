@@ -14,6 +14,7 @@ from link.bridge.fleet.router_command import _log_link, _open
 from link.endpoint import parse_endpoint
 from link.fleet.config import load_config
 from tests.e2e.fleet_programs import make_fleet
+from tests.waits import PATIENCE
 
 
 @pytest.mark.parametrize("quic", [False, True])
@@ -25,7 +26,7 @@ def test_a_program_is_logged_once_as_it_comes_and_as_it_goes(
     caplog.set_level(logging.INFO)
 
     def wait_for(text: str) -> None:
-        deadline = time.monotonic() + 30.0
+        deadline = time.monotonic() + PATIENCE
         while text not in caplog.text:
             assert time.monotonic() < deadline
 
