@@ -31,6 +31,8 @@ REDRAWN = 0.3
 """s after another size of the terminal before its text is read."""
 ARMS = "r"
 """The key that arms; when armed it disarms."""
+ARMED_WITHIN = 5.0
+"""s for which it is held, if the first line does not say ARMED before: a late machine counts none of its pauses."""
 
 Size = tuple[int, int]
 """Columns and lines."""
@@ -226,8 +228,9 @@ class Pupil:
         elif deed.what in ("run", "run the last", "interrupt"):
             self._use_another(deed)
         else:
+            seconds = ARMED_WITHIN if key == ARMS else deed.seconds
             with suppress(AssertionError):
-                self.terminal.until(lambda screen: self._is_done(screen, step, key), deed.seconds, holding=key)
+                self.terminal.until(lambda screen: self._is_done(screen, step, key), seconds, holding=key)
             self.terminal.pause(LET_GO)
         self.terminal.pause(0.8)
 

@@ -7,10 +7,8 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -63,30 +61,6 @@ class Agent:
         """End it in any state."""
         self.process.kill()
         self.process.wait()
-
-
-@contextmanager
-def held(terminal: Tmux, key: str) -> Iterator[Callable[[], float]]:
-    """Hold a key; yields what lets it go and returns when it was pressed last."""
-    ended = threading.Event()
-
-    def press() -> None:
-        begun = time.monotonic()
-        for at in event_times(60.0):
-            if ended.wait(max(0.0, begun + at - time.monotonic())):
-                return
-            terminal.press(key)
-
-    thread = threading.Thread(target=press)
-    thread.start()
-
-    def release() -> float:
-        ended.set()
-        thread.join()
-        return time.monotonic()
-
-    yield release
-    release()
 
 
 def kill_screen(terminal: Tmux) -> None:
@@ -147,9 +121,7 @@ def see_it_stop(terminal: Tmux, vehicle: Vehicle, folder: Path, agents: list[Age
         terminal.press(WAYS[name].opens)
         reason, asks = f"look behind chair {number} by {name}", f"agent asks: hold {WAYS[name].key} to let it"
         agents.append(Agent(folder, ("drive", {**DRIVE, "reason": reason})))
-        terminal.until(lambda screen, texts=(reason, asks): all(text in screen for text in texts), PATIENCE)  # type: ignore[misc]
-        assert not vehicle.turning()
-        if it_stops(terminal, vehicle, agents[-1], name):
+        if it_is_shown(terminal, agents[-1], reason, asks) and it_stops(terminal, vehicle, agents[-1], name):
             return
         agents[-1].end()
         wait_until(lambda: not vehicle.turning(), f"{name}: neutral")
@@ -158,13 +130,23 @@ def see_it_stop(terminal: Tmux, vehicle: Vehicle, folder: Path, agents: list[Age
     raise AssertionError(f"{name}: {TRIES} times something else: {said}\n{terminal.screen()}")
 
 
+def it_is_shown(terminal: Tmux, agent: Agent, *texts: str) -> bool:
+    """Wait until the screen asks for the proposal; return False if it has ended before."""
+    terminal.until(
+        lambda screen: all(text in screen for text in texts) or bool(agent.answers) or agent.process.poll() is not None,
+        PATIENCE,
+    )
+    return not agent.answers and agent.process.poll() is None
+
+
 def it_stops(terminal: Tmux, vehicle: Vehicle, agent: Agent, name: str) -> bool:
     """Hold the key until the wheels turn at full demand, end it in one way, and see them stop in time.
 
     Returns False if something else has ended it.
     """
     act, told, _, key = WAYS[name]
-    with held(terminal, key) as release:
+    assert not vehicle.turning()
+    with terminal.held(key, event_times(60.0)) as release:
         patience = Patience(TRY, *running_stations())
         wait_until(lambda: vehicle.at_full() or agent.answers or patience.ended, name)
         if agent.answers or not vehicle.at_full():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import itertools
 import math
 import os
 import pty
@@ -13,9 +14,10 @@ import struct
 import subprocess
 import sys
 import termios
+import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -42,27 +44,55 @@ LOOK = 0.1
 """s between two looks at the screen, each of which starts a program and takes 5 ms of CPU."""
 
 
+PANE = "screen:0.0"
+"""Where the program runs. Held keys are typed from another session: the program asks who the clients of its own are."""
+IN_PANE = ("capture-pane", "display-message", "send-keys", "resize-window")
+PLAIN = re.compile(r"[A-Za-z0-9,.<>+-]+")
+"""Names of keys that tmux's own parser takes as they are."""
+HOLD = 3.0
+"""s for which a key is held at once."""
+
+
 class Tmux:
     """A tmux server of its own with one window."""
 
     def __init__(self, folder: Path, columns: int, lines: int, *arguments: str, shows: Path | None = None) -> None:
         """Run `mavhelm` with these arguments; or show what arrives at the end of a file, as a terminal does."""
         self._socket = str(folder / "tmux")
-        self.send_keys: Callable[[Sequence[str], bool], object] = lambda keys, held: self._run("send-keys", *keys)
+        self.send_keys: Callable[[Sequence[str], bool], object] = self._send_keys
         """Where keys go: to the program, or to that of which this is a picture. `held`: they are not let go."""
         self.longest_pause = 0.0
         """s between two presses, the longest since a test has set it to 0."""
         self._pressed_at = math.inf
+        self._keyboard: subprocess.Popen[str] | None = None
         program = [sys.executable, "-m", "groundstation", *arguments, "--log-file", str(folder / "station.log")]
         size = ["-x", str(columns), "-y", str(lines)]
         runs = f"{shlex.join(program)}; echo EXIT CODE $?; exec cat"
         if shows is not None:
             runs = f"stty raw -echo; exec tail -c +1 -f {shlex.quote(str(shows))}"
-        self._run("-f", "/dev/null", "new-session", "-d", *size, runs)
+        self._run("-f", "/dev/null", "new-session", "-d", "-s", PANE.partition(":")[0], *size, runs)
+        server = self._run("display-message", "-p", "#{pid}").strip()
+        self._server = int(server) if server.isdecimal() else os.getpid()
+        """Process id of tmux, which has started the program."""
 
-    def _run(self, *words: str) -> str:
-        done = subprocess.run(["tmux", "-S", self._socket, *words], capture_output=True, text=True, timeout=60)
+    def _run(self, command: str, *words: str) -> str:
+        words = (command, *(("-t", PANE) if command in IN_PANE else ()), *words)
+        done = subprocess.run(["tmux", "-S", self._socket, *words], capture_output=True, text=True, timeout=PATIENCE)
         return done.stdout
+
+    def _send_keys(self, keys: Sequence[str], held: bool) -> None:
+        """Press keys; one that is held by a program that goes on, because starting one for each takes long."""
+        if not held or not all(map(PLAIN.fullmatch, keys)):
+            self._run("send-keys", *keys)
+            return
+        if self._keyboard is None:
+            self._keyboard = subprocess.Popen(
+                ["tmux", "-S", self._socket, "-C", "new-session", "cat"],
+                stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True,
+            )  # fmt: skip
+        assert self._keyboard.stdin is not None
+        self._keyboard.stdin.write(f"send-keys -t {PANE} {' '.join(keys)}\n")
+        self._keyboard.stdin.flush()
 
     def screen(self) -> str:
         """Return the text on the screen."""
@@ -87,19 +117,47 @@ class Tmux:
 
     def until(self, condition: Callable[[str], bool], within: float, holding: str | None = None) -> str:
         """Poll until the condition holds for the screen, with a key held meanwhile; return the screen."""
-        patience = Patience(within)
+        if holding:
+            with self.held(holding, (number * PAUSE for number in itertools.count())):
+                return self.until(condition, within)
+        patience = self._patience(within)
         while not condition(screen := self.screen()):
             assert not patience.ended, f"not within {within} s:\n{screen}"
-            for _ in range(round(LOOK / PAUSE) if holding else 0):
-                self.press(holding or "", held=True)
-                select.select([], [], [], PAUSE)
-            if not holding:
-                select.select([], [], [], LOOK)
+            select.select([], [], [], LOOK)
         return screen
+
+    @contextmanager
+    def held(self, key: str, times: Iterable[float]) -> Iterator[Callable[[], float]]:
+        """Hold a key: press it at these times (s). Yields what lets it go, and returns when it was pressed no more."""
+        ended = threading.Event()
+
+        def press() -> None:
+            begun = time.monotonic()
+            for at in times:
+                if ended.wait(max(0.0, begun + at - time.monotonic())):
+                    return
+                self.press(key, held=True)
+
+        thread = threading.Thread(target=press)
+        thread.start()
+
+        def release() -> float:
+            ended.set()
+            thread.join()
+            return time.monotonic()
+
+        try:
+            yield release
+        finally:
+            release()
+
+    def _patience(self, within: float = PATIENCE) -> Patience:
+        """Return a wait for what must come, with the delays of the programs; or for one try of several."""
+        return Patience(within, *([self._server] if within >= PATIENCE else []))
 
     def press_until(self, key: str, condition: Callable[[str], bool]) -> str:
         """Press a key, again after PRESSED_AGAIN s, until the condition holds for the screen; return the screen."""
-        patience = Patience()
+        patience = self._patience()
         while True:
             self.press(key)
             with suppress(AssertionError):
@@ -111,19 +169,17 @@ class Tmux:
         select.select([], [], [], seconds)
 
     def hold_until(self, key: str, condition: Callable[[str], bool], within: float) -> None:
-        """Hold a key for 2 s at a time until the condition holds for the screen."""
-        patience = Patience(within)
+        """Hold a key for HOLD s at a time until the condition holds for the screen."""
+        patience = self._patience(within)
         while not condition(screen := self.screen()):
             assert not patience.ended, f"not within {within} s:\n{screen}"
-            begun = time.monotonic()
-            for at in event_times(2.0):
-                select.select([], [], [], max(0.0, begun + at - time.monotonic()))
-                self.press(key, held=True)
+            with suppress(AssertionError), self.held(key, event_times(HOLD)):
+                self.until(condition, HOLD)  # not longer: another press of the key that arms disarms
             select.select([], [], [], LET_GO)
 
     def drive_until(self, condition: Callable[[str], bool]) -> None:
         """Hold `i` until the condition holds; in MANUAL and pressed anew where a late machine has stopped it."""
-        patience = Patience()
+        patience = self._patience()
         while True:
             with suppress(AssertionError):
                 self.until(condition, HELD, holding="i")
@@ -139,6 +195,8 @@ class Tmux:
     def end(self) -> None:
         """Close the terminal and everything in it."""
         self._run("kill-server")
+        if self._keyboard is not None:
+            self._keyboard.communicate(timeout=PATIENCE)
 
 
 @pytest.fixture
