@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import struct
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from pathlib import Path
+from typing import Any
 
+from groundstation.ros.services import SERVICES
+from groundstation.ros.types import RosTypes
 from groundstation.station_socket.connect import running_stations
 from tests.e2e import ros2_peer
 from tests.e2e.programs import Vehicle
@@ -20,6 +25,12 @@ from tests.waits import PATIENCE, Patience
 STEP = 0.02
 TRY = 5.0
 """s for a demand to turn the wheels; then its publisher begins anew."""
+
+SET_BOOL = "std_srvs/srv/SetBool"
+ARM = (
+    "0/mavhelm_1/arm/std_srvs::srv::dds_::SetBool_/"
+    "RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"
+)
 
 LATE_FAILSAFE = ("--param", "FS_TIMEOUT=10", "--param", "FS_DISARM_T=300", "--param", "FS_GCS_TIMEOUT=120")
 """Where our node was late, its publisher begins anew; after HOLD or disarming only an operator could. Neutral comes as
@@ -83,15 +94,29 @@ class World:
     def text(self) -> str:
         return self.log.read_text() if self.log.exists() else ""
 
-    def turns(self) -> None:
-        """Wait until the wheels turn; the peer shows zero from time to time, as it must where our node was late."""
-        deadline = time.monotonic() + PATIENCE
-        while time.monotonic() < deadline:
+    def turns(self, zero: Callable[[], object] | None = None) -> None:
+        """Wait until the wheels turn; their publisher shows `zero` now and then, as it must where our node was late.
+
+        By default the peer shows it as a Twist. That of another publisher would only end the demand. A vehicle that was
+        late by 2 s has disarmed: it is armed again where the node has that service.
+        """
+        patience = Patience(PATIENCE, self.vehicle.process.pid)
+        while not patience.ended:
             with suppress(AssertionError):
                 self.until(self.vehicle.turning, "the wheels do not turn", TRY)
                 return
-            self.peer.twist(0.0)
+            with suppress(AssertionError):
+                self.call(ARM, SET_BOOL, b"\x01")
+            (zero or partial(self.peer.twist, 0.0))()
         raise AssertionError(f"the wheels do not turn\n{self.text}")
+
+    def call(self, key: str, kind: str, request: bytes) -> Any:
+        """Call a service; return the response."""
+        types = RosTypes()
+        types.register_service(kind, *SERVICES[kind])
+        data, attachment = self.peer.call(key, request)
+        assert struct.unpack("<qqB16s", attachment)[::3] == (3, b"c" * 16), "the response is not matched to the request"
+        return types.decode(f"{kind}_Response", data)
 
     def stands(self) -> None:
         self.until(self.vehicle.stands, "the wheels turn on")

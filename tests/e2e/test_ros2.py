@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import signal
 import struct
+import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -20,12 +20,10 @@ from groundstation.ros.types import RosTypes
 from link.services.param.client import Param
 from tests.e2e import ros2_peer
 from tests.e2e.ros2_peer import CDR, TWIST, Peer
-from tests.e2e.ros2_world import World, kill
+from tests.e2e.ros2_world import ARM, SET_BOOL, World, kill
 from tests.waits import PATIENCE
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
-SET_BOOL = "std_srvs::srv::dds_::SetBool_/RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"
-ARM = f"0/mavhelm_1/arm/{SET_BOOL}"
 PARAMETERS = "0/mavhelm_1/{}_parameters/rcl_interfaces::srv::dds_::{}Parameters_/RIHS01_{}"
 GET = PARAMETERS.format("get", "Get", "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc")
 SET = PARAMETERS.format("set", "Set", "56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0")
@@ -35,14 +33,6 @@ SET = PARAMETERS.format("set", "Set", "56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f
 def world(tmp_path: Path) -> Iterator[World]:
     with ExitStack() as stack:
         yield World(tmp_path, stack)
-
-
-def _call(world: World, key: str, kind: str, request: bytes) -> Any:
-    types = RosTypes()
-    types.register_service(kind, *SERVICES[kind])
-    data, attachment = world.peer.call(key, request)
-    assert struct.unpack("<qqB16s", attachment)[::3] == (3, b"c" * 16), "the response is not matched to the request"
-    return types.decode(f"{kind}_Response", data)
 
 
 def _keep(heard: dict[str, bytes], topic: str, data: bytes, attachment: bytes) -> None:
@@ -58,25 +48,32 @@ def _send_nonsense(peer: Peer) -> None:
 
 
 def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
-    node = world.start("--arm")
+    node = world.start("--arm", "--arm-service")
     peer = world.peer
     with world.repeating(lambda: peer.twist(1.0)):
         world.turns()
     world.stands()  # silence
     with world.repeating(lambda: peer.word("i")):
-        world.turns()
+        world.turns(lambda: peer.word("k"))
     world.stands()
     with world.repeating(lambda: peer.stamped(1.0)):
-        world.turns()
+        world.turns(lambda: peer.stamped(0.0))
     world.stands()
     with world.repeating(partial(_send_nonsense, peer)):
         world.until(lambda: "refused: linear.x nan" in world.text, "NaN is not refused")
         world.until(lambda: "are not a geometry_msgs/msg/Twist" in world.text, "garbage is not refused")
         assert world.vehicle.stands()
-    other = ros2_peer.start("publish", world.router, 1.0, 0.0)
-    world.stack.callback(kill, other)
-    world.turns()
-    other.kill()
+    others: list[subprocess.Popen[bytes]] = []
+
+    def begin_another() -> None:
+        for each in others:
+            kill(each)
+        others[:] = [ros2_peer.start("publish", world.router, 1.0, 0.0)]
+        world.stack.callback(kill, others[0])
+
+    begin_another()
+    world.turns(begin_another)
+    others[0].kill()
     world.stands()
     with world.repeating(lambda: peer.twist(1.0)):
         world.turns()
@@ -93,7 +90,7 @@ def test_messages_drive_and_every_end_is_a_stop(world: World) -> None:
 
 
 def test_a_router_that_stood_still_delivers_no_old_command(world: World) -> None:
-    world.start("--arm")
+    world.start("--arm", "--arm-service")
     peer = world.peer
     with world.repeating(lambda: peer.twist(1.0)):
         world.turns()
@@ -129,7 +126,7 @@ def test_graph_telemetry_parameters_and_arming_through_a_station(world: World) -
         peer.listen(f"0/{topic}/**", partial(_keep, heard, topic))
     with world.repeating(lambda: peer.twist(1.0)):
         world.until(lambda: "is disarmed" in world.text, "a message moves a disarmed vehicle, or nobody is told")
-        armed = _call(world, ARM, "std_srvs/srv/SetBool", b"\x01")
+        armed = world.call(ARM, SET_BOOL, b"\x01")
         assert (armed.success, armed.message) == (True, "Rover 1 is armed")
         later = peer.count + 20
         world.until(lambda: peer.count >= later, "")  # the same stream goes on: it must show zero before it drives
@@ -137,28 +134,28 @@ def test_graph_telemetry_parameters_and_arming_through_a_station(world: World) -
     peer.twist(0.0)
     with world.repeating(lambda: peer.twist(0.0, 2.0)):
         world.turns()
-    assert _call(world, ARM, "std_srvs/srv/SetBool", b"\x00").success
+    assert world.call(ARM, SET_BOOL, b"\x00").success
     world.stands()
     name = b"\x01\x00\x00\x00\x0b\x00\x00\x00FS_TIMEOUT\x00"
     get = "rcl_interfaces/srv/GetParameters"
-    before = _call(world, GET, get, name).values[0]
+    before = world.call(GET, get, name).values[0]
     assert (before.type, before.double_value > 0) == (3, True)
     types = RosTypes()
     kind = "rcl_interfaces/srv/SetParameters"
     types.register_service(kind, *SERVICES[kind])
     wanted = {"name": "FS_TIMEOUT", "value": value_of(Param("FS_TIMEOUT", 2.5, 9, None))}
     request = types.encode(f"{kind}_Request", {"parameters": [wanted, wanted | {"name": "NO_SUCH"}]})
-    results = _call(world, SET, kind, request.removeprefix(CDR)).results
+    results = world.call(SET, kind, request.removeprefix(CDR)).results
     assert [each.successful for each in results] == [True, False]
     assert "no such parameter" in results[1].reason
-    assert _call(world, GET, get, name).values[0].double_value == 2.5
+    assert world.call(GET, get, name).values[0].double_value == 2.5
     wanted_topics = {"odom", "imu", "fix", "battery_state", "diagnostics", "tf"}
     world.until(lambda: heard.keys() == wanted_topics, f"not published: {wanted_topics - heard.keys()}")
     odometry = types.decode("nav_msgs/msg/Odometry", heard["odom"])
     assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
     status = types.decode("diagnostic_msgs/msg/DiagnosticArray", heard["diagnostics"]).status[0]
     assert status.hardware_id == "1"
-    assert _call(world, ARM, "std_srvs/srv/SetBool", b"\x01").success
+    assert world.call(ARM, SET_BOOL, b"\x01").success
     with world.repeating(lambda: peer.twist(1.0)):
         world.turns()
         node.send_signal(signal.SIGINT)
@@ -168,7 +165,7 @@ def test_graph_telemetry_parameters_and_arming_through_a_station(world: World) -
 
 
 def test_a_kill_while_a_station_sends_its_demands(world: World) -> None:
-    node = world.start("--arm", *world.start_station())
+    node = world.start("--arm", "--arm-service", *world.start_station())
     with world.repeating(lambda: world.peer.twist(1.0)):
         world.turns()
         node.kill()

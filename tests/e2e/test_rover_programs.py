@@ -21,7 +21,7 @@ from groundstation.station_socket.connect import running_stations
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen
 from tests.ports import free_port
-from tests.waits import wait_until
+from tests.waits import wait_for_end, wait_until
 
 pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("verbs through a station")]
 
@@ -38,14 +38,17 @@ from groundstation.rover import *
 def say(text):
     print(text, flush=True)
 
-# Again where a late machine has ended a call: the program, or that of its connection, stood still.
+# Again where a late machine has ended a call: the program or that of its connection stood still, or the vehicle, which
+# has disarmed.
 def insist(call, *values, **named):
     for left in reversed(range({tries})):
         try:
             return call(*values, **named)
         except RoverError as error:
-            if "stood still" not in str(error) or not left:
+            if not left or not any(late in str(error) for late in ("stood still", "is disarmed after")):
                 raise
+            if "is disarmed after" in str(error):
+                rover.arm(30)
 
 sys.stdin = os.fdopen(os.pipe()[0])
 signal.signal(signal.SIGUSR1, lambda *_: breakpoint())
@@ -121,6 +124,11 @@ class Road:
     def see_it_stop(self) -> None:
         """See the wheels stop long before the call that drives would end."""
         wait_until(self.vehicle.stands, "standing", within=LONG / 2)
+
+    def is_disarmed(self) -> bool:
+        """Return whether the newest that the vehicle tells of arming is that it has disarmed."""
+        told = self.vehicle.errors.read_text()
+        return told.rfind("Disarmed") > told.rfind("Armed by")
 
     def end(self) -> None:
         """End all processes."""
@@ -211,7 +219,7 @@ def test_the_program_is_told_that_its_connection_was_killed(road: Road) -> None:
     program = road.start_driving()
     kill_the_connection(program)
     road.see_it_stop()
-    assert program.process.wait(30) == 1
+    assert wait_for_end(program.process) == 1
     assert "Disconnected: mavhelm has ended: SIGKILL" in program.errors, program.errors
     assert "Event loop is closed" not in program.errors, program.errors
 
@@ -220,7 +228,7 @@ def test_the_program_is_told_that_its_connection_stands_still(road: Road) -> Non
     program = road.start_driving()
     freeze_the_connection(program)
     road.see_it_stop()
-    assert program.process.wait(60) == 1
+    assert wait_for_end(program.process) == 1
     assert "Disconnected: mavhelm has not answered for 5 s" in program.errors
 
 
@@ -237,7 +245,7 @@ def test_a_program_that_ends_between_calls_leaves_it_disarmed(road: Road, line: 
     text, error = BETWEEN_LINES[line]
     driven = "with rover:\n    rover.arm(30)\n    insist(rover.drive, 0.5, seconds=0.5)\n    say('driven')\n"
     program = road.start(f"{driven}{text}\n")
-    assert program.process.wait(60) != 0
+    assert wait_for_end(program.process) != 0
     assert "driven" in program.said, program.errors
     assert error in program.errors
     assert any(each.turning for each in road.vehicle.outputs())
@@ -254,7 +262,7 @@ with rover:
     time.sleep(3)
     say(time.monotonic())
 """)
-    assert program.process.wait(60) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
     driven, left = map(float, program.said.split())
     outputs = road.vehicle.outputs()
     assert any(each.turning for each in outputs)
@@ -270,7 +278,7 @@ rover.wait_for(lambda state: state.speed and state.speed > 0.1, 30)
 sys.exit(0)
 """)
     road.see_it_stop()
-    assert program.process.wait(30) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
 
 
 def test_a_stop_of_another_thread_ends_a_call_that_drives(road: Road) -> None:
@@ -290,7 +298,7 @@ with rover:
     thread.join()
 """)
     road.see_it_stop()
-    assert program.process.wait(30) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
     assert set(program.said.split()) == {"cancelled", "HOLD"}
 
 
@@ -315,7 +323,7 @@ with rover:
     for each in threads:
         each.join()
 """)
-    assert program.process.wait(120) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
     assert program.errors == ""
     ways = [(power > 0) - (power < 0) for power in (sum(each.throttles) for each in road.vehicle.outputs())]
     signs = [sign for sign, _ in groupby(ways)]
@@ -374,13 +382,14 @@ def station(road: Road) -> Iterator[subprocess.Popen[bytes]]:
 def test_through_a_station_a_call_ends_with_its_program(road: Road) -> None:
     for way in (kill, interrupt, freeze):
         see_it_end(road, way)
+        wait_until(road.is_disarmed, "the station disarms it, before the next program arms it")
 
 
 def test_a_station_that_is_killed_ends_the_call(road: Road, station: subprocess.Popen[bytes]) -> None:
     program = road.start_driving()
     station.kill()
     road.see_it_stop()
-    assert program.process.wait(30) == 1
+    assert wait_for_end(program.process) == 1
     assert "rover.errors." in program.errors
 
 
@@ -427,7 +436,7 @@ with rover:
 """)
         screen.client.send(intent)
         road.see_it_stop()
-        assert program.process.wait(30) == 0, program.errors
+        assert wait_for_end(program.process) == 0, program.errors
         assert program.said.startswith(f"NotInControl: {why}")
         assert len(program.said.splitlines()) == 2, "the second call fails, too"
         assert road.vehicle.stands(), "the second call turns no wheel"
@@ -453,11 +462,11 @@ with rover:
     wait_until(lambda: "open" in second.said, lambda: second.errors)
     first = road.start_driving()
     driving.touch()
-    assert second.process.wait(60) == 0, second.errors
+    assert wait_for_end(second.process) == 0, second.errors
     _, radius, at, refused = second.said.splitlines()
     assert radius == "2.5"
     assert refused.startswith("NotInControl: the mavhelm api")
-    assert first.process.wait(60) == 0, first.errors
+    assert wait_for_end(first.process) == 0, first.errors
     outputs = road.vehicle.outputs()
     assert all(value >= 0 for each in outputs for value in each.throttles)
     assert outputs[-1].at > float(at), "the first one has driven on"
@@ -498,7 +507,7 @@ def test_a_program_cannot_drive_an_armed_rover_of_somebody_else(road: Road) -> N
     enough = road.folder / "enough"
     first = road.start_driving(DRIVE_ON.format(enough=str(enough)))
     second = road.start(INTRUDER.format(port=port))
-    assert second.process.wait(60) == 0, second.errors
+    assert wait_for_end(second.process) == 0, second.errors
     assert first.process.poll() is None, first.errors
     *answers, is_set, armed = second.said.splitlines()
     assert [each.split(": ")[0] for each in answers] == ["drive", "turn", "goto", "home", "mission", "mode", "params"]
@@ -508,7 +517,7 @@ def test_a_program_cannot_drive_an_armed_rover_of_somebody_else(road: Road) -> N
     assert armed == "True", "its end does not disarm what somebody else has armed"
     assert is_set == "False"
     enough.touch()
-    assert first.process.wait(30) == 0, first.errors
+    assert wait_for_end(first.process) == 0, first.errors
     assert first.said == "True\n"
     assert all(value >= 0 for each in road.vehicle.outputs() for value in each.throttles)
 
@@ -586,7 +595,7 @@ asyncio.run(main())
 
 def test_coroutines_do_what_the_calls_do(road: Road) -> None:
     program = road.start(ASYNC.format(tries=TRIES, endpoint=road.endpoint))
-    assert program.process.wait(120) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
     *errors, cancelled, began, ended = program.said.split()
     assert errors == ["Differs", "Refused", "Refused", "NoAnswer", "InvalidCall"]
     assert cancelled == "True"
@@ -614,7 +623,7 @@ del rover
 gc.collect()
 sys.stdin.close()
 """)
-    assert program.process.wait(60) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
     assert "no vehicle" in program.said
     assert program.errors == ""
 
@@ -639,7 +648,7 @@ with rover:
     except InvalidCall as error:
         say(error)
 """)
-    assert program.process.wait(60) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
     assert program.said == "a.plan: no rally in it\n"
 
 
@@ -651,7 +660,7 @@ with Rover.simulated() as rover:
 with Rover({road.endpoint!r}, vehicle=1) as rover:
     say(rover.mode)
 """)
-    assert program.process.wait(60) == 0, program.errors
+    assert wait_for_end(program.process) == 0, program.errors
     recent = (tmp_path / "state" / "mavhelm" / "recent.json").read_text()
     assert road.endpoint in recent
     assert recent.count("udpin") == 1
