@@ -1,4 +1,4 @@
-"""An agent as the SDK's own client makes one: calls the tools that a file lists, and prints the answers."""
+"""An agent as the SDK's own client makes one: calls the tools that a file and stdin list, and prints the answers."""
 
 from __future__ import annotations
 
@@ -18,13 +18,23 @@ CLIENT = Implementation(name="operator\x1b[2J", version="1")
 
 
 async def _main(calls: list[tuple[str, dict[str, Any], int]]) -> None:
-    """Make the calls one after the other: each is a tool, its arguments, and how often it is called at once."""
+    """Make the calls one after the other: each is a tool, its arguments, and how often it is called at once.
+
+    Then those of stdin, until it ends: a tool and its arguments in each line.
+    """
     server = StdioServerParameters(command=sys.executable, args=["-m", "groundstation", "mcp"], env=dict(os.environ))
     async with stdio_client(server) as streams, ClientSession(*streams, client_info=CLIENT) as session:
         await session.initialize()
         for tool, arguments, times in calls:
             for answer in await asyncio.gather(*(session.call_tool(tool, arguments) for _ in range(times))):
-                print(json.dumps({"tool": tool, "failed": answer.is_error, **answer.structured_content}), flush=True)
+                _tell(tool, answer)
+        while line := await asyncio.to_thread(sys.stdin.readline):
+            tool, arguments = json.loads(line)
+            _tell(tool, await session.call_tool(tool, arguments))
+
+
+def _tell(tool: str, answer: Any) -> None:
+    print(json.dumps({"tool": tool, "failed": answer.is_error, **answer.structured_content}), flush=True)
 
 
 if __name__ == "__main__":
