@@ -202,6 +202,15 @@ TABLE: tuple[Parameter, ...] = (
 
 PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in TABLE}
 
+
+def suggest_parameter(name: str) -> str:
+    """Return which parameters may be meant, or where all of them are listed."""
+    import difflib  # when it is needed: it takes 1 ms of each start
+
+    near = difflib.get_close_matches(name, PARAMETERS, n=3)
+    return f"did you mean {' or '.join(near)}?" if near else "`mavhelm vehicle dialect` lists all"
+
+
 SAFETY_PARAMETERS: tuple[str, ...] = tuple(parameter.name for parameter in TABLE if parameter.safety)
 """The parameters that are locked while armed."""
 

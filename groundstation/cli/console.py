@@ -198,6 +198,10 @@ def _endpoints(options: argparse.Namespace, effective: Effective, names: Sequenc
     for text in options.endpoints:
         if f"--{text}" in names and text not in settings.endpoints:
             raise UsageError(f"{text!r} is not an endpoint: did you mean --{text}?")
+        from groundstation.cli.verb_help import EVERY_VERB
+
+        if text in EVERY_VERB and text not in settings.endpoints:
+            raise UsageError(f"{text!r} is a verb: write it first, and the endpoint behind -e (mavhelm {text} --help)")
     return resolve_endpoints(settings.open, settings)
 
 

@@ -29,6 +29,7 @@ from groundstation.verbs.common.arguments import seconds, system_id, vehicle_id
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.common.lazy import LazyModule
 from groundstation.verbs.common.loading import load
+from groundstation.verbs.common.nearest import describe_unknown
 from groundstation.verbs.common.output import Output, ring_bell
 from groundstation.verbs.session.endpoints import choose_endpoints, config_error, link_error, remember
 from groundstation.verbs.session.stop_ways import STOP_WITHIN, stop_by_any_way
@@ -81,7 +82,9 @@ is the endpoint used last, else {DEFAULT_ENDPOINT}.
 def run(arguments: Sequence[str]) -> int:
     """Run the verb that `arguments` start with; return the exit code."""
     parser = build_parser(arguments[0])
-    options = parser.parse_args(parser.reject_empty(arguments[1:]))
+    options, unknown = parser.parse_known_args(parser.reject_empty(arguments[1:]))
+    if unknown:
+        parser.error(describe_unknown(unknown))
     output = Output(f"{arguments[0]} {options.action}".strip(), as_json=options.json, quiet=options.quiet)
     logging.basicConfig(handlers=[logging.NullHandler()])  # what is worth knowing is printed
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a transfer ends in order, and can be resumed

@@ -17,6 +17,7 @@ WORDS: Mapping[str, str] = {
     "module": "there are no modules: docs/commands.md lists the verbs",
     "output": "the program `mavhelm bridge` forwards to other ground stations",
     "command_int": "use `mavhelm command`, or `goto`",
+    "plan": "use `mavhelm mission put FILE`, `fence put` or `rally put`",
     "set": "settings are in a file: `mavhelm config`",
     "map": _SCREEN, "console": _SCREEN, "graph": _SCREEN,
 }  # fmt: skip

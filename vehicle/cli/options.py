@@ -16,7 +16,7 @@ from link.runtime.command_line import CommandLineParser
 from link.transport.faults.settings import CUT_AFTER
 from vehicle.cli import subcommands
 from vehicle.motors.drivers import DRIVERS
-from vehicle.params import PARAMETERS, ParamError, Params
+from vehicle.params import PARAMETERS, ParamError, Params, suggest_parameter
 
 GROUND_STATION = "udpout:127.0.0.1:14550"
 """The default link, to a ground station on this machine: 14550 is the usual port."""
@@ -118,11 +118,7 @@ def _param(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     name = name.strip().upper()
     if name not in PARAMETERS:
-        import difflib
-
-        near = difflib.get_close_matches(name, PARAMETERS, n=3)
-        hint = f"did you mean {' or '.join(near)}?" if near else f"known: {', '.join(PARAMETERS)}"
-        raise argparse.ArgumentTypeError(f"unknown parameter {name!r}; {hint}")
+        raise argparse.ArgumentTypeError(f"unknown parameter {name!r}; {suggest_parameter(name)}")
     try:
         Params({name: float(value)})
     except ParamError as error:

@@ -25,7 +25,7 @@ from vehicle.config.signing import find_problems as find_signing_problems
 from vehicle.motors import UnknownDriverError
 from vehicle.motors.drivers import DRIVERS, profile_params, profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
-from vehicle.params import PARAMETERS, ParamError, Params
+from vehicle.params import PARAMETERS, ParamError, Params, suggest_parameter
 from vehicle.sensors.suite import SensorSettings
 
 DEFAULT_FILE = "rover.toml"
@@ -153,7 +153,7 @@ def _param_problems(table: Mapping[str, Any]) -> list[str]:
 
 def _param_problem(name: str, value: Any) -> str | None:
     if name not in PARAMETERS:
-        return f"unknown parameter; {suggest(name.upper(), PARAMETERS)}"
+        return f"unknown parameter; {suggest_parameter(name.upper())}"
     if isinstance(value, bool) or not isinstance(value, int | float):
         return "must be a number"
     try:

@@ -37,12 +37,20 @@ def build_parser() -> CommandLineParser:
         epilog=f"{local_examples('attach')}\n\n{EPILOG}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("pid", nargs="?", type=int, metavar="PID", help="its process id, where several run")
+    parser.add_argument("pid", nargs="?", type=_process_id, metavar="PID", help="its process id, where several run")
     parser.add_argument("--watch", action="store_true", help="begin without the keys, also if no other screen drives")
     add_lesson(parser)
     add_settings(parser)
     add_config(parser)
     return parser
+
+
+def _process_id(text: str) -> int:
+    if not (text.isascii() and text.isdecimal()):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not the number of a process: leave it out where one station runs"
+        )
+    return int(text)
 
 
 def run(arguments: Sequence[str]) -> int:

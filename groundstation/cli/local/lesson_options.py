@@ -37,6 +37,8 @@ def find_lesson(name: str) -> CourseLesson:
 
     try:
         if not name.isdecimal():
+            if name.isalpha() and not Path(name).exists():
+                raise UsageError(f"{name!r} is neither a lesson file nor a number: `mavhelm learn list` shows them")
             return load_own(Path(name))
         course = load_course()
     except LessonError as error:

@@ -19,6 +19,7 @@ SAID = [
     ("param fetch", "use `mavhelm param get`"),
     ("fence load fence.txt", "use `mavhelm fence put FILE`"),
     ("rc 3 1600", "refused: a vehicle may hold an override"),
+    ("plan upload a.plan", "plan: use `mavhelm mission put FILE`"),
     ("module load console", "there are no modules"),
     ("statsu", "'statsu' is neither a verb nor an endpoint: did you mean `mavhelm status`?"),
     ("nonsense", "'nonsense' is not an endpoint such as"),
