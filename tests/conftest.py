@@ -44,6 +44,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--suite", choices=suite.SUITES, help="which tests run (default: short; all where files or tests are named)"
     )
+    parser.addoption("--kind", choices=order.KINDS, help="of these, tests that wait for programs or those that compute")
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -55,6 +56,7 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
 def pytest_configure(config: pytest.Config) -> None:
     """Choose the suite, and give each worker folders of its own: your files and stations are not for tests."""
     config.option.suite = suite.chosen(config)  # xdist passes it on to its workers
+    config.option.loadscopereorder = False  # of xdist: tests/order.py knows which group takes longest
     if config.option.suite == suite.SHORT:
         settings.load_profile(suite.SHORT)
     # Each of the programs that the tests start would compile its 300 to 500 modules again, and each worker the tests.
@@ -92,13 +94,21 @@ def pytest_runtest_protocol(item: pytest.Item) -> None:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Do not import files that have no test of the short suite."""
-    return True if config.option.suite == suite.SHORT and suite.is_long_file(collection_path) else None
+    """Do not import files that have no test of the short suite, or none of the kind that was asked for."""
+    if config.option.suite == suite.SHORT and suite.is_long_file(collection_path):
+        return True
+    kind: str | None = config.option.kind
+    return True if kind and collection_path.suffix == ".py" and order.has_none(collection_path, kind) else None
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Choose the suite, and spread the tests that wait."""
     ours, others = suite.split(items, config.option.suite)
+    if config.option.kind:
+        ours, of_other_kind = order.of_kind(ours, config.option.kind)
+        others += of_other_kind
+    elif lost := order.left_out(ours):
+        raise pytest.UsageError(f"tests would be in no --kind: MARKED in tests/order.py finds no marker in {lost[0]}")
     if others:
         config.hook.pytest_deselected(items=others)
     items[:] = order.mix(ours)

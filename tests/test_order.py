@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests import order
+from tests.rows import each_row
 
 
 def test_all_are_there_once_and_computing_ones_keep_their_order(request: pytest.FixtureRequest) -> None:
@@ -43,6 +44,40 @@ def test_what_waits_is_spread_and_has_begun_before_the_end(few: int, many: int) 
         gaps = [after - before for before, after in pairwise(places)]
         assert not gaps or max(gaps) - min(gaps) <= 1
         assert len(mixed) - places[-1] > many * (1 - order.LAST)
+
+
+def test_each_test_is_of_one_kind(request: pytest.FixtureRequest) -> None:
+    items = request.session.items
+    waiting, others = order.of_kind(items, order.WAITING)
+    assert order.of_kind(items, order.COMPUTING) == (others, waiting)
+    assert sorted(map(id, [*waiting, *others])) == sorted(map(id, items))
+    assert all(map(order.waits, waiting))
+    assert not order.left_out(items)
+
+
+@each_row(
+    ("path", "waiting", "computing"),
+    [
+        ("e2e/test_start.py", False, True), ("interop/test_mavsdk_vehicle.py", False, True),
+        ("groundstation/verbs/control/test_arm.py", False, True), ("vehicle/drive/test_gate.py", True, False),
+        ("docs_blocks/test_docs_blocks.py", False, False), ("test_order.py", False, False),
+    ],
+)  # fmt: skip
+def test_files_without_a_test_of_the_kind_are_not_imported(path: str, waiting: bool, computing: bool) -> None:
+    file = Path(__file__).parent / path
+    assert (order.has_none(file, order.WAITING), order.has_none(file, order.COMPUTING)) == (waiting, computing)
+
+
+@each_row("group", order.GROUPS)
+def test_a_group_is_there(group: str) -> None:
+    marker = f'xdist_group("{group}")'
+    assert any(marker in path.read_text() for path in Path(__file__).parent.rglob("test_*.py"))
+
+
+@pytest.mark.xdist_group("order")  # makes it one that waits
+def test_a_test_of_a_group_waits(request: pytest.FixtureRequest) -> None:
+    assert order.waits(request.node)
+    assert not order.gives_way(request.node)
 
 
 def test_a_test_that_computes_gives_way(request: pytest.FixtureRequest) -> None:

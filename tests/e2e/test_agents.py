@@ -26,7 +26,7 @@ from tests.waits import PATIENCE, Patience, Waits, wait_until
 
 __all__ = ["tmux"]
 
-pytestmark = [*IN_TMUX, pytest.mark.xdist_group("verbs through a station")]
+pytestmark = [*IN_TMUX, pytest.mark.xdist_group("agents")]
 
 DRIVE = {"throttle": 60, "seconds": 9, "max_meters": 50}
 RELEASED, RELEASES = "the key was released", "a released key"

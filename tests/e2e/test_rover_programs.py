@@ -23,7 +23,7 @@ from tests.groundstation.screen import Screen
 from tests.ports import free_port
 from tests.waits import wait_for_end, wait_until
 
-pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("verbs through a station")]
+pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("programs")]
 
 PATROL = Path(__file__).parents[2] / "docs" / "examples" / "patrol.plan"
 TRIES = 8

@@ -24,7 +24,7 @@ from tests.groundstation.screen import Screen
 from tests.ports import free_port
 from tests.waits import PATIENCE, Patience, wait_until
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("verbs through a station")]
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("agents")]
 
 MANY = int(os.environ.get("MAVHELM_AGENT_PROPOSALS", "200"))
 """Proposals at once, twelve times as many as may run; 10,000 take two minutes (docs/agents.md)."""

@@ -17,7 +17,7 @@ from tests.fakes.lines import on_line
 from tests.ports import free_port
 from tests.waits import PATIENCE, wait_until
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("verbs through a station")]
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("agents")]
 
 
 def test_an_agent_reads_and_stops_without_a_screen(tmp_path: Path) -> None:
