@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from ipaddress import IPv6Address, ip_address
 
 SILENT_AFTER = 2.0
 """s without a packet after which another sender may begin."""
 
 
+@lru_cache(64)
 def clean_host(host: str) -> str:
     """Return an IP address as it is compared: without a zone, IPv4 also where a socket of IPv6 has received it."""
     try:
