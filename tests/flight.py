@@ -10,7 +10,8 @@ import pytest
 from dialects.enums import Command
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import Arm, SetMode, TakeOff
-from tests.fakes.flying import ArduCopter, FlyingVehicle
+from tests.fakes.flying import FlyingVehicle
+from tests.fakes.multicopters import ArduCopter
 from tests.groundstation.cockpits import Cockpit
 
 HEIGHT = 5.0

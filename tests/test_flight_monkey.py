@@ -21,7 +21,8 @@ from groundstation.intents.session import Quit, SetKeyGate
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Disarm, ReleaseControl, SetMode, TakeOff
 from tests.examples import examples
-from tests.fakes.flying import THRUST, ArduCopter, FlyingVehicle, Px4Quad
+from tests.fakes.flying import THRUST, FlyingVehicle
+from tests.fakes.multicopters import ArduCopter, Px4Quad
 from tests.flight import hovering_cockpit
 from tests.world import World
 

@@ -20,7 +20,8 @@ from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import Arm, CutMotors, Disarm, ReleaseControl, SetMode, TakeOff
 from groundstation.vehicles.demand.demand_stream import FINAL_NEUTRALS
 from groundstation.vehicles.demand.stop_commands import StopKind
-from tests.fakes.flying import HOME_ALTITUDE, ArduCopter, FlyingVehicle, Px4Quad
+from tests.fakes.flying import HOME_ALTITUDE, FlyingVehicle
+from tests.fakes.multicopters import ArduCopter, Px4Quad
 from tests.fakes.params import Param
 from tests.flight import FlightCockpit, hovering_cockpit
 from tests.groundstation.cockpits import Cockpit

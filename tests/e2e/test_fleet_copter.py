@@ -18,7 +18,7 @@ import pytest
 
 from dialects.axes import HOVER
 from tests.e2e.fleet_programs import RouterProcess, make_fleet
-from tests.fakes.flying import ArduCopter
+from tests.fakes.multicopters import ArduCopter
 from tests.groundstation.watchdog.test_killed_in_the_air import LOSS, Flight
 from tests.waits import wait_until
 

@@ -16,8 +16,9 @@ from dialects.axes import HOVER
 from tests.e2e import ros2_peer
 from tests.e2e.ros2_peer import Peer
 from tests.e2e.ros2_world import TRY, kill
-from tests.fakes.flying import ArduCopter, FlyingVehicle
+from tests.fakes.flying import FlyingVehicle
 from tests.fakes.lines import on_line
+from tests.fakes.multicopters import ArduCopter
 from tests.groundstation.watchdog.test_killed_in_the_air import HEIGHT, HOVERS_FOR, LOSS
 from tests.ports import free_port
 from tests.waits import wait_until

@@ -9,7 +9,8 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from link.core import Peer, Received
-from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad, Sticks
+from tests.fakes.flying import FlyingVehicle, Sticks
+from tests.fakes.multicopters import ArduCopter, Px4Quad
 
 STEP = 0.02
 

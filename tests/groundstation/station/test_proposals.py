@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from groundstation.station.agents.proposals import NO_SCREEN, Proposal, Ticket
-from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad
+from tests.fakes.flying import FlyingVehicle
+from tests.fakes.multicopters import ArduCopter, Px4Quad
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import cockpit_with
 

@@ -12,8 +12,9 @@ from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents.vehicle import Arm, TakeOff
 from groundstation.intents.vehicle_intent import HOLD_TIME
 from groundstation.ui.app.app import ConsoleApp
-from tests.fakes.flying import ArduCopter, FlyingVehicle
+from tests.fakes.flying import FlyingVehicle
 from tests.fakes.lines import on_line
+from tests.fakes.multicopters import ArduCopter
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.screenshots_drive import _hold, _until
 

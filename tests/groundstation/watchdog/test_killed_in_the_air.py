@@ -18,8 +18,9 @@ from dialects.enums import Command
 from groundstation.intents.driving import DriveKeyUp
 from groundstation.intents.session import Quit, ReportKeyReleases
 from groundstation.intents.vehicle import Arm, SetMode, TakeOff
-from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad
+from tests.fakes.flying import FlyingVehicle
 from tests.fakes.lines import on_line
+from tests.fakes.multicopters import ArduCopter, Px4Quad
 from tests.groundstation.screen import FORWARD, Screen, running
 from tests.waits import PATIENCE, wait_until
 

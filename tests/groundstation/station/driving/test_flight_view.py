@@ -8,7 +8,7 @@ from dialects import messages as m
 from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
 from groundstation.intents.vehicle import SetMode
 from groundstation.snapshot import VehicleView
-from tests.fakes.flying import ArduCopter, Px4Quad
+from tests.fakes.multicopters import ArduCopter, Px4Quad
 from tests.flight import FlightCockpit, hovering_cockpit
 
 WIND = (1.5, 2.0)

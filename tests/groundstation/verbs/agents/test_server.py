@@ -12,8 +12,8 @@ import pytest
 from groundstation.station_socket.connect import running_stations
 from tests.e2e.programs import Vehicle
 from tests.e2e.test_agents import Agent
-from tests.fakes.flying import ArduCopter
 from tests.fakes.lines import on_line
+from tests.fakes.multicopters import ArduCopter
 from tests.ports import free_port
 from tests.waits import PATIENCE, wait_until
 

@@ -16,8 +16,9 @@ import pytest
 from dialects.axes import HOVER
 from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.control.flight import altitude
-from tests.fakes.flying import ArduCopter, FlyingVehicle, Px4Quad
+from tests.fakes.flying import FlyingVehicle
 from tests.fakes.lines import on_line
+from tests.fakes.multicopters import ArduCopter, Px4Quad
 from tests.fakes.params import Param
 from tests.fakes.services import ARDUPILOT, foreign_vehicle
 from tests.waits import PATIENCE, wait_until
