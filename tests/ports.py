@@ -17,7 +17,7 @@ FIRST, END, BLOCK = 16000, 32000, 200
 
 def free_port() -> int:
     """Return a port that no UDP and no TCP socket of this machine has; not returned again for as long as possible."""
-    return next(port for port in itertools.islice(_ours, BLOCK) if _is_free(port))
+    return next(port for port in itertools.islice(_ours, BLOCK) if is_free(port))
 
 
 def _block() -> Iterator[int]:
@@ -34,7 +34,7 @@ def _block() -> Iterator[int]:
     raise AssertionError("too many processes run tests")
 
 
-def _is_free(port: int) -> bool:
+def is_free(port: int) -> bool:
     for kind in (socket.SOCK_DGRAM, socket.SOCK_STREAM):
         with socket.socket(socket.AF_INET, kind) as probe:
             try:

@@ -89,7 +89,8 @@ class ManyVehicles:
         """Wait for a further vehicle; return whether one was heard, or is still missing and in time."""
         core, now = self._session.core, self._session.now
         known = len(core.contacts)
-        quiet = STATION_TELLS_WITHIN if core.has_heard_all else ALONE_AFTER
+        told = max(STATION_TELLS_WITHIN, self._session.sure_at - now)
+        quiet = told if core.has_heard_all else ALONE_AFTER
         if (self._missing or self._unheard_names) and not core.has_heard_all:
             quiet = max(quiet, self._session.began + self._options.wait - now)
         if known >= MAX_VEHICLES:

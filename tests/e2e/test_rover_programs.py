@@ -20,7 +20,7 @@ from groundstation.intents.vehicle import RequestControl
 from groundstation.station_socket.connect import running_stations
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen
-from tests.ports import free_port
+from tests.ports import free_port, is_free
 from tests.waits import wait_for_end, wait_until
 
 pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("programs")]
@@ -182,11 +182,15 @@ def test_a_call_that_drives_ends_with_its_program(road: Road) -> None:
 
 
 def see_it_end(road: Road, way: Callable[[Program], None]) -> None:
-    """Let a program of its own drive, end it in one way, and see the wheels stop."""
+    """Let a program of its own drive, end it in one way, and see the wheels stop.
+
+    The connection of a killed program disarms and waits for that, before it leaves the port to the next one.
+    """
     program = road.start_driving()
     way(program)
     road.see_it_stop()
     program.end()
+    wait_until(lambda: is_free(road.port), "the connection ends")
 
 
 def test_a_program_that_goes_on_does_not_drive_on(road: Road) -> None:

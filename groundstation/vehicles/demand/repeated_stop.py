@@ -13,6 +13,7 @@ import msgspec
 from dialects.enums import Result
 from dialects.mode_tables import HOLD
 from groundstation.vehicles.demand.stop_commands import DISARM, StopCommand, mode_command, send_stop, shows_mode
+from groundstation.vehicles.state.senders import ReportingSender, Senders, is_disarmed
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from link.services.command.client import CommandClient, CommandOutcome
 
@@ -37,10 +38,14 @@ class StopTimes(msgspec.Struct, frozen=True):
 class StopEvidence:
     """Whether a stop is done. What was so before it counts only with a sign that is newer than its beginning."""
 
-    def __init__(self, find_doubt: Callable[[float], str], began: float) -> None:
-        """`find_doubt` takes the time; returns which sender of its id does not report the effect, "" if each does."""
-        self.find_doubt = find_doubt
-        self._was_done = not find_doubt(began)
+    def __init__(self, senders: Senders, shows: Callable[[ReportingSender], bool], began: float) -> None:
+        """Begin; `shows` returns whether the last report of a sender of its id shows the effect."""
+        self._senders, self._shows, self._began = senders, shows, began
+        self._was_done = not senders.find_doubt(began, shows)
+
+    def find_doubt(self, now: float) -> str:
+        """Return which sender of its id does not report the effect, "" if each does."""
+        return self._senders.find_doubt(now, self._shows, self._began)
 
     def is_done(self, now: float, *, newer: bool) -> bool:
         """Return whether it is done. `newer`: there is such a sign, an answer or a HEARTBEAT."""
@@ -63,13 +68,18 @@ class RepeatedStop:
     """One stop of one vehicle. `end` says how it ended; None while it is repeated."""
 
     def __init__(
-        self, vehicle: VehicleState, stop: StopCommand, find_doubt: Callable[[float], str], times: StopTimes, label: str
+        self,
+        vehicle: VehicleState,
+        stop: StopCommand,
+        shows: Callable[[ReportingSender], bool],
+        times: StopTimes,
+        label: str,
     ) -> None:
-        """`label` names it in the log and in refusals."""
+        """Begin; `shows` returns whether a sender reports the effect, `label` names it in the log and in refusals."""
         self.vehicle, self.stop, self.label = vehicle, stop, label
         self.end: StopEnd | None = None
         self._times = times
-        self._evidence = StopEvidence(find_doubt, times.began)
+        self._evidence = StopEvidence(vehicle.senders, shows, times.began)
         self._due = times.began
         self._tries = 0
         self._accepted = False
@@ -111,7 +121,7 @@ class RepeatedStop:
 
 def disarm_stop(vehicle: VehicleState, times: StopTimes) -> RepeatedStop:
     """Return the stop that disarms."""
-    return RepeatedStop(vehicle, DISARM, vehicle.senders.find_doubt, times, "disarm")
+    return RepeatedStop(vehicle, DISARM, is_disarmed, times, "disarm")
 
 
 def hold_stop(vehicle: VehicleState, times: StopTimes) -> RepeatedStop | None:
@@ -124,14 +134,4 @@ def mode_stop(vehicle: VehicleState, name: str, times: StopTimes) -> RepeatedSto
     command = mode_command(vehicle, name)
     if command is None:
         return None
-    return RepeatedStop(vehicle, command, lambda now: find_mode_doubt(vehicle, name, now), times, f"mode {name}")
-
-
-def find_mode_doubt(vehicle: VehicleState, name: str, now: float) -> str:
-    """Return which sender of its id does not report a mode; "" if each does."""
-    return vehicle.senders.find_doubt(now, lambda sender: shows_mode(vehicle, sender, name))
-
-
-def find_hold_doubt(vehicle: VehicleState, now: float) -> str:
-    """Return which sender of its id does not report HOLD; "" if each does."""
-    return find_mode_doubt(vehicle, HOLD, now)
+    return RepeatedStop(vehicle, command, lambda sender: shows_mode(vehicle, sender, name), times, f"mode {name}")

@@ -79,6 +79,11 @@ class ReportingSender(msgspec.Struct):
         return f"{'ARMED' if self.armed else 'disarmed'} in {self._mode}{locked}"
 
 
+def is_disarmed(sender: ReportingSender) -> bool:
+    """Return whether its last report is disarmed."""
+    return not sender.armed
+
+
 class Senders:
     """The senders of one system id."""
 
@@ -120,11 +125,18 @@ class Senders:
         return any(each.armed for each in live) if live is not found else max(live, key=lambda each: each.at).armed
 
     def find_doubt(
-        self, now: float, is_done: Callable[[ReportingSender], bool] = lambda sender: not sender.armed
+        self, now: float, is_done: Callable[[ReportingSender], bool] = is_disarmed, since: float = -math.inf
     ) -> str:
-        """Return which sender does not show that a stop is done, in words; "" if the last report of each does."""
+        """Return which sender does not show that a stop is done, in words; "" if the last report of each does.
+
+        Of several senders each must have reported at or after `since`: one that was disarmed a second ago may be armed.
+        """
         for sender in sorted(self._senders.values(), key=lambda each: each.at):
-            if is_done(sender) or not self._counts(sender, now):
+            if not self._counts(sender, now):
+                continue
+            if is_done(sender):
+                if not self._speaks_since(sender, since, now):
+                    return f"{self._name(sender)} has not reported since it began"
                 continue
             if sender.is_live(now):
                 return f"{self._name(sender)} reports {sender.report}"
@@ -178,6 +190,13 @@ class Senders:
         if now - sender.at > REMEMBERED:
             return False
         return not any(each.is_live(now) and _is_same(sender, each) for each in self._senders.values())
+
+    def _speaks_since(self, sender: ReportingSender, since: float, now: float) -> bool:
+        """Return whether its report is new enough: one vehicle alone, on whatever paths, is judged by its answer."""
+        if sender.at >= since or not sender.is_live(now):
+            return True
+        others = [each for each in self._senders.values() if each is not sender and each.is_live(now)]
+        return all(_is_same(sender, each) for each in others)
 
     def _name(self, sender: ReportingSender) -> str:
         several = len({each.component for each in self._senders.values()}) > 1

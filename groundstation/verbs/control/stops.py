@@ -83,7 +83,7 @@ async def _begin(
         return False
     count = len(session.core.contacts)
     if codes:
-        more = 0.0 if session.core.has_heard_all else ALONE_AFTER
+        more = max(0.0, session.sure_at - session.now) if session.core.has_heard_all else ALONE_AFTER
     else:
         more = max(0.0, session.began + min(options.wait, options.timeout or REPEAT_FOR) - session.now)
     return await session.wait_until_true(lambda: len(session.core.contacts) > count, more)

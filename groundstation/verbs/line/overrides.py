@@ -9,8 +9,9 @@ from dialects.mode_tables import HOLD
 from groundstation.intents.driving import EmergencyStop, Stop
 from groundstation.intents.vehicle import Disarm, ReleaseControl, RequestControl, SetMode
 from groundstation.station.driving.handover import ANSWER_WITHIN
-from groundstation.vehicles.demand.repeated_stop import StopEvidence, find_hold_doubt
-from groundstation.vehicles.demand.stop_commands import StopKind
+from groundstation.vehicles.demand.repeated_stop import StopEvidence
+from groundstation.vehicles.demand.stop_commands import StopKind, shows_mode
+from groundstation.vehicles.state.senders import ReportingSender, is_disarmed
 from groundstation.verbs.collected_output import CollectedOutput
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError
 from groundstation.verbs.line.session import LineSession
@@ -24,20 +25,20 @@ def _need_selected(session: LineSession) -> None:
         raise VerbError(ExitCode.USAGE, f"{session.vehicle.name} is not selected: n selects the next vehicle")
 
 
-async def _wait_stopped(session: LineSession, find_doubt: Callable[[float], str]) -> tuple[bool, str]:
+async def _wait_stopped(session: LineSession, shows: Callable[[ReportingSender], bool]) -> tuple[bool, str]:
     """Wait until the last report of each sender of its id shows the stop; return whether it does, and else who not."""
     began, state = session.now, session.vehicle
-    evidence = StopEvidence(find_doubt, began)
+    evidence = StopEvidence(state.senders, shows, began)
 
     def is_stopped() -> bool:
         return evidence.is_done(session.now, newer=state.heartbeat_at > began)
 
     done = await session.wait_for(is_stopped, STOPPED_WITHIN)
-    return done, "" if done else find_doubt(session.now) or "it is not heard"
+    return done, "" if done else evidence.find_doubt(session.now) or "it is not heard"
 
 
 async def _wait_disarmed(session: LineSession) -> tuple[bool, str]:
-    return await _wait_stopped(session, session.vehicle.senders.find_doubt)
+    return await _wait_stopped(session, is_disarmed)
 
 
 async def disarm(session: LineSession, options: argparse.Namespace, output: CollectedOutput) -> int:
@@ -52,7 +53,7 @@ async def stop(session: LineSession, options: argparse.Namespace, output: Collec
     """Stop the sticks, and change to HOLD."""
     state = session.vehicle
     session.stop(StopKind.HOLD, Stop(), SetMode(mode=HOLD))
-    done, doubt = await _wait_stopped(session, lambda now: find_hold_doubt(state, now))
+    done, doubt = await _wait_stopped(session, lambda sender: shows_mode(state, sender, HOLD))
     output.note(f"{state.name} {'holds' if done else f'is not known to hold: {doubt}'}")
     return ExitCode.DONE if done else ExitCode.NO_ANSWER
 

@@ -103,8 +103,12 @@ class VerbSession:
 
     @property
     def sure_at(self) -> float:
-        """From when on every sender of an id was heard that sends once a second; a station has heard them before."""
-        return self.began if self.core.has_heard_all else self.began + ALONE_AFTER
+        """From when on every sender of an id was heard that sends once a second.
+
+        A station has heard them before, unless it has just been started.
+        """
+        listening = self.station.parts.started if self.core.has_heard_all else self.began
+        return max(self.began, listening + ALONE_AFTER)
 
     @property
     def names(self) -> tuple[int, str]:
@@ -154,9 +158,8 @@ class VerbSession:
 
     async def hear_all(self, seconds: float = ALONE_AFTER) -> None:
         """Wait until the links were heard for so long, counted from the start; a station has heard them before."""
-        if self.core.has_heard_all:
-            return
-        await asyncio.sleep(max(0.0, self.began + seconds - self.now))
+        until = self.sure_at if self.core.has_heard_all else self.began + seconds
+        await asyncio.sleep(max(0.0, until - self.now))
 
     async def prove_session(self) -> None:
         """Prove this session, so that the vehicle accepts commands that need control.

@@ -65,7 +65,7 @@ class EmergencyLock(msgspec.Struct):
 
     def doubt(self, now: float) -> str:
         """Return which sender of its id does not report that it is disarmed; "" if the last report of each does."""
-        return self.vehicle.senders.find_doubt(now)
+        return self.vehicle.senders.find_doubt(now, since=self.since)
 
     def progress(self, now: float) -> EmergencyProgress:
         """Return how far the request is."""

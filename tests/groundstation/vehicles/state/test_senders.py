@@ -104,6 +104,25 @@ def test_each_component_that_claims_the_autopilot_must_report_it() -> None:
     assert state.senders.find_doubt(1.0) == "component 2 at 10.0.0.1:14550 reports ARMED in AUTO"
 
 
+def test_of_several_senders_each_must_report_since_the_stop_began() -> None:
+    senders = Senders()
+    take(senders, beat(HERE, ARMED, AUTO), beat(THERE, DISARMED), now=1.0)
+    take(senders, beat(HERE, DISARMED, AUTO), now=2.0)
+    assert senders.find_doubt(2.0, since=1.5) == "the sender at 10.0.0.2:14550 has not reported since it began"
+    take(senders, beat(THERE, ARMED, AUTO), now=2.1)
+    assert senders.find_doubt(2.1, since=1.5) == "the sender at 10.0.0.2:14550 reports ARMED in AUTO"
+    take(senders, beat(THERE, DISARMED, AUTO), now=2.5)
+    assert senders.find_doubt(2.5, since=1.5) == ""
+
+
+def test_one_vehicle_on_two_paths_need_not_report_on_both() -> None:
+    senders = Senders()
+    take(senders, beat(HERE, ARMED), beat(THERE, ARMED), booted(HERE, 10_000), booted(THERE, 10_000), now=1.0)
+    take(senders, beat(THERE, DISARMED), now=1.4)
+    take(senders, beat(HERE, DISARMED), now=2.0)
+    assert senders.find_doubt(2.0, since=1.5) == ""
+
+
 def test_a_flood_of_addresses_grows_no_table() -> None:
     senders = Senders()
     for number in range(5000):
