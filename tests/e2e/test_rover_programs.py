@@ -21,7 +21,7 @@ from groundstation.station_socket.connect import running_stations
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import Screen
 from tests.ports import free_port, is_free
-from tests.waits import wait_for_end, wait_until
+from tests.waits import Waits, wait_for_end, wait_until
 
 pytestmark = [pytest.mark.e2e, pytest.mark.xdist_group("programs")]
 
@@ -122,8 +122,12 @@ class Road:
         return program
 
     def see_it_stop(self) -> None:
-        """See the wheels stop long before the call that drives would end."""
-        wait_until(self.vehicle.stands, "standing", within=LONG / 2)
+        """See the wheels stop long before the call that drives would end; the delays of the machine are added."""
+        processes = (self.vehicle.process.pid, *running_stations(), *(each.process.pid for each in self.programs))
+        waits, began = Waits(*processes), time.monotonic()
+        wait_until(self.vehicle.stands, lambda: f"standing: {self.programs[-1].errors}")
+        took = self.vehicle.outputs()[-1].at - began
+        assert took <= LONG / 2 + waits.total(), f"{took:.1f} s, {waits.total():.1f} s late: {self.programs[-1].errors}"
 
     def is_disarmed(self) -> bool:
         """Return whether the newest that the vehicle tells of arming is that it has disarmed."""
@@ -449,6 +453,7 @@ with rover:
 
 @pytest.mark.usefixtures("station")
 def test_a_second_program_sets_a_parameter_and_does_not_drive(road: Road) -> None:
+    """Where a call of the first one has ended, as on a late machine, the second may drive until the first goes on."""
     driving = road.folder / "driving"
     second = road.start(f"""\
 with rover:
@@ -457,23 +462,35 @@ with rover:
         time.sleep(0.01)
     rover.params["WP_RADIUS"] = 2.5
     say(rover.params["WP_RADIUS"])
-    say(time.monotonic())
-    try:
-        rover.drive(-1.0, seconds=1)
-    except RoverError as error:
-        say(f"{{type(error).__name__}}: {{error}}")
+    for _ in range({TRIES}):
+        try:
+            rover.drive(-1.0, seconds=0.3)
+            say("driven")
+        except RoverError as error:
+            say(f"{{type(error).__name__}}: {{error}}")
+            if type(error) is NotInControl:
+                break
 """)
     wait_until(lambda: "open" in second.said, lambda: second.errors)
-    first = road.start_driving()
+    first = road.start_driving(f"""\
+with rover:
+    while True:
+        rover.arm(30)
+        try:
+            rover.drive(0.5, seconds={LONG})
+            say("driven")
+        except RoverError as error:
+            say(error)
+""")
     driving.touch()
     assert wait_for_end(second.process) == 0, second.errors
-    _, radius, at, refused = second.said.splitlines()
+    _, radius, *refused = second.said.splitlines()
     assert radius == "2.5"
-    assert refused.startswith("NotInControl: the mavhelm api")
-    assert wait_for_end(first.process) == 0, first.errors
-    outputs = road.vehicle.outputs()
-    assert all(value >= 0 for each in outputs for value in each.throttles)
-    assert outputs[-1].at > float(at), "the first one has driven on"
+    assert refused[-1].startswith("NotInControl: the mavhelm api"), second.said
+    wait_until(road.vehicle.turning, lambda: f"the first one drives on: {first.errors}")
+    if not first.said:
+        assert len(refused) == 1
+        assert all(value >= 0 for each in road.vehicle.outputs() for value in each.throttles)
 
 
 DRIVE_ON = """\
