@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
 import tempfile
 from collections.abc import Generator
@@ -57,6 +58,8 @@ def pytest_configure(config: pytest.Config) -> None:
     """Choose the suite, and give each worker folders of its own: your files and stations are not for tests."""
     config.option.suite = suite.chosen(config)  # xdist passes it on to its workers
     config.option.loadscopereorder = False  # of xdist: tests/order.py knows which group takes longest
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # of a shell's `&`: programs would inherit it, deaf to Ctrl-C
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if config.option.suite == suite.SHORT:
         settings.load_profile(suite.SHORT)
     # Each of the programs that the tests start would compile its 300 to 500 modules again, and each worker the tests.
