@@ -183,18 +183,15 @@ def test_a_call_that_drives_ends_with_its_program(road: Road) -> None:
     """Frozen programs and killed connections: the tests below."""
     for way in (kill, interrupt, terminate, reach_a_breakpoint):
         see_it_end(road, way)
+        wait_until(lambda: is_free(road.port), "the connection disarms, and leaves the port to the next program")
 
 
 def see_it_end(road: Road, way: Callable[[Program], None]) -> None:
-    """Let a program of its own drive, end it in one way, and see the wheels stop.
-
-    The connection of a killed program disarms and waits for that, before it leaves the port to the next one.
-    """
+    """Let a program of its own drive, end it in one way, and see the wheels stop."""
     program = road.start_driving()
     way(program)
     road.see_it_stop()
     program.end()
-    wait_until(lambda: is_free(road.port), "the connection ends")
 
 
 def test_a_program_that_goes_on_does_not_drive_on(road: Road) -> None:

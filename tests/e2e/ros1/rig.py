@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import pty
 import signal
@@ -153,11 +154,16 @@ class Rig:
         self.presses(node, key, self.vehicle.turning)
 
     def presses(self, node: CommandNode, key: str, until: Callable[[], bool]) -> None:
-        """Press a key again until a condition holds: command_node loses keys, as the article's does."""
+        """Press a key again until a condition holds: command_node loses keys, as the article's does.
+
+        Each third try is neutral: a station that stood still takes no motion of a publisher before it has sent zero.
+        """
         patience = Patience()
-        while not until():
+        for each in itertools.cycle((key, key, "k")):
+            if until():
+                return
             assert not patience.ended, f"{key}\n{self.station.said}\n{self.vehicle.errors.read_text()}"
-            node.press(key)
+            node.press(each)
             again = time.monotonic() + TRY
             while not until() and time.monotonic() < again:
                 time.sleep(0.01)

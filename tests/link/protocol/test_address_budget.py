@@ -144,6 +144,16 @@ def test_what_was_withheld_is_reported_as_dropped() -> None:
     assert channel.report(dropped=5).dropped == 5 + 101 - sent
 
 
+def test_what_is_passed_on_for_others_counts_as_well() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), VICTIM, 0.0)
+    size = len(frame(STATUS))
+    passed = [channel.may_send(STATUS.id, size, VICTIM) for _ in range(100)]
+    assert passed == [True] * (2100 // size) + [False] * (100 - 2100 // size)
+    assert channel.report(dropped=0).dropped == passed.count(False)
+    assert channel.may_send(STATUS.id, size, ("192.0.2.8", 14550)), "of an address that is not known nothing is kept"
+
+
 def test_named_addresses_connections_stations_have_no_limit() -> None:
     for channel in (vehicle(target=VICTIM), vehicle(stream=True), vehicle(bounded=False)):
         channel.receive(heartbeat(0), VICTIM, 0.0)
