@@ -80,7 +80,8 @@ class HelpScreen(OwnDismissal[None], ConsoleScreen):
 
     def _open_filter(self) -> None:
         use = FieldUse(self._filter_text, self._filter_text, cancel=lambda: self._filter_text(""))
-        self.field.open(use, text=self._filter, placeholder="words of a key's text; ENTER keeps them, ESC shows all")
+        placeholder = "words of a key's text; ENTER keeps them, ESC shows all"
+        self.field.open(use, text=self._filter, placeholder=placeholder, selected=True)
 
     def _go_back(self) -> None:
         """Open the screen on which the help was asked for; on Drive only close this one."""

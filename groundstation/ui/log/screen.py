@@ -195,9 +195,8 @@ class LogScreen(ConsoleScreen):
 
     def _open_filter(self) -> None:
         use = FieldUse(self._filter_text, self._filter_text, cancel=lambda: self._filter_text(""))
-        self.field.open(
-            use, text=self._model.filter.text, placeholder="words, >=warning; ENTER keeps them, ESC shows all"
-        )
+        placeholder = "words, >=warning; ENTER keeps them, ESC shows all"
+        self.field.open(use, text=self._model.filter.text, placeholder=placeholder, selected=True)
 
     def _filter_text(self, text: str) -> None:
         self._set_filter(replace(self._model.filter, text=text))

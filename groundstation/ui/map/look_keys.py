@@ -75,7 +75,8 @@ class LookKeys:
     def _open_filter(self) -> None:
         before = self._model.filter.text
         use = FieldUse(self._filter, change=self._filter, cancel=lambda: self._filter(""))
-        self._screen.field.open(use, text=before, placeholder="words of the command, numbers, new, changed")
+        placeholder = "words of the command, numbers, new, changed"
+        self._screen.field.open(use, text=before, placeholder=placeholder, selected=True)
 
     def _filter(self, text: str) -> None:
         self._model.set_filter(text)

@@ -176,7 +176,7 @@ class MessagesScreen(ConsoleScreen):
         self._frozen = False
         use = FieldUse(self._model.set_filter, self._model.set_filter, cancel=lambda: self._model.set_filter(""))
         placeholder = "name, >5Hz, age>3, src:1/1, field:volt; ENTER keeps, ESC clears"
-        self.field.open(use, text=self._model.text, placeholder=placeholder)
+        self.field.open(use, text=self._model.text, placeholder=placeholder, selected=True)
 
     def _next_order(self) -> None:
         self._frozen = False

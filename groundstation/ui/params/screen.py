@@ -135,7 +135,7 @@ class ParamsScreen(ConsoleScreen):
     def _open_filter(self) -> None:
         use = FieldUse(self._model.set_filter, self._model.set_filter, cancel=lambda: self._model.set_filter(""))
         placeholder = "words of names and texts, any of them; ENTER keeps them, ESC shows all"
-        self.field.open(use, text=self._model.filter, placeholder=placeholder)
+        self.field.open(use, text=self._model.filter, placeholder=placeholder, selected=True)
 
     def _enter(self) -> None:
         if not self._panels.enter() and (editor := self._model.open_editor()) is not None:
@@ -146,7 +146,7 @@ class ParamsScreen(ConsoleScreen):
                 key=self._panels.edit_key,
             )
             placeholder = f"number, 0x…, or a name of the list for {editor.row.name}; ENTER keeps, ESC leaves"
-            self.field.open(use, text=editor.text, placeholder=placeholder)
+            self.field.open(use, text=editor.text, placeholder=placeholder, selected=True)
 
     def _ask_to_write(self) -> None:
         if self._model.may_write:

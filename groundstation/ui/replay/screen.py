@@ -278,7 +278,7 @@ class ReplayScreen(ConsoleScreen):
     def _ask_search(self) -> None:
         use = FieldUse(self._search)
         example = "text, HOME_POSITION, MODE==AUTO, batt<11.5, VFR_HUD.groundspeed>2"
-        self.field.open(use, text=self._model.search, placeholder=example)
+        self.field.open(use, text=self._model.search, placeholder=example, selected=True)
 
     def _search(self, text: str) -> None:
         self._model.search = text

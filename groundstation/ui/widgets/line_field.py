@@ -46,11 +46,13 @@ class LineField(Input):
         self.cursor_blink = False
         self._use: FieldUse | None = None
 
-    def open(self, use: FieldUse, *, text: str = "", placeholder: str = "") -> None:
-        """Show the field with a text."""
+    def open(self, use: FieldUse, *, text: str = "", placeholder: str = "", selected: bool = False) -> None:
+        """Show the field with a text. `selected`: what is typed replaces it, unless a cursor key comes first."""
         self._use = None  # the text is not a change
         self.value, self.placeholder = text, placeholder
         self.cursor_position = len(text)
+        if selected:
+            self.select_all()
         self._use = use
         self.display = True
         self.screen.set_focus(self)  # at once: the next keys of the same read are text

@@ -398,7 +398,7 @@ async def test_a_screen_that_cannot_start_takes_no_place(caplog: pytest.LogCaptu
 
 
 async def test_the_end_of_the_program_that_wants_it_ends_all() -> None:
-    async with served("sh", "-c", "echo pid=$$.; exec cat") as server:
+    async with served("sh", "-c", "echo pid=$$.; exec cat", heartbeat=PATIENCE) as server:
         tab = await server.tab()
         pid = int((await read_until(tab, ".")).partition("pid=")[2].partition(".")[0])
         assert not server.task.done()

@@ -18,7 +18,7 @@ from tests.groundstation.ui.files.test_log_summary import HEARTBEATS, log
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.waits import until
 
-ESC, LEFT, BACKSPACE = "\x1b[27u", "\x1b[D", "\x7f"
+ESC, LEFT, END, BACKSPACE = "\x1b[27u", "\x1b[D", "\x1b[F", "\x7f"
 """Escape as the kitty keyboard protocol sends it: alone, whatever follows."""
 F1, F6 = "\x1bOP", "\x1b[17~"
 EDITS = f"ab{BACKSPACE}c{LEFT}d"
@@ -56,9 +56,10 @@ async def test_editing_keys_act_in_their_order(opened: bool) -> None:
 async def test_keys_behind_the_end_of_a_text_are_keys_of_the_screen() -> None:
     async with console() as screen:
         page = await open_screen(screen, "6")
-        type_in(screen, "/arm\r/ed\r")
-        await screen.pilot.pause()
-        assert (page.field.is_open, page.field.value) == (False, "armed")
+        for typed, left in ((f"/arm\r/{END}ed\r", "armed"), ("/new\r", "new")):
+            type_in(screen, typed)
+            await screen.pilot.pause()
+            assert (page.field.is_open, page.field.value) == (False, left), "what is typed replaces the old text"
         type_in(screen, f"/x{ESC}\x073")
         await until(lambda: isinstance(screen.app.screen, MessagesScreen))
 

@@ -104,7 +104,7 @@ def test_each_component_that_claims_the_autopilot_must_report_it() -> None:
     assert state.senders.find_doubt(1.0) == "component 2 at 10.0.0.1:14550 reports ARMED in AUTO"
 
 
-def test_of_several_senders_each_must_report_since_the_stop_began() -> None:
+def test_each_of_several_senders_must_report_anew() -> None:
     senders = Senders()
     take(senders, beat(HERE, ARMED, AUTO), beat(THERE, DISARMED), now=1.0)
     take(senders, beat(HERE, DISARMED, AUTO), now=2.0)
