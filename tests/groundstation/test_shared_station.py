@@ -239,9 +239,13 @@ def test_several_stations_say_what_they_are(capsys: pytest.CaptureFixture[str]) 
             second.client.pid: f"{second.client.pid} (no vehicle, {second.endpoint}, first screen)",
         }
         which = ", ".join(texts[pid] for pid in pids)
-        assert describe_stations(pids) == which
-        assert main(["arm"]) == 2
-        assert capsys.readouterr().err == f"mavhelm: stations {which} run here: name one with --station PID\n"
+        wait_until(lambda: describe_stations(pids) == which, "both answer in time")
+
+        def said() -> str:
+            assert main(["arm"]) == 2
+            return capsys.readouterr().err
+
+        wait_until(lambda: said() == f"mavhelm: stations {which} run here: name one with --station PID\n")
         os.kill(second.client.pid, signal.SIGSTOP)
         try:
             texts[second.client.pid] = str(second.client.pid)  # it does not answer

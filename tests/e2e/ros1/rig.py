@@ -26,6 +26,10 @@ TRY = 1.5
 """s for a key to turn the wheels."""
 
 
+LOST = ("takes no demands in HOLD", "is disarmed; the publisher")
+"""What `mavhelm ros1` says where it was late by seconds, and only arming helps."""
+
+
 class Program:
     """A program, with what it prints."""
 
@@ -157,12 +161,16 @@ class Rig:
         """Press a key again until a condition holds: command_node loses keys, as the article's does.
 
         Each third try is neutral: a station that stood still takes no motion of a publisher before it has sent zero.
+        One that was so late that the rover went to HOLD begins anew.
         """
         patience = Patience()
         for each in itertools.cycle((key, key, "k")):
             if until():
                 return
             assert not patience.ended, f"{key}\n{self.station.said}\n{self.vehicle.errors.read_text()}"
+            if any(lost in self.station.said for lost in LOST):
+                self.station.kill()
+                self.station = self.start_station()
             node.press(each)
             again = time.monotonic() + TRY
             while not until() and time.monotonic() < again:

@@ -144,7 +144,9 @@ def test_a_terminal_that_answers_gets_real_pixels(answer: bytes, tmp_path: Path)
             kitty = KittyScreen()
             kitty.feed(text[: text.rindex("\x1b[?2026l")].replace("\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\", ""))
             (picture,) = kitty.images.values()
-            assert (picture.width, picture.height) == (620, 360)  # of 100 x 29 cells of 8 x 16 pixels
+            level = round(620 / picture.width)  # of 100 x 29 cells of 8 x 16 pixels; coarser where the reader is late
+            assert level in (1, 2, 3)
+            assert (picture.width, picture.height) == (620 // level, 360 // level)
         else:
             picture = decode_sixel(text)
             assert picture.height % 6 == 0
