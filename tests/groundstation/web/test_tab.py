@@ -139,7 +139,7 @@ async def test_after_a_tab_nothing_is_left() -> None:
     await shown.close()
     assert not shown.is_writing()
     assert open_files() == before
-    assert children(os.getpid()) == processes
+    await until(lambda: children(os.getpid()) == processes)  # a screen that had to be killed is reaped a moment later
 
 
 async def test_all_that_a_program_draws_is_shown_to_its_end() -> None:
