@@ -54,9 +54,9 @@ class _Copies:
         return False
 
 
-def _content(raw: bytes) -> bytes:
+def _content(message_id: int, raw: bytes) -> bytes:
     """Return what a copy over another link has as well: without number, checksum and signature if it has a time."""
-    if raw[0] != MAGIC_V2 or int.from_bytes(raw[7:10], "little") not in _TIMED:
+    if raw[0] != MAGIC_V2 or message_id not in _TIMED:
         return raw
     return raw[5 : HEADER_V2 + raw[1]]
 
@@ -88,8 +88,13 @@ class LogTap:
 
     def record_received(self, frames: Sequence[Frame], link: int, now: float) -> None:
         """Record complete frames of any sender. `link` is the index of the link that brought them."""
-        kept = [raw for number, _, _, _, raw in frames if number not in _NOT_RECEIVED]
-        kept = [raw for raw in kept if not self._copies.is_copy(_content(raw), link, now) and raw not in self._sent]
+        kept = [
+            raw
+            for number, _, _, _, raw in frames
+            if number not in _NOT_RECEIVED
+            and not self._copies.is_copy(_content(number, raw), link, now)
+            and raw not in self._sent
+        ]
         if kept:
             keep = self._signatures
             self._add(now, kept if keep else [strip_signature(raw) if is_signed(raw) else raw for raw in kept])
