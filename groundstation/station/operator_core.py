@@ -126,6 +126,10 @@ class OperatorCore:
         """Note that a vehicle has accepted arming from a verb: without CONTROL_STATUS that is control."""
         self._commander.claim(contact.state, now)
 
+    def find_dialect(self, contact: Contact, now: float) -> None:
+        """Ask a vehicle for its dialect, if that is due; its `dialect_probe` has the answer."""
+        self._queries.find_dialect(contact, now)
+
     def _receive_exchange(self, contact: Contact, received: Received, now: float) -> None:
         """Handle what answers a request, makes one, or decides on something."""
         self._handover.receive(contact, received, now)

@@ -96,7 +96,7 @@ def _keep(session: VerbSession, may_prove: MayProve, output: Output) -> None:
     """Prove the session of the verb before, so that the vehicle misses no ground station."""
     contact = session.contact
     contact.operator.may_prove = may_prove
-    contact.operator.begin(session.now)
+    contact.begin(session.now)
 
     def tell(_: asyncio.Future[None]) -> None:
         output.note(f"{contact.state.name} is controlled by the verb before; this one keeps its session")

@@ -75,6 +75,11 @@ class VehicleQueries:
                 self._request_telemetry(contact, now)
                 self._request_home(contact, now)
 
+    def find_dialect(self, contact: Contact, now: float) -> None:
+        """Ask a vehicle for its dialect, if that is due: a verb waits for it, which may run without a screen."""
+        self._handle_outcomes(now)
+        self._query_dialect(contact, now)
+
     def request_version(self, contact: Contact, now: float) -> None:
         """Request AUTOPILOT_VERSION, if it is not known: called while a screen shows it."""
         state = contact.state

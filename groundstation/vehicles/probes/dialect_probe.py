@@ -27,18 +27,27 @@ class DialectProbe:
     def __init__(self) -> None:
         self._due = 0.0
         self._pause = FIRST_RETRY
-        self._refused = False
+        self._refused = self._asked = False
+        self.foreign = False
+        """It has refused, or not answered the newest request: nobody need wait for our dialect."""
 
     def is_due(self, autopilot: int, sending: bool, now: float) -> bool:
-        """Return whether to send a request now. `sending`: ROVER_DRIVE_STATUS is arriving.
+        """Return whether a request is to be sent now. `sending`: ROVER_DRIVE_STATUS is arriving.
 
-        Call only while no request is pending.
+        Call only while no request is pending, and send it if it is due.
         """
         if sending:
             self._due, self._pause = now, FIRST_RETRY
-        return not (sending or self._refused or autopilot in FOREIGN_AUTOPILOTS or now < self._due)
+        self._asked = not (sending or self._refused or autopilot in FOREIGN_AUTOPILOTS or now < self._due)
+        return self._asked
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
-        """Record how a request ended. Without an answer, or accepted without effect, it is sent again later."""
+        """Record how a request ended. Without an answer, or accepted without effect, it is sent again later.
+
+        The end of one that was sent for another probe says nothing here: this one asks by itself.
+        """
+        if not self._asked:
+            return
         self._refused = outcome.result not in (None, Result.ACCEPTED, Result.TEMPORARILY_REJECTED)
+        self.foreign = self._refused or outcome.result is None
         self._due, self._pause = now + self._pause, min(LONGEST_RETRY, self._pause * 2)

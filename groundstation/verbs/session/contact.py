@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Protocol
 
 from dialects import messages as m
-from dialects.enums import Command
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station.verbs.running_verbs import VerbMessage
 from groundstation.vehicles.fleet import Contact
+from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS, DialectProbe
 from groundstation.vehicles.requests.requests import RequestBook
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog
@@ -45,7 +45,7 @@ class VehicleContact:
         """Its services, which screens of a station use, too."""
         self.operator = VerbOperator(contact.state, self.ids, self.session)
         self.client = CommandClient(*self.ids)
-        """For jobs and for the operator's queries."""
+        """For jobs."""
         self.texts = MessageLog()
         """What it has said."""
         self.refusal = ""
@@ -77,9 +77,21 @@ class VehicleContact:
         return self.state.driver == self.ids[0] and not self.in_control and not self.state.control.silent
 
     @property
+    def settled(self) -> bool:
+        """Whether commands may follow: the session is proven, or the vehicle knows no sessions."""
+        foreign = self.contact.dialect_probe.foreign or self.state.autopilot in FOREIGN_AUTOPILOTS
+        return foreign or self.operator.proven
+
+    @property
     def driven(self) -> WatchdogTarget:
         """What the watchdog must know."""
         return WatchdogTarget.of(self.state, self.session, verified=self.contact.verified)
+
+    def begin(self, now: float) -> None:
+        """Begin to take part: have the vehicle asked for its dialect anew, then prove the session."""
+        if not self.operator.takes_part:
+            self.contact.dialect_probe = DialectProbe()
+        self.operator.begin(now)
 
     def start(self, job: Job, now: float) -> None:
         """Begin a job. It goes on when another component of the system turns out to be the autopilot."""
@@ -115,8 +127,9 @@ class VehicleContact:
         self.texts.expire(now)
         self.client.tick(now)
         self._advance(now)
-        asks = self.services.commands.is_waiting(Command.REQUEST_MESSAGE)
-        self.operator.tick(self.client, now, may_query=not asks)
+        if self.operator.takes_part and not self.settled:
+            self._station.find_dialect(self.contact, now)
+        self.operator.tick(now)
 
     def messages_to_send(self) -> list[VerbMessage]:
         """Return the messages to send now, and remove them; those of the services are the core's."""
@@ -126,7 +139,6 @@ class VehicleContact:
     def _advance(self, now: float) -> None:
         book = self.services.book
         for outcome in self.client.outcomes():
-            self.operator.handle_outcome(outcome, now)
             for job in self._jobs:
                 job.handle_outcome(outcome, self.client, book, now)
         for job in self._jobs:

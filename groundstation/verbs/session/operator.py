@@ -1,7 +1,7 @@
 """A verb as the operator of a vehicle: the proofs of its session, and the demands that it sends. Time is an argument.
 
 Our vehicle obeys a session that was proven in the last second (docs/safety.md, "Who the driver is"). So a verb that
-takes or needs control asks whether the vehicle has our dialect, and then proves a session of its own while it runs.
+takes or needs control proves a session of its own while it runs, once the vehicle is known to have our dialect.
 """
 
 from __future__ import annotations
@@ -11,14 +11,12 @@ from collections.abc import Callable
 
 from dialects import messages as m
 from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
-from dialects.enums import Command, OperatorFlag, Result
+from dialects.enums import OperatorFlag
 from groundstation.input.style import HIGHEST_LIMIT, Style
 from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
 from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.vehicles.demand.demand_stream import DemandStream
-from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS, DialectProbe
 from groundstation.vehicles.state.vehicle_state import VehicleState
-from link.services.command.client import CommandClient, CommandOutcome
 
 PROOFS_FIRST, FIRST_PERIOD = 5, 0.008
 """Proofs before the first command, and s between them: four of five may get lost."""
@@ -37,9 +35,8 @@ class VerbOperator:
         self._state = state
         self._ids = ids
         self._session = OperatorSession(Style.HOLD, HIGHEST_LIMIT, session)
-        self._probe = DialectProbe()
-        self._foreign = False
-        self._wanted = False
+        self.takes_part = False
+        """`begin` was called."""
         self._proofs = 0
         self._first_left = PROOFS_FIRST
         self._settled_at = -math.inf
@@ -56,9 +53,9 @@ class VerbOperator:
         """What decides on the axes of the vehicle, if it is known (dialects/axes.py, FRAMES)."""
 
     def begin(self, now: float) -> None:
-        """Begin to take part: find out the dialect, then prove the session."""
-        if not self._wanted:
-            self._wanted = True
+        """Begin to take part."""
+        if not self.takes_part:
+            self.takes_part = True
             self._session.record_input(now)
 
     def record_input(self, now: float) -> None:
@@ -67,13 +64,13 @@ class VerbOperator:
 
     def prove_again(self, now: float) -> None:
         """Begin the first proofs again, if the session was proven and they are older than PROVEN_FOR."""
-        if self.settled and self._proofs and now - self._settled_at > PROVEN_FOR and self.may_prove(now):
+        if self.proven and self._proofs and now - self._settled_at > PROVEN_FOR and self.may_prove(now):
             self._first_left = PROOFS_FIRST
 
     @property
-    def settled(self) -> bool:
-        """Whether commands may follow: the session is proven, or the vehicle knows no sessions."""
-        return self._foreign or self._state.autopilot in FOREIGN_AUTOPILOTS or not self._first_left
+    def proven(self) -> bool:
+        """Whether the first proofs were sent."""
+        return not self._first_left
 
     @property
     def proves(self) -> bool:
@@ -85,24 +82,17 @@ class VerbOperator:
         """Whether no final neutral is left to send."""
         return self._stream.finished and not self._outbox
 
-    def tick(self, client: CommandClient, now: float, *, may_query: bool) -> None:
-        """Ask for the dialect, prove the session, send demands."""
-        if not self._wanted:
+    def tick(self, now: float) -> None:
+        """Prove the session, send demands."""
+        if not self.takes_part:
             return
         self._session.renew_lease(now)
-        self._query_dialect(client, now, may_query)
         axes = self._stream.next_due(self.demand(now) if self.demanding else NEUTRAL, self.demanding, now)
         if axes is not None:
             self._session.record_demand(axes)
             frame = axis_map(self._state.autopilot, self._state.kind, self.frame)
             self.send_demand(build_manual_control(axes, self._state.system, frame), now, moves=not axes.neutral)
         self._prove(now)
-
-    def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
-        """Handle the answer to the question for the dialect."""
-        if outcome.command == Command.REQUEST_MESSAGE and outcome.params[0] == m.RoverDriveInfo.id:
-            self._probe.handle_outcome(outcome, now)
-            self._foreign |= outcome.result not in (Result.ACCEPTED, Result.TEMPORARILY_REJECTED)
 
     def send_demand(self, demand: m.ManualControl, now: float, *, moves: bool) -> None:
         """Send a demand, as the station does: our vehicle takes it from the proof, others from MANUAL_CONTROL.
@@ -118,19 +108,6 @@ class VerbOperator:
         """Return the messages to send now, and remove them."""
         outbox, self._outbox = self._outbox, []
         return outbox
-
-    def _query_dialect(self, client: CommandClient, now: float, may_query: bool) -> None:
-        state = self._state
-        if self.settled or not may_query or client.is_waiting(Command.REQUEST_MESSAGE, state.system):
-            return
-        if self._probe.is_due(state.autopilot, state.sends_drive_status(now), now):
-            client.send(
-                Command.REQUEST_MESSAGE,
-                m.RoverDriveInfo.id,
-                target_system=state.system,
-                target_component=state.component,
-                now=now,
-            )
 
     def _prove(self, now: float) -> None:
         """Prove the session once a time of the vehicle is known: without it a proof proves nothing."""

@@ -167,7 +167,7 @@ class VerbSession:
         A vehicle that says neither that it has our dialect nor that it has not is treated as one without.
         """
         contact = self.contact
-        contact.operator.begin(self.now)
+        contact.begin(self.now)
         await self._settle()
         if contact.state.has_rover_dialect:
             await self.wait_for(lambda: contact.state.control.session is not None, DRIVER_WITHIN)
@@ -177,10 +177,10 @@ class VerbSession:
     async def _settle(self) -> None:
         """Wait until the first proofs are sent, or the vehicle is known to have no sessions."""
         contact, until = self.contact, self.now + SETTLED_WITHIN
-        while not (contact.operator.settled or contact.unproven) and self.now < until:
+        while not (contact.settled or contact.unproven) and self.now < until:
             contact.tick(self.now)  # proofs follow each other faster than PERIOD
             self.flush()
-            await self.wait_for(lambda: contact.operator.settled, PROOF_PERIOD)
+            await self.wait_for(lambda: contact.settled, PROOF_PERIOD)
 
     async def _prove_again(self) -> None:
         """Prove a session that was proven: since then its proofs may have been lost."""

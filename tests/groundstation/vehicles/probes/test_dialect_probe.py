@@ -7,6 +7,10 @@ import itertools
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
 from groundstation.vehicles.probes.dialect_probe import LONGEST_RETRY
+from groundstation.verbs.session.contact import VehicleContact
+from groundstation.verbs.session.core import VerbCore
+from groundstation.verbs.session.operator import PROOFS_FIRST
+from groundstation.verbs.session.station_seat import StationSeat
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import Cockpit
@@ -112,3 +116,44 @@ def test_not_requested_from_ardupilot_and_px4() -> None:
         vehicle = FakeArduPilot(autopilot=autopilot)
         Cockpit(vehicle).run(10.0)
         assert asked(vehicle) == []
+
+
+def begin_verb(cockpit: Cockpit) -> VehicleContact:
+    """Begin a verb that takes part; return its vehicle."""
+    core = VerbCore(cockpit.station, 1)
+    StationSeat(cockpit.station, core, "a verb", lambda: None, needs_session=True).join(cockpit.now)
+    contact = core.contacts[1]
+    contact.begin(cockpit.now)
+    return contact
+
+
+def test_a_verb_has_the_vehicle_asked_where_no_screen_is() -> None:
+    vehicle = Kin()
+    vehicle.silent_on.add(REQUEST)
+    cockpit = Cockpit(vehicle)
+    cockpit.leasing = False
+    cockpit.run(4.0)
+    before = len(asked(vehicle))
+    vehicle.silent_on.clear()
+    cockpit.run(4.0)
+    assert len(asked(vehicle)) == before
+    contact = begin_verb(cockpit)
+    cockpit.run(1.0)
+    assert len(asked(vehicle)) == before + 1
+    assert len(vehicle.all(m.RoverOperatorPresence)) >= PROOFS_FIRST
+    assert contact.settled
+
+
+def test_a_verb_waits_for_no_pause_and_for_one_answer() -> None:
+    vehicle = FakeVehicle(driver=None)
+    vehicle.silent_on.add(REQUEST)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(60.0)
+    before = len(asked(vehicle))
+    contact = begin_verb(cockpit)
+    cockpit.run(0.2)
+    assert len(asked(vehicle)) == before + 1
+    assert not contact.settled
+    cockpit.run(3.0)
+    assert contact.settled
+    assert vehicle.all(m.RoverOperatorPresence) == []

@@ -8,7 +8,6 @@ from dialects import messages as m
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.session.operator import PROOFS_FIRST, PROVEN_FOR, VerbOperator
 from link.core import Peer, Received
-from link.services.command.client import CommandClient
 from vehicle.drive.operator_session import PROOF_VALID
 
 STEP = 0.01
@@ -21,7 +20,6 @@ class Proving:
         self.now = 10.0
         self.state = VehicleState(1, 1)
         self.operator = VerbOperator(self.state, (255, 190), 7)
-        self._client = CommandClient(255, 190)
         self.operator.begin(self.now)
 
     def wait(self, seconds: float) -> int:
@@ -31,7 +29,7 @@ class Proving:
             self.now += STEP
             if round(self.now / STEP) % 25 == 0:
                 self._hear(m.RoverDriveStatus(round(self.now * 1000), 0, 0, 0, [0] * 4, 0, 0, 0))
-            self.operator.tick(self._client, self.now, may_query=False)
+            self.operator.tick(self.now)
             sent = [each.message for each in self.operator.messages_to_send()]
             proofs += sum(isinstance(each, m.RoverOperatorPresence) for each in sent)
         return proofs
@@ -44,7 +42,7 @@ class Proving:
 def proving() -> Proving:
     made = Proving()
     made.wait(0.5)
-    assert made.operator.settled
+    assert made.operator.proven
     return made
 
 
@@ -55,22 +53,22 @@ def test_single_proofs_follow_the_first_ones(proving: Proving) -> None:
 def test_a_later_command_is_proven_as_well_as_the_first(proving: Proving) -> None:
     proving.wait(PROOF_VALID + 0.3)
     proving.operator.prove_again(proving.now)
-    assert not proving.operator.settled
+    assert not proving.operator.proven
     assert proving.wait(0.4) >= PROOFS_FIRST
-    assert proving.operator.settled
+    assert proving.operator.proven
 
 
 def test_a_command_at_once_needs_no_other_proofs() -> None:
     made = Proving()
-    while not made.operator.settled:
+    while not made.operator.proven:
         made.wait(STEP)
     made.wait(PROVEN_FOR - 2 * STEP)
     made.operator.prove_again(made.now)
-    assert made.operator.settled
+    assert made.operator.proven
 
 
 def test_another_verb_that_proves_the_session_is_left_alone(proving: Proving) -> None:
     proving.operator.may_prove = lambda _: False
     proving.wait(1.0)
     proving.operator.prove_again(proving.now)
-    assert proving.operator.settled
+    assert proving.operator.proven
