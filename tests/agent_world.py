@@ -6,9 +6,7 @@ The agent's calls are run by the code of the station (verbs/agents); only the MC
 from __future__ import annotations
 
 import asyncio
-import selectors
 from collections.abc import Callable, Coroutine
-from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from itertools import count
 from typing import Any, TypeVar
@@ -22,47 +20,12 @@ from groundstation.verbs.common.channel import CompanionChannel
 from groundstation.verbs.session.core import VerbCore
 from groundstation.verbs.session.session import VerbSession
 from tests.test_stops import Drive
+from tests.world_loop import WorldLoop
 
 Value = TypeVar("Value")
 
 PERIOD = 0.04
 """s between two repeats of the held key, and two signs of life of the agent."""
-
-
-class _Inline(ThreadPoolExecutor):
-    """Runs what a thread would do at once, so that a test does the same each time."""
-
-    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        done: Future[Any] = Future()
-        try:
-            done.set_result(function(*args, **kwargs))
-        except BaseException as error:
-            done.set_exception(error)
-        return done
-
-
-class _WorldSelector(selectors.SelectSelector):
-    """Lets a step of the world pass where a loop would wait."""
-
-    step: Callable[[], None]
-
-    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        if timeout is None or timeout > 0:
-            self.step()
-        return []
-
-
-class _WorldLoop(asyncio.SelectorEventLoop):
-    def __init__(self, drive: Drive) -> None:
-        selector = _WorldSelector()
-        selector.step = lambda: drive.run(drive.world.step)
-        super().__init__(selector)
-        self._drive = drive
-        self.set_default_executor(_Inline())
-
-    def time(self) -> float:
-        """Return the time of the world."""
-        return self._drive.world.now
 
 
 class AgentWorld(Drive):
@@ -83,7 +46,7 @@ class AgentWorld(Drive):
         self._held_since = self._permit_due = self._alive_due = 0.0
         self._numbers = count(1)
         self.channel = CompanionChannel(self._take)
-        self.loop = _WorldLoop(self)
+        self.loop = WorldLoop(lambda: self.world.now, lambda: self.run(self.world.step))
         self.tell(ReportKeyReleases())
         self._agent: asyncio.Task[None] | None = None
 

@@ -6,7 +6,7 @@ import errno
 import socket
 
 from link.endpoint import LISTENING, Endpoint
-from link.transport.transport import LinkError
+from link.transport.transport import LinkError, PortInUseError
 
 PRIVILEGED = 1024
 """Ports below need root (ip(7), ip_unprivileged_port_start)."""
@@ -28,13 +28,17 @@ def resolve(endpoint: Endpoint, kind: socket.SocketKind) -> tuple[tuple[str, int
     return (str(address[0]), int(address[1])), family
 
 
-def bind_error_text(endpoint: Endpoint, error: OSError) -> str:
-    """Return why a socket could not be opened, in one line."""
+def bind_error(endpoint: Endpoint, error: OSError) -> LinkError:
+    """Return the error of a socket that could not be opened."""
     if error.errno == errno.EADDRINUSE:
-        return (
+        return PortInUseError(
             f"{endpoint.text}: port {endpoint.port} is in use; "
             "stop the other program (`ss -lnp` lists it) or choose another port"
         )
+    return LinkError(_bind_error_text(endpoint, error))
+
+
+def _bind_error_text(endpoint: Endpoint, error: OSError) -> str:
     if error.errno == errno.EADDRNOTAVAIL:
         return (
             f"{endpoint.text}: {endpoint.host} is not an address of this machine; "

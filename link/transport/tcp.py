@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable
 from link.endpoint import Endpoint
 from link.protocol.link_events import CONNECTING
 from link.runtime.worker import Worker
-from link.transport.address import bind_error_text, resolve
+from link.transport.address import bind_error, resolve
 from link.transport.backoff import Backoff
 from link.transport.device import DeviceWatch, bind_to_device, watch_device
 from link.transport.priority_queue import TransmitQueue
@@ -263,7 +263,7 @@ def _open_listener(endpoint: Endpoint) -> socket.socket:
         sock.listen(MAX_CONNECTIONS)
     except OSError as error:
         sock.close()
-        raise LinkError(bind_error_text(endpoint, error)) from error
+        raise bind_error(endpoint, error) from error
     return sock
 
 

@@ -19,6 +19,10 @@ class LinkError(Exception):
     """A link cannot be opened; the message is one line that names the endpoint, the error and the remedy."""
 
 
+class PortInUseError(LinkError):
+    """Another program listens on the port of the endpoint."""
+
+
 ReceiveCallback = Callable[[Sequence[tuple[bytes, Hashable]]], None]
 """Takes what arrived: bytes (a datagram, or any piece of a stream) and the address they came from.
 

@@ -7,7 +7,7 @@ import socket
 from collections.abc import Hashable
 
 from link.endpoint import Endpoint
-from link.transport.address import bind_error_text, resolve
+from link.transport.address import bind_error, resolve
 from link.transport.device import DeviceWatch, bind_to_device, watch_device
 from link.transport.receive_buffer import ReceiveBuffer
 from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
@@ -123,5 +123,5 @@ def _open_socket(endpoint: Endpoint) -> socket.socket:
             sock.bind(address)
     except OSError as error:
         sock.close()
-        raise LinkError(bind_error_text(endpoint, error)) from error
+        raise bind_error(endpoint, error) from error
     return sock

@@ -13,6 +13,7 @@ from link.endpoint import Side
 from link.links import open_links
 from link.protocol.log_tap import LogTap
 from link.runner import Runner
+from link.transport.transport import PortInUseError
 
 if TYPE_CHECKING:
     from groundstation.station.driving.driven import WatchdogTarget
@@ -21,6 +22,25 @@ if TYPE_CHECKING:
 
 PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
+PORT_WITHIN = 2.0
+"""s to wait for a port in use: the watchdog of a program that was killed has it for 1.3 s, to disarm."""
+RETRY_PERIOD = 0.1
+
+
+async def run_when_port_free(run: Callable[[], Awaitable[int]]) -> int:
+    """Run a verb over links of its own; try again for PORT_WITHIN s while one of its ports is in use.
+
+    Raises what `run` raises, PortInUseError too.
+    """
+    loop = asyncio.get_running_loop()
+    until = loop.time() + PORT_WITHIN
+    while True:
+        try:
+            return await run()
+        except PortInUseError:
+            if loop.time() > until:
+                raise
+        await asyncio.sleep(RETRY_PERIOD)
 
 
 async def run_over(

@@ -8,14 +8,14 @@ import os
 import pytest
 
 from link.endpoint import parse_endpoint
-from link.transport.address import bind_error_text
+from link.transport.address import bind_error
 from link.transport.transport import LinkError
 from link.transport.udp import open_udp
 
 
 def test_an_error_is_no_cause_that_does_not_fit() -> None:
     refused = OSError(errno.EACCES, os.strerror(errno.EACCES))
-    high = bind_error_text(parse_endpoint("udpin:10.0.0.1:14550"), refused)
+    high = str(bind_error(parse_endpoint("udpin:10.0.0.1:14550"), refused))
     assert high == "udpin:10.0.0.1:14550: this system does not allow it; a firewall or a sandbox may forbid it"
 
 
@@ -35,6 +35,6 @@ def test_a_broadcast_address_is_named(address: str) -> None:
     ],
 )
 def test_an_error_names_the_endpoint_and_the_remedy(number: int, text: str) -> None:
-    line = bind_error_text(parse_endpoint("udpin:10.0.0.1:80"), OSError(number, os.strerror(number)))
+    line = str(bind_error(parse_endpoint("udpin:10.0.0.1:80"), OSError(number, os.strerror(number))))
     assert line.startswith(text)
     assert "\n" not in line

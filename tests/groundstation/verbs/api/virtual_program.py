@@ -6,9 +6,7 @@ import argparse
 import asyncio
 import itertools
 import math
-import selectors
 from collections.abc import Callable, Coroutine
-from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, TypeVar
 
 import msgspec
@@ -22,6 +20,7 @@ from groundstation.verbs.session.session import VerbSession
 from groundstation.verbs.session.station_seat import StationSeat
 from link.transport.memory import LossyPipe
 from tests.world import World
+from tests.world_loop import WorldLoop
 from vehicle.control_loop import ControlLoop
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
@@ -35,43 +34,6 @@ RAMPED_DOWN = 0.8
 """s behind the end of a call until power is 0: where all neutrals are lost, a demand is stale after 0.45 s
 (MAN_TIMEOUT), and the ramp from full power takes 0.33 s."""
 Result = TypeVar("Result")
-
-
-class Inline(ThreadPoolExecutor):
-    """Does work at once, in place of threads, whose time is not that of the world."""
-
-    def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> Future[Result]:
-        done: Future[Result] = Future()
-        try:
-            done.set_result(fn(*args, **kwargs))
-        except Exception as error:
-            done.set_exception(error)
-        return done
-
-
-class _WorldSelector(selectors.DefaultSelector):
-    """Lets the time of the world pass where a loop would wait."""
-
-    def __init__(self, advance: Callable[[float], None]) -> None:
-        super().__init__()
-        self._advance = advance
-
-    def select(self, timeout: float | None = None) -> Any:
-        if timeout is None or timeout > 0:
-            self._advance(STEP)
-        return super().select(0)
-
-
-class WorldLoop(asyncio.SelectorEventLoop):
-    """An event loop whose clock is that of a world."""
-
-    def __init__(self, world: Callable[[], World], each: Callable[[float], None]) -> None:
-        super().__init__(_WorldSelector(lambda seconds: world().run(seconds, each)))
-        self._world = world
-        self.set_default_executor(Inline())
-
-    def time(self) -> float:
-        return self._world().now
 
 
 class VirtualProgram:
@@ -97,7 +59,7 @@ class VirtualProgram:
         self._turned = False
         self._answers: asyncio.Queue[Any] = asyncio.Queue()
         self._numbers = itertools.count(1)
-        self.loop = WorldLoop(lambda: self.world, self._look)
+        self.loop = WorldLoop(lambda: self.world.now, lambda: self.world.run(STEP, self._look))
 
     def run(self, program: Callable[[VirtualProgram], Coroutine[Any, Any, None]]) -> None:
         """Run a program, and end it in order."""
