@@ -12,6 +12,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 import msgspec
 from msgspec.structs import replace
 
+from link.toml.errors import suggest
+
 
 class Parameter(msgspec.Struct, frozen=True):
     """One parameter. Those of failsafes, interlocks and limits are `safety`: never changed while armed."""
@@ -205,10 +207,7 @@ PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in T
 
 def suggest_parameter(name: str) -> str:
     """Return which parameters may be meant, or where all of them are listed."""
-    import difflib  # when it is needed: it takes 1 ms of each start
-
-    near = difflib.get_close_matches(name, PARAMETERS, n=3)
-    return f"did you mean {' or '.join(near)}?" if near else "`mavhelm vehicle dialect` lists all"
+    return suggest(name, PARAMETERS, "`mavhelm vehicle dialect` lists all")
 
 
 SAFETY_PARAMETERS: tuple[str, ...] = tuple(parameter.name for parameter in TABLE if parameter.safety)

@@ -59,7 +59,7 @@ class SnapshotBuilder:
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
             stop_question=commander.stop_question(state.system, now),
-            stop_doubt=state.senders.find_doubt(now) if commander.is_locked(state.system) else "",
+            stop_doubt=commander.stop_doubt(state.system, now),
             duplicates=state.senders.describe_duplicates(now),
             take_off=commander.take_off_altitude if state.model.flies else None,
             altitude_fence=None if fence is None else fence.highest,

@@ -20,7 +20,6 @@ from groundstation.verbs.collected_output import CollectedOutput
 from groundstation.verbs.common.exit_codes import ExitCode, VerbError, worst_code
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.common.tables import format_table
-from groundstation.verbs.session.core import ALONE_AFTER
 from groundstation.verbs.session.session import VerbSession
 
 if TYPE_CHECKING:
@@ -89,8 +88,7 @@ class ManyVehicles:
         """Wait for a further vehicle; return whether one was heard, or is still missing and in time."""
         core, now = self._session.core, self._session.now
         known = len(core.contacts)
-        told = max(STATION_TELLS_WITHIN, self._session.sure_at - now)
-        quiet = told if core.has_heard_all else ALONE_AFTER
+        quiet = self._session.next_within(STATION_TELLS_WITHIN)
         if (self._missing or self._unheard_names) and not core.has_heard_all:
             quiet = max(quiet, self._session.began + self._options.wait - now)
         if known >= MAX_VEHICLES:

@@ -27,6 +27,14 @@ class CommandLineParser(argparse.ArgumentParser):
             message = journald.priority_prefix(journald.ERROR) + message
         super().exit(status, message)
 
+    def _check_value(self, action: argparse.Action, value: object) -> None:
+        """Raise ArgumentError for what is none of the choices, with the one that may be meant."""
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            error.message += _did_you_mean(str(value), [str(each) for each in action.choices or ()], "{}")
+            raise
+
     def reject_unknown_options(self, arguments: Sequence[str]) -> None:
         """Exit if an option is unknown; argparse would report its value as an invalid positional argument instead."""
         for argument in arguments:

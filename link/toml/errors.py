@@ -22,17 +22,15 @@ KINDS = {
 BOUNDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
 
 
-def suggest(word: str, known: Iterable[str]) -> str:
-    """Return "did you mean ...?", or the known words."""
+def suggest(word: str, known: Iterable[str], otherwise: str = "") -> str:
+    """Return "did you mean ...?", or `otherwise`, or the known words."""
     known = list(known)
     import difflib  # when it is needed: it takes 1 ms of each start
 
     near = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
-    return (
-        f"did you mean {' or '.join(near)}?"
-        if near
-        else f"there {'is only' if len(known) == 1 else 'are'} {', '.join(known)}"
-    )
+    if near:
+        return f"did you mean {' or '.join(near)}?"
+    return otherwise or f"there {'is only' if len(known) == 1 else 'are'} {', '.join(known)}"
 
 
 def explain_error(error: msgspec.ValidationError, kind: Any, at: str, also: Iterable[str] = ()) -> str:

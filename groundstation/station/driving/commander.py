@@ -227,6 +227,11 @@ class Commander:
         lock = self._locks.get(system)
         return lock.progress(now) if lock else None
 
+    def stop_doubt(self, system: int, now: float) -> str:
+        """Return which sender of its id does not show our emergency stop; "" if each does, or without one."""
+        lock = self._locks.get(system)
+        return lock.doubt(now) if lock else ""
+
     def stop_question(self, system: int, now: float) -> float | None:
         """Return the s left to press the emergency stop of a vehicle in the air once more; None without a question."""
         return self._stop_questions.left(system, now)

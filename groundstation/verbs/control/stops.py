@@ -24,7 +24,6 @@ from groundstation.verbs.common.exit_codes import ExitCode
 from groundstation.verbs.common.output import Output
 from groundstation.verbs.control.stop_jobs import cut_job, disarm_job, emergency_job, hold_job
 from groundstation.verbs.session.contact import Job
-from groundstation.verbs.session.core import ALONE_AFTER
 from groundstation.verbs.session.reports import finish
 from groundstation.verbs.session.session import VerbSession
 
@@ -83,7 +82,7 @@ async def _begin(
         return False
     count = len(session.core.contacts)
     if codes:
-        more = max(0.0, session.sure_at - session.now) if session.core.has_heard_all else ALONE_AFTER
+        more = session.next_within()
     else:
         more = max(0.0, session.began + min(options.wait, options.timeout or REPEAT_FOR) - session.now)
     return await session.wait_until_true(lambda: len(session.core.contacts) > count, more)

@@ -107,8 +107,14 @@ class VerbSession:
 
         A station has heard them before, unless it has just been started.
         """
-        listening = self.station.parts.started if self.core.has_heard_all else self.began
-        return max(self.began, listening + ALONE_AFTER)
+        return max(self.began, self.station.parts.started + ALONE_AFTER)
+
+    def next_within(self, told_within: float = 0.0) -> float:
+        """Return for how many s to wait for a further vehicle: on links of its own anew after each.
+
+        A station tells within `told_within` of all that it has heard.
+        """
+        return max(told_within, self.sure_at - self.now) if self.core.has_heard_all else ALONE_AFTER
 
     @property
     def names(self) -> tuple[int, str]:
@@ -157,9 +163,8 @@ class VerbSession:
         await self._prove_again()
 
     async def hear_all(self, seconds: float = ALONE_AFTER) -> None:
-        """Wait until the links were heard for so long, counted from the start; a station has heard them before."""
-        until = self.sure_at if self.core.has_heard_all else self.began + seconds
-        await asyncio.sleep(max(0.0, until - self.now))
+        """Wait until the links were heard for so long; a station has heard them before."""
+        await asyncio.sleep(max(0.0, self.station.parts.started + seconds - self.now))
 
     async def prove_session(self) -> None:
         """Prove this session, so that the vehicle accepts commands that need control.

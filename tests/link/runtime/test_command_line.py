@@ -40,3 +40,14 @@ def test_a_mistake_is_one_line_also_where_its_word_is_several(capsys: pytest.Cap
     with pytest.raises(SystemExit):
         parser().parse_args(["--sta\nte", "two\nlines"])
     assert capsys.readouterr().err == "car: unrecognized arguments: --sta te (car --help shows how)\n"
+
+
+def test_the_choice_that_may_be_meant_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    given = CommandLineParser(prog="car")
+    given.add_argument("gear", choices=("first", "second"))
+    with pytest.raises(SystemExit):
+        given.parse_args(["frist"])
+    assert "; did you mean first? (car" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        given.parse_args(["zebra"])
+    assert "did you mean" not in capsys.readouterr().err

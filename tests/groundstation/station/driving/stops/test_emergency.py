@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from dialects import messages as m
 from dialects.enums import Command, Result
 from dialects.modes import Mode
 from groundstation.intents.driving import ClearEmergencyStop, EmergencyStop
@@ -13,6 +14,7 @@ from groundstation.snapshot import EmergencyProgress
 from groundstation.station.driving.stops.blind_stops import EVERYBODY, BlindStops
 from groundstation.vehicles.demand.stop_commands import FORCE_DISARM, StopKind
 from groundstation.vehicles.state.message_log import MessageLog
+from link.core import Peer, Received
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
 from tests.groundstation.cockpits import FORWARD, Cockpit, armed_cockpit
@@ -108,6 +110,24 @@ def test_estop_goes_on_while_the_vehicle_refuses_and_stays_armed() -> None:
     cockpit.run(1.0)
     assert not vehicle.armed
     assert cockpit.view.emergency_stop, "our lock stays where the vehicle has none"
+
+
+def test_a_report_from_before_the_stop_does_not_show_it() -> None:
+    cockpit = armed_cockpit(FakeArduPilot())
+
+    def report() -> None:
+        """Have another sender of its id report disarmed."""
+        received = Received(m.Heartbeat(10, 3, 81, 4, 4, 3), 1, 1, 0, Peer(0, ("10.0.0.2", 1)), introduced=True)
+        cockpit.station.receive(received, cockpit.now)
+
+    report()
+    cockpit.run(0.1)
+    cockpit.do(EmergencyStop())
+    cockpit.run(1.2)
+    assert not cockpit.view.armed
+    assert cockpit.view.stop_doubt == "the sender at 10.0.0.2:1 has not reported since it began"
+    report()
+    assert cockpit.view.stop_doubt == ""
 
 
 def test_arming_is_refused_here_while_the_emergency_stop_is_on() -> None:
