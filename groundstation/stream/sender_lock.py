@@ -30,6 +30,7 @@ def choose_senders(hosts: Iterable[str]) -> tuple[str, ...]:
     return () if any(_is_loopback(host) for host in found) else tuple(found)
 
 
+@lru_cache(64)
 def _is_loopback(host: str) -> bool:
     try:
         return ip_address(host).is_loopback

@@ -92,6 +92,8 @@ class FieldCatalogue:
         self._traffic = traffic
         self._fields: list[FieldId] = []
         self._places: list[TrafficKey] = []
+        self._first: dict[tuple[int, int], tuple[FieldId, ...]] = {}
+        """Ids of a vehicle -> its first view, which changes with the kinds of messages only."""
 
     def build_page(self, request: FieldsRequest, vehicle: tuple[int, int]) -> FieldsPage:
         """Return the fields that match, those that are drawn, and the ready views of a vehicle (its ids)."""
@@ -106,13 +108,15 @@ class FieldCatalogue:
     def first_view(self, vehicle: tuple[int, int]) -> tuple[FieldId, ...]:
         """Return the fields of the ready view that opens by itself, as far as a vehicle (its ids) sends them."""
         self._update()
-        charts = build_ready(lambda name: self._find(name, vehicle))[0].charts
-        return tuple(field for chart in charts for field in chart.fields)
+        if vehicle not in self._first:
+            charts = build_ready(lambda name: self._find(name, vehicle))[0].charts
+            self._first[vehicle] = tuple(field for chart in charts for field in chart.fields)
+        return self._first[vehicle]
 
     def _update(self) -> None:
         places = [place for place, _ in self._traffic.kinds()]
         if places != self._places:
-            self._places = places
+            self._places, self._first = places, {}
             self._fields = [*(info.field for info in STATION_FIELDS.values()), *self._all_fields()]
 
     def _all_fields(self) -> Iterator[FieldId]:

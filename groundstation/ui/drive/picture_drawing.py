@@ -24,6 +24,11 @@ class PictureDrawing:
         """A picture waits until the terminal may have it. Not a timer of Textual, which takes a task and messages."""
         self._pictures: Sequence[CameraPicture] = ()
 
+    @property
+    def waits(self) -> bool:
+        """A picture is to be drawn as soon as the terminal may have one: the newest one then."""
+        return self._late is not None
+
     def follow(self, view: CameraView | None, pictures: Sequence[CameraPicture]) -> None:
         """Decode the stream of a view at the size of the widgets that show it; without them nothing runs."""
         if not pictures or view is None:
@@ -41,13 +46,17 @@ class PictureDrawing:
             self._late = asyncio.get_running_loop().call_later(wait, self._show_late)
             return False
         self._feed.choose_newest()
-        value = self._value()
-        self._output.choose_level(
-            lambda level: sum(each.measure(replace(value, level=level)) for each in pictures),
-            pictures[0].coarsest(value.protocol),
-        )
-        value = self._value()
-        size = sum(each.measure(value) for each in pictures)
+        value, sizes = self._value(), dict[int, int]()
+
+        def size_of(level: int) -> int:
+            if level not in sizes:
+                sizes[level] = sum(each.measure(replace(value, level=level)) for each in pictures)
+            return sizes[level]
+
+        self._output.choose_level(size_of, pictures[0].coarsest(value.protocol))
+        size = size_of(self._output.level)
+        if self._output.level != value.level:
+            value = self._value()
         with painted_at_once(self._screen):
             for each in pictures:
                 each.show(value)

@@ -242,7 +242,7 @@ class DriveScreen(ConsoleScreen):
 
     def _show_picture(self) -> None:
         """Show a new picture."""
-        if self._drawing.show(self._pictures) and self._pane_before is not None:
+        if not self._drawing.waits and self._drawing.show(self._pictures) and self._pane_before is not None:
             self._report_picture()
 
     def _follow_camera(self) -> None:

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple, cast
 
 import msgspec
+from rich.console import Console
+from rich.control import Control
 from rich.style import Style
 from textual._compositor import ChopsUpdate, Compositor
 from textual.color import Color
@@ -32,6 +35,30 @@ class _Shown(msgspec.Struct, frozen=True, eq=False):
     """All of it."""
     part: Region
     """What is not clipped."""
+
+
+class LinesUpdate(ChopsUpdate):
+    """Moves the cursor by texts that are made once: for each line Textual makes two objects and formats them."""
+
+    def render_segments(self, console: Console) -> str:
+        """Return what is written to the terminal, as Textual's own method does."""
+        texts: list[str] = []
+        last = self.spans[-1][0]
+        for y, left, right in self.spans:
+            for end, (x, strip) in zip(self.chop_ends[y], self.chops[y].items(), strict=False):
+                if strip is None or x > right or end <= left:
+                    continue
+                whole = left <= x < right and end <= right
+                texts += (_move_to(x, y), (strip if whole else strip.crop(0, min(end, right) - x)).render(console))
+            if y != last:
+                texts.append("\n")
+        return "".join(texts)
+
+
+@lru_cache(1 << 14)
+def _move_to(x: int, y: int) -> str:
+    """Return what moves the cursor there."""
+    return Control.move_to(x, y).segment.text
 
 
 class LineCompositor(Compositor):
@@ -57,7 +84,7 @@ class LineCompositor(Compositor):
         chops: dict[int, dict[int, Strip | None]] = {y: dict.fromkeys(cuts[y][:-1]) for y, _, _ in spans}
         for shown, lines in self._changed_lines(spans).items():
             self._render(shown, lines, chops)
-        return ChopsUpdate(cast(Sequence[dict[int, Strip | None]], chops), spans, [each[1:] for each in cuts])
+        return LinesUpdate(cast(Sequence[dict[int, Strip | None]], chops), spans, [each[1:] for each in cuts])
 
     def _note_layout(self) -> None:
         """Forget which widgets are in front, if the layout has changed: then there is another object of them."""
@@ -100,7 +127,9 @@ class LineCompositor(Compositor):
         strips = shown.widget.render_lines(Region(part.x - region.x, first - region.y, part.width, count))
         for y in lines:
             inner = [cut for cut in self.cuts[y] if part.x <= cut <= part.right]
-            pieces = strips[y - first].divide([cut - part.x for cut in inner[1:]])
+            line = strips[y - first]
+            whole = len(inner) == 2 and line.cell_length == part.width
+            pieces = (line,) if whole else line.divide([cut - part.x for cut in inner[1:]])
             for cut, piece in zip(inner, pieces, strict=False):
                 if self._fronts[y].get(cut) is shown:
                     chops[y][cut] = piece

@@ -35,6 +35,8 @@ class PictureOutput:
         self._budget = LineBudget(REMOTE_BYTES if environment.get("SSH_CONNECTION") else LOCAL_BYTES)
         self._asked = False
         self._draw_at = 0.0
+        self._protocols: dict[tuple[bool, bool], Protocol] = {}
+        """ASCII only, and kitty graphics answered -> how pictures are drawn."""
 
     def ask(self) -> None:
         """Ask the terminal what it can, the first time.
@@ -47,8 +49,11 @@ class PictureOutput:
 
     def protocol(self, *, ascii_only: bool) -> Protocol:
         """Return how pictures are drawn. Not by sixel: that takes 30 to 250 ms of Python, while keys wait."""
-        answers = self.answers if self.answers.complete else TerminalAnswers()
-        return choose_protocol(answers, self._environment, ascii_only=ascii_only, sixel=False)
+        key = ascii_only, self.answers.complete and self.answers.kitty
+        if key not in self._protocols:
+            answers = self.answers if self.answers.complete else TerminalAnswers()
+            self._protocols[key] = choose_protocol(answers, self._environment, ascii_only=ascii_only, sixel=False)
+        return self._protocols[key]
 
     @property
     def level(self) -> int:

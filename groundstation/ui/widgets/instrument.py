@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import Generic, TypeVar
 
 from rich.segment import Segment
@@ -48,6 +49,12 @@ def finite_or_none(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
+def _regions_of(lines: Sequence[int], width: int) -> list[Region]:
+    """Return the regions of whole lines, in rising order: one for neighbours, of which a picture has many."""
+    starts = [at for at, line in enumerate(lines) if not at or lines[at - 1] != line - 1]
+    return [Region(0, lines[start], width, end - start) for start, end in pairwise([*starts, len(lines)])]
+
+
 class Instrument(Widget, Generic[Value], can_focus=False):
     """Shows the newest value. Subclasses implement `draw`, which must depend on nothing but the value and the size.
 
@@ -88,15 +95,17 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         size = self.size  # once: the compositor is asked for it
         if not size or self._drawn_for != (size, theme_changes()):  # hidden, or new: render_line draws later
             self._drawn_for = (Size(0, 0), 0)
-            self.refresh()
+            if self.display:
+                self.refresh()
             return
         old, new = self._strips, self.draw(*size)
         self._strips = new
-        changed = [Region(0, y, size.width, 1) for y, (a, b) in enumerate(zip(old, new, strict=False)) if a != b]
+        pairs = enumerate(zip(old, new, strict=False))
+        changed = [y for y, (a, b) in pairs if a is not b and a != b]
         if len(old) != len(new):
             self.refresh()
         elif changed:
-            mark_changed(self, changed)
+            mark_changed(self, _regions_of(changed, size.width))
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Return the lines of the value at this size. Missing lines stay blank, surplus lines are not shown."""

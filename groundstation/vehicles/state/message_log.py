@@ -67,6 +67,8 @@ class MessageLog:
         self._joiner = TextJoiner()
         self._number = 0
         self._state = 0
+        self._built: tuple[tuple[int, float], tuple[LogLine, ...]] = ((-1, 0.0), ())
+        """State and the clocks' distance, and the newest lines then: snapshots ask five times a second."""
 
     @property
     def state(self) -> int:
@@ -117,9 +119,12 @@ class MessageLog:
         Changes of state and what the operator did are left out: the screen shows the state itself, and they would push
         warnings out.
         """
-        lines = (line for line in reversed(self._lines) if line.label not in (STATE, OPERATOR))
-        newest = [_build_line(line, now, wall) for line in islice(lines, NEWEST)]
-        return tuple(reversed(newest))
+        key = self._state, _wall_time(0.0, now, wall)
+        if self._built[0] != key:
+            lines = (line for line in reversed(self._lines) if line.label not in (STATE, OPERATOR))
+            newest = [_build_line(line, now, wall) for line in islice(lines, NEWEST)]
+            self._built = key, tuple(reversed(newest))
+        return self._built[1]
 
     def build_page(self, request: LogRequest, now: float, wall: float) -> LogPage | None:
         """Return the lines that were added or counted again since `request.after`, oldest first; None without any."""

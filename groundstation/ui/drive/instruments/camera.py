@@ -36,6 +36,8 @@ class CameraPicture(Instrument[CameraValue]):
         self._lines = {protocol: CellLines(ink) for protocol, ink in INKS.items()}
         self._painted: tuple[object, dict[int, list[Strip]]] = (None, {})
         """The picture and its area, and its lines at each level that was measured or drawn."""
+        self._prepared: list[PreparedLine] = []
+        """The lines of the newest picture in half blocks: one that stays the same is the same object."""
         self._painter = KittyPainter()
         self._overlaid: object = None
         """What the pixels over the cells show; None: nothing."""
@@ -68,7 +70,8 @@ class CameraPicture(Instrument[CameraValue]):
         if value.protocol is Protocol.KITTY:
             return int(self._share * _pixels_of(value) / (value.level + 1) ** 2)
         lines = self._cells(value, size.width, size.height - 1) if min(size) >= 2 else []
-        changed = (line for line, before in zip_longest(lines, self._strips[: len(lines)]) if line != before)
+        pairs = zip_longest(lines, self._strips[: len(lines)])
+        changed = (line for line, before in pairs if line is not before and line != before)
         return sum(line.written for line in changed if isinstance(line, PreparedLine))
 
     def cursor_line(self) -> int | None:
@@ -126,7 +129,13 @@ class CameraPicture(Instrument[CameraValue]):
             return [strip(("".join(RAMP[level * len(RAMP) // 256] for level in row), style(TEXT))) for row in lines]
         shown = simplify(picture, width, rows, value.level)
         texts = self._lines[value.protocol].draw(shown)
-        return [PreparedLine(text, width, _segments_of(shown, 2 * y)) for y, text in enumerate(texts)]
+        self._prepared = [
+            before
+            if before is not None and before.drawn is text
+            else PreparedLine(text, width, _segments_of(shown, 2 * y))
+            for y, (text, before) in enumerate(zip_longest(texts, self._prepared[: len(texts)]))
+        ]
+        return list(self._prepared)
 
 
 def _pixels_of(value: CameraValue) -> int:

@@ -107,10 +107,9 @@ class MissionStrip(Instrument[MissionValue]):
     def show(self, value: MissionValue) -> None:
         """Show another value, and what it is of in the title."""
         super().show(value)
-        if value.flight is not None and value.mission is None:
-            self.border_title = "flight"
-        else:
-            self.border_title = "mission"
+        title = "flight" if value.flight is not None and value.mission is None else "mission"
+        if self.border_title != title:  # Textual paints the whole frame again, also for the same title
+            self.border_title = title
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw what is known; figures that do not fit are left out from the end."""
