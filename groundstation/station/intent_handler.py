@@ -95,7 +95,7 @@ class IntentHandler:
         `permission` was judged just before. Returns that which holds now.
         """
         if intent.is_input:
-            self._operator.record_input(now)
+            self._operator.inputs.add(now)
             self._proposals.interrupt(intent, now)
         self._permission = permission
         self._driving.apply(permission, now)

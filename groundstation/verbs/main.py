@@ -212,6 +212,7 @@ async def _run_here(
     endpoints: Sequence[str],
 ) -> int:
     """Run the action in this process, with links of its own."""
+    from groundstation.station.driving.proofs import SessionProofs
     from groundstation.verbs.performing import build_session, perform  # a verb that a station runs does without
     from groundstation.verbs.session.core import VerbCore
     from groundstation.verbs.session.kept_session import choose_identity
@@ -230,7 +231,7 @@ async def _run_here(
         core.standstill = core.standstill if guard is None else guard.standstill
         return core
 
-    session = build_session(action, options, output, endpoints, build_core, (ids, kept.number))
+    session = build_session(action, options, output, endpoints, build_core, (ids, SessionProofs(kept.number)))
 
     def found(name: str) -> None:
         if options.endpoints:

@@ -13,6 +13,7 @@ from groundstation.verbs.session.session import VerbSession
 
 if TYPE_CHECKING:
     from groundstation.config.groups import VehicleGroup
+    from groundstation.station.driving.proofs import SessionProofs
     from groundstation.verbs.action import VerbAction
     from groundstation.verbs.common.output import Output
     from groundstation.verbs.session.core import VerbCore
@@ -31,9 +32,9 @@ def build_session(
     output: Output,
     endpoints: Sequence[str],
     build_core: Callable[[], VerbCore],
-    identity: tuple[tuple[int, int], int],
+    identity: tuple[tuple[int, int], SessionProofs],
 ) -> VerbSession | DoctorSession:
-    """Return the session of a verb, whose core is not joined to anything yet. `identity`: our ids, and our session."""
+    """Return the session of a verb, whose core is not joined to anything yet. `identity`: our ids and session."""
     if action.examines:
         examining: DoctorSession = doctor_session.DoctorSession(*identity, endpoints, options)
         return examining

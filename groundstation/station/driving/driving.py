@@ -10,8 +10,9 @@ from dialects.messages import ManualControl, Message, RcChannelsOverride, RoverO
 from groundstation.input.style import Style
 from groundstation.station.driving.commander import Commander
 from groundstation.station.driving.driven import DEMAND_MEMORY, WatchdogTarget
-from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.station.driving.operator import OperatorSession
 from groundstation.station.driving.permission import Permission
+from groundstation.station.driving.proofs import IDLE_PROOF_PERIOD, SessionProofs
 from groundstation.station.links.link_stats import LinkStats
 from groundstation.station.outbox import StationOutbox
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -27,9 +28,15 @@ class DrivingController:
     """Connects the operator with the selected vehicle. `ids` are our system and component id."""
 
     def __init__(
-        self, operator: OperatorSession, fleet: Fleet, commander: Commander, outbox: StationOutbox, ids: tuple[int, int]
+        self,
+        operator: OperatorSession,
+        proofs: SessionProofs,
+        fleet: Fleet,
+        commander: Commander,
+        outbox: StationOutbox,
+        ids: tuple[int, int],
     ) -> None:
-        self._operator = operator
+        self._operator, self._proofs = operator, proofs
         self._fleet = fleet
         self.is_lent: Callable[[int, float], bool] = lambda system, now: False
         """Whether a verb makes the demands of this vehicle in the place of keys, while the operator holds one."""
@@ -136,7 +143,7 @@ class DrivingController:
     def driven_vehicles(self, now: float) -> tuple[WatchdogTarget, ...]:
         """Return the vehicles that may still hold a demand of ours."""
         return tuple(
-            WatchdogTarget.of(contact.state, self._operator.session, verified=contact.verified)
+            WatchdogTarget.of(contact.state, self._proofs.session, verified=contact.verified)
             for contact in self._fleet
             if now - contact.demanded_at <= DEMAND_MEMORY and contact.state.model.is_driven
         )
@@ -159,7 +166,7 @@ class DrivingController:
         """Return whether we control this vehicle: by what it reports, else by its acceptance of our commands."""
         state = contact.state
         accepted = self._commander.is_claimed(state.system)
-        return state.control.is_program(self._ids, self._operator.session, accepted=accepted)
+        return state.control.is_program(self._ids, self._proofs.session, accepted=accepted)
 
     def is_driven_by_duplicate_gcs(self, contact: Contact) -> bool:
         """Return whether another program with our system id controls this vehicle."""
@@ -249,8 +256,7 @@ class DrivingController:
         message = build_manual_control(axes, state.system, contact.choose_axes(axes))
         messages: list[Message] = [message]
         if state.has_rover_dialect:
-            target = (state.system, state.component)
-            messages.insert(0, self._operator.build_presence(target, state.boot_time, now, message))
+            messages.insert(0, self._proofs.build(state, self._operator, now, message))
             self._proven_at = now
         if contact is self._fleet.selected and self._operator.record_demand(axes):
             self._changed, self._changed_at, self._changed_key = tuple(messages), now, self.key_read_at
@@ -270,5 +276,4 @@ class DrivingController:
             return
         if state.has_rover_dialect and state.system not in self._demands:
             self._proven_at = now
-            presence = self._operator.build_presence((state.system, state.component), state.boot_time, now)
-            self._demands.replace(state.system, (presence,))
+            self._demands.replace(state.system, (self._proofs.build(state, self._operator, now),))

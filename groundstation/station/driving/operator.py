@@ -1,4 +1,4 @@
-"""The operator's session: screen lease, key gate, sticks, and ROVER_OPERATOR_PRESENCE.
+"""The operator at a screen: its lease, key gate and sticks.
 
 The station process keeps running when the screen's process freezes, so a frozen screen alone would not stop the
 vehicle. The lease does: the screen's own event loop renews it, and without it keys drive nothing and the station
@@ -14,13 +14,13 @@ import msgspec
 
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import OperatorFlag as Flag
-from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence, boot_ms
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents.driving import DriveByPicture, DriveKeyDown, DrivePad
 from groundstation.intents.session import LEASE_TIMEOUT, QUITTING, REST_LEASE_TIMEOUT, SUSPENDED, SetKeyGate
 from groundstation.snapshot import OperatorView
 from groundstation.station.driving.picture_lock import PictureLock
+from groundstation.station.driving.proofs import InputRecord
 from groundstation.station.driving.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor
 from link.protocol.rate import RateMeter
@@ -32,16 +32,8 @@ NEUTRAL_LEAD = 0.15
 """s of neutral demands (three frames or four) before keys drive: the vehicle requires neutral after arming, a new mode
 or a new driver, and a key pressed in that moment would otherwise have to be released and pressed again."""
 
-IDLE_PROOF_PERIOD = 0.25
-"""s between proofs of this session to the selected vehicle of our dialect while it gets no demand: arming, and every
-other command, counts only of a session that was proven in the last second, and two proofs in a row may get lost."""
-
 LATER = 0.001
 """s after the end of a period at which it is over by any rounding."""
-
-OLDEST_AGE = 0xFFFF
-"""Largest last_input_age_ms: older, or no input yet."""
-
 
 IGNORED_SHOWN = 3.0
 """s for which the reason is shown after the last event of a key that does not count."""
@@ -72,9 +64,9 @@ class Lapse(NamedTuple):
 
 
 class OperatorSession:
-    """One operator at one screen. `session` is a random number that distinguishes this session from others."""
+    """One operator at one screen."""
 
-    def __init__(self, style: Style, speed: float, session: int) -> None:
+    def __init__(self, style: Style, speed: float) -> None:
         self.sticks = Sticks(style, speed)
         self.demand_rate = RateMeter()
         """Demands sent."""
@@ -82,11 +74,9 @@ class OperatorSession:
         self._ignored = _Ignored()
         self._sent_demand = NEUTRAL
         """The last demand sent to the selected vehicle."""
-        self._input_count = 0
-        self.session = session
+        self.inputs = InputRecord()
         self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
         self._rest_ended_at = -math.inf
-        self._clock = 0
         self._live = False
         self._unreported_lapse: Lapse | None = None
         self._drove_at_renewal = False
@@ -97,7 +87,6 @@ class OperatorSession:
         self._picture = PictureLock()
         self._driving_allowed = False
         self._allowed_at = -math.inf
-        self._last_input_at: float | None = None
 
     # ---- the screen ----
 
@@ -174,11 +163,6 @@ class OperatorSession:
 
     # ---- the keys ----
 
-    def record_input(self, now: float) -> None:
-        """Count an input of the operator."""
-        self._input_count += 1
-        self._last_input_at = now
-
     def press(self, push: DriveKeyDown, reason: str | None, now: float) -> None:
         """Handle a drive key. One pressed while the screen blocks driving must not drive later either.
 
@@ -196,7 +180,7 @@ class OperatorSession:
         """Handle a drive key that drives already and repeats. Returns False for any other event, without effect."""
         counts = self._driving_allowed and self.blocked_reason(now) is None and self.sticks.prolong(push, now)
         if counts:
-            self.record_input(now)
+            self.inputs.add(now)
             self._ignored = _Ignored()
         return counts
 
@@ -260,10 +244,6 @@ class OperatorSession:
         """The last demand sent requests motion."""
         return not self._sent_demand.neutral
 
-    def input_age(self, now: float) -> float | None:
-        """Return the time since the last input, s; None without any."""
-        return None if self._last_input_at is None else now - self._last_input_at
-
     def _check_lease(self, now: float) -> None:
         """Release all keys when the lease has run out, whichever event of a thawed process comes first.
 
@@ -288,44 +268,25 @@ class OperatorSession:
     @property
     def _input_since_renewal(self) -> bool:
         """A key may go down while the screen no longer draws: the thread that reads it does not wait for that."""
-        return self._last_input_at is not None and self._last_input_at > self._renewed_at
+        return self.inputs.at is not None and self.inputs.at > self._renewed_at
 
     def _lease_end(self, now: float) -> float:
         return max(now - self._lease.silence(now), self._rest_ended_at) + self._lease.timeout
 
     # ---- what others see ----
 
-    def build_presence(
-        self, target: tuple[int, int], echo: int | None, now: float, demand: ManualControl | None = None
-    ) -> RoverOperatorPresence:
-        """Build a demand with its proof, or the proof alone. `echo` is the newest time_boot_ms of the vehicle.
-
-        Our vehicle obeys the axes in it and ignores the MANUAL_CONTROL that follows, which may be a copy or late.
-        """
-        return RoverOperatorPresence(
-            target_system=target[0],
-            target_component=target[1],
-            time_boot_ms=self._next_clock(now),
-            echo_time_boot_ms=echo or 0,
-            session_id=self.session,
-            input_count=self._input_count & 0xFFFFFFFF,
-            last_input_age_ms=self._age_ms(now),
-            flags=self._flags(now) | Flag.AXES,
-            x=demand.x if demand else INVALID_AXIS,
-            y=INVALID_AXIS,
-            z=INVALID_AXIS,
-            r=demand.r if demand else INVALID_AXIS,
-        )
-
-    def adopt_presence(self, message: RoverOperatorPresence, now: float) -> None:
-        """Make the proof of a verb that goes through this station one of this session."""
-        message.session_id = self.session
-        message.time_boot_ms = self._next_clock(now)
-
-    def _next_clock(self, now: float) -> int:
-        """Return the sender's time for a new proof, in ms: larger than the one before, also within the same ms."""
-        self._clock = max(self._clock + 1, boot_ms(now))
-        return self._clock & 0xFFFFFFFF
+    def flags(self, now: float) -> Flag:
+        """Return what a proof tells of this operator."""
+        flags = Flag(0)
+        if self.sticks.held_keys(now) or not self._sent_demand.neutral:
+            flags |= Flag.DEADMAN
+        if self._gate.open:
+            flags |= Flag.FOCUSED
+        if not self._live:
+            flags |= Flag.INPUT_LOST
+        if self._overrides(now):
+            flags |= Flag.OVERRIDE
+        return flags
 
     def build_view(self, reason: str | None, sending: bool, now: float) -> OperatorView:
         """Build the operator's part of the snapshot. `reason`: why keys do not drive, or None."""
@@ -350,20 +311,5 @@ class OperatorSession:
             rate=self.demand_rate.rate(now),
         )
 
-    def _age_ms(self, now: float) -> int:
-        return OLDEST_AGE if self._last_input_at is None else min(OLDEST_AGE, int((now - self._last_input_at) * 1000))
-
     def _overrides(self, now: float) -> bool:
         return self._live and self._driving_allowed and self.sticks.overrides(now)
-
-    def _flags(self, now: float) -> Flag:
-        flags = Flag(0)
-        if self.sticks.held_keys(now) or not self._sent_demand.neutral:
-            flags |= Flag.DEADMAN
-        if self._gate.open:
-            flags |= Flag.FOCUSED
-        if not self._live:
-            flags |= Flag.INPUT_LOST
-        if self._overrides(now):
-            flags |= Flag.OVERRIDE
-        return flags

@@ -21,7 +21,8 @@ import msgspec
 from dialects import messages as m
 from dialects.enums import Severity
 from dialects.traits import ACKED, is_stop, only_asks
-from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.station.driving.operator import OperatorSession
+from groundstation.station.driving.proofs import IDLE_PROOF_PERIOD, SessionProofs
 from groundstation.station.outbox import StationOutbox
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
 from groundstation.vehicles.demand.demand_neutrals import DEMANDS
@@ -121,9 +122,11 @@ class _Ending(msgspec.Struct):
 class RunningVerbs:
     """The verbs of one station."""
 
-    def __init__(self, fleet: Fleet, operator: OperatorSession, log: MessageLog, outbox: StationOutbox) -> None:
+    def __init__(
+        self, fleet: Fleet, operator: OperatorSession, proofs: SessionProofs, log: MessageLog, outbox: StationOutbox
+    ) -> None:
         self._fleet = fleet
-        self._operator = operator
+        self._operator, self._proofs = operator, proofs
         self._log = log
         self.screen_that_drives: Callable[[], str | None] = lambda: None
         """Returns its name; None without one."""
@@ -200,8 +203,6 @@ class RunningVerbs:
         message = said.message
         if not verb.alone and not self._may_pass(verb, said, now):
             return
-        if isinstance(message, m.RoverOperatorPresence):
-            self._operator.adopt_presence(message, now)
         if not self._outbox:
             self._sent, self._senders = self._senders, []
         self._prove(verb, message, now)
@@ -319,9 +320,7 @@ class RunningVerbs:
             return
         proof = isinstance(message, m.RoverOperatorPresence)
         if not proof and now - self._proven.get(contact.state.system, -math.inf) >= IDLE_PROOF_PERIOD:
-            state = contact.state
-            presence = self._operator.build_presence((state.system, state.component), state.boot_time, now)
-            self._outbox.append(Outgoing(presence))
+            self._outbox.append(Outgoing(self._proofs.build(contact.state, self._operator, now)))
             proof = True
         if proof:
             self._proven[contact.state.system] = now
@@ -351,12 +350,9 @@ class RunningVerbs:
     def _continue(self, ending: _Ending, now: float) -> None:
         if now < ending.due:
             return
-        state = ending.contact.state
-        if state.has_rover_dialect and isinstance(ending.messages[0], m.ManualControl):
-            proof = self._operator.build_presence(
-                (state.system, state.component), state.boot_time, now, ending.messages[0]
-            )
-            self._outbox.append(Outgoing(proof))
+        state, neutral = ending.contact.state, ending.messages[0]
+        if state.has_rover_dialect and isinstance(neutral, m.ManualControl):
+            self._outbox.append(Outgoing(self._proofs.build(state, self._operator, now, neutral)))
         self._outbox += [Outgoing(message) for message in ending.messages]
         ending.left, ending.due = ending.left - 1, now + DRIVING_PERIOD
         if not ending.left:

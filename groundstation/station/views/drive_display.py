@@ -101,7 +101,7 @@ class DriveDisplay:
     def _input_age(self, contact: Contact, now: float) -> float | None:
         """Return the age of the newest key event while a demand moves the vehicle."""
         moves = self._operator.moves and not contact.state.drives_itself
-        return self._operator.input_age(now) if moves else None
+        return self._operator.inputs.age(now) if moves else None
 
     # ---- views ----
 

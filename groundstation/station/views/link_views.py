@@ -37,7 +37,7 @@ class LinkViews:
         self._queries = parts.queries
         self._monitor, self._links = parts.links, parts.links.stats
         self._stations = parts.links.stations
-        self._ours = Program(*parts.ids, parts.operator.session)
+        self._ours = Program(*parts.ids, parts.proofs.session)
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:

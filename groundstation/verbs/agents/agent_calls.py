@@ -233,7 +233,7 @@ class AgentCalls:
         options.system = ids[0]
         session = build_session(
             action, options, output, endpoints,  # type: ignore[arg-type]
-            lambda: VerbCore(station, options.vehicle), (ids, station.operator.session),
+            lambda: VerbCore(station, options.vehicle), (ids, station.parts.proofs),
         )  # fmt: skip
         seat = StationSeat(
             station,

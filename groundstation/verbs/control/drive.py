@@ -146,14 +146,14 @@ async def _drive(session: VerbSession, course: KeyScript | SteadyDemand) -> floa
     def demand(now: float) -> Axes:
         return NEUTRAL if session.core.standstill.last(now) is not None else course.axes(now)
 
-    operator.record_input(session.now)
+    operator.inputs.add(session.now)
     course.begin(began := session.now)
     operator.demand = demand
     while not course.finished:
         await asyncio.sleep(max(0.0, min(LOOK_PERIOD, course.due - session.now)))
         check_driving(session, course.axes(session.now), began)
         while (intents := course.play(session.vehicle.armed, session.now)) is not None:
-            operator.record_input(session.now)
+            operator.inputs.add(session.now)
             for intent in intents:
                 await _carry_out(session, intent)
     return session.now - began

@@ -101,7 +101,7 @@ async def _turn(session: VerbSession, turn: Turn) -> None:
     def demand(now: float) -> Axes:
         return NEUTRAL if session.core.standstill.last(now) is not None else turn.axes
 
-    operator.record_input(began := session.now)
+    operator.inputs.add(began := session.now)
     operator.demand = demand
     while turn.left > 0:
         await asyncio.sleep(PERIOD)

@@ -116,7 +116,7 @@ class ShellVerb:
                 core.record(tap)
             return core
 
-        session = build_session(action, options, output, endpoints, build_core, (ids, station.operator.session))
+        session = build_session(action, options, output, endpoints, build_core, (ids, station.parts.proofs))
         session.files, session.companion = self._files, self._companion
         session.program, session.silence = self._name, self._silence
         return session

@@ -73,7 +73,7 @@ class RosDriver:
         if not self.sources.push(source, axes, silence, now):
             self.note("motion is ignored: another publisher drives, or this one must send zero first")
         elif not axes.neutral:
-            self._session.contact.operator.record_input(now)
+            self._session.contact.operator.inputs.add(now)
         if self.sources.axes(now) != before:
             self._send_now()
 
@@ -141,7 +141,7 @@ class RosDriver:
             self._stop(str(error))
             return str(error)
         operator = self._session.contact.operator
-        operator.record_input(self._session.now)
+        operator.inputs.add(self._session.now)
         operator.demand = self._demand
         self.engaged = True
         return None

@@ -36,14 +36,14 @@ class VehicleContact:
 
     def __init__(self, station: OperatorCore, contact: Contact, now: float) -> None:
         self._station = station
-        self.ids, self.session = station.parts.ids, station.operator.session
+        self.ids, self.session = station.parts.ids, station.parts.proofs.session
         self.found_at = now
         """When it was heard first."""
         self.contact = contact
         self.state = contact.state
         self.services: VehicleServices = station.services.services_of(contact)
         """Its services, which screens of a station use, too."""
-        self.operator = VerbOperator(contact.state, self.ids, self.session)
+        self.operator = VerbOperator(contact.state, station.parts.proofs)
         self.client = CommandClient(*self.ids)
         """For jobs."""
         self.texts = MessageLog()

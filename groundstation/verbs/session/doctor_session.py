@@ -15,6 +15,7 @@ from groundstation.snapshot import Snapshot
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.doctor_feed import DoctorFeed
 from groundstation.station.driving.driven import WatchdogTarget
+from groundstation.station.driving.proofs import SessionProofs
 from groundstation.station.operator_core import OperatorCore
 from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.verbs.common.arguments import is_chosen
@@ -39,10 +40,10 @@ class DoctorSession:
     """What a verb does with its core. The key gate stays closed: no demand but neutral is ever sent."""
 
     def __init__(
-        self, ids: tuple[int, int], number: int, endpoints: Sequence[str], options: argparse.Namespace
+        self, ids: tuple[int, int], proofs: SessionProofs, endpoints: Sequence[str], options: argparse.Namespace
     ) -> None:
-        """`ids` are our system and component id, `number` is that of our session; for the vehicle of `options`."""
-        parts = CoreParts(endpoints, system=ids[0], component=ids[1], session=number, now=self._now)
+        """`ids` are our system and component id, `proofs` are those of our session; for the vehicle of `options`."""
+        parts = CoreParts(endpoints, system=ids[0], component=ids[1], proofs=proofs, now=self._now)
         self._feed = DoctorFeed(parts)
         self.core = OperatorCore(parts, self._feed)
         """For links, or for a seat in a station."""

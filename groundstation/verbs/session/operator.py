@@ -12,8 +12,7 @@ from collections.abc import Callable
 from dialects import messages as m
 from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
 from dialects.enums import OperatorFlag
-from groundstation.input.style import HIGHEST_LIMIT, Style
-from groundstation.station.driving.operator import IDLE_PROOF_PERIOD, OperatorSession
+from groundstation.station.driving.proofs import IDLE_PROOF_PERIOD, InputRecord, SessionProofs
 from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.vehicles.demand.demand_stream import DemandStream
 from groundstation.vehicles.state.vehicle_state import VehicleState
@@ -29,15 +28,17 @@ it is back proves nothing, and where frames get lost the newest may be that old.
 
 
 class VerbOperator:
-    """This program as the operator of one vehicle. `ids` are ours. Nothing is sent before `begin`."""
+    """This program as the operator of one vehicle. Nothing is sent before `begin`."""
 
-    def __init__(self, state: VehicleState, ids: tuple[int, int], session: int) -> None:
+    def __init__(self, state: VehicleState, proofs: SessionProofs) -> None:
         self._state = state
-        self._ids = ids
-        self._session = OperatorSession(Style.HOLD, HIGHEST_LIMIT, session)
+        self._proofs = proofs
+        self.inputs = InputRecord()
+        """Keys of a script, and the beginnings of demands."""
+        self._moves = False
+        """The newest demand is not neutral."""
         self.takes_part = False
         """`begin` was called."""
-        self._proofs = 0
         self._first_left = PROOFS_FIRST
         self._settled_at = -math.inf
         self._proven_at = -math.inf
@@ -56,15 +57,15 @@ class VerbOperator:
         """Begin to take part."""
         if not self.takes_part:
             self.takes_part = True
-            self._session.record_input(now)
+            self.inputs.add(now)
 
-    def record_input(self, now: float) -> None:
-        """Count an input: a key of a script, or the beginning of a demand."""
-        self._session.record_input(now)
+    def flags(self, now: float) -> OperatorFlag:
+        """Return what a proof tells of this operator."""
+        return OperatorFlag.SCRIPT | (OperatorFlag.DEADMAN if self._moves else OperatorFlag(0))
 
     def prove_again(self, now: float) -> None:
         """Begin the first proofs again, if the session was proven and they are older than PROVEN_FOR."""
-        if self.proven and self._proofs and now - self._settled_at > PROVEN_FOR and self.may_prove(now):
+        if self.proven and self.proves and now - self._settled_at > PROVEN_FOR and self.may_prove(now):
             self._first_left = PROOFS_FIRST
 
     @property
@@ -75,7 +76,7 @@ class VerbOperator:
     @property
     def proves(self) -> bool:
         """Whether the vehicle takes its demands from proofs of the session."""
-        return self._proofs > 0
+        return self._proven_at > -math.inf
 
     @property
     def finished(self) -> bool:
@@ -86,10 +87,8 @@ class VerbOperator:
         """Prove the session, send demands."""
         if not self.takes_part:
             return
-        self._session.renew_lease(now)
         axes = self._stream.next_due(self.demand(now) if self.demanding else NEUTRAL, self.demanding, now)
         if axes is not None:
-            self._session.record_demand(axes)
             frame = axis_map(self._state.autopilot, self._state.kind, self.frame)
             self.send_demand(build_manual_control(axes, self._state.system, frame), now, moves=not axes.neutral)
         self._prove(now)
@@ -99,7 +98,7 @@ class VerbOperator:
 
         `moves`: it is not neutral.
         """
-        purpose = Purpose.MOTION if moves else Purpose.NEUTRAL
+        self._moves, purpose = moves, Purpose.MOTION if moves else Purpose.NEUTRAL
         if self.proves or self._state.has_rover_dialect:
             self._add_proof(demand, now, purpose)
         self._outbox.append(VerbMessage(demand, purpose))
@@ -117,11 +116,8 @@ class VerbOperator:
             self._add_proof(None, now, Purpose.PROOF)
 
     def _add_proof(self, demand: m.ManualControl | None, now: float, purpose: Purpose) -> None:
-        target = (self._state.system, self._state.component)
-        proof = self._session.build_presence(target, self._state.boot_time, now, demand)
-        proof.flags |= OperatorFlag.SCRIPT
+        proof = self._proofs.build(self._state, self, now, demand)
         self._proven_at = now
-        self._proofs += 1
         if self._first_left:
             self._first_left -= 1
             self._settled_at = now

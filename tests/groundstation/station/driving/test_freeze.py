@@ -149,7 +149,7 @@ def test_a_new_press_after_the_freeze_drives(event: Callable[[HeldKey], None]) -
 
 
 def test_renewing_expired_lease_releases_keys_and_is_told_once() -> None:
-    session = OperatorSession(Style.HOLD, 0.6, 7)
+    session = OperatorSession(Style.HOLD, 0.6)
     session.renew_lease(100.0)
     session.set_gate(SetKeyGate(open=True), 100.0)
     session.sticks.set_reports_releases()
@@ -261,7 +261,7 @@ def test_screen_frozen_during_rest_does_not_drive_a_later_arming() -> None:
 
 
 def test_repeated_ends_of_a_rest_do_not_keep_a_frozen_lease() -> None:
-    session = OperatorSession(Style.HOLD, 0.6, 7)
+    session = OperatorSession(Style.HOLD, 0.6)
     session.renew_lease(100.0)
     for each in range(20):
         session.set_resting(True, 100.0 + each * 0.1)

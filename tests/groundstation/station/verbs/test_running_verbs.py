@@ -14,8 +14,10 @@ from groundstation.intents.vehicle import Disarm, SetMode
 from groundstation.station.driving.arming import ArmSequence
 from groundstation.station.verbs.running_verbs import STOPPED, Purpose, RunningVerb, RunningVerbs, VerbMessage
 from groundstation.station_socket.verb_run import ALIVE_WITHIN, KEEP
+from groundstation.vehicles.demand.demand_stream import FINAL_NEUTRALS
 from groundstation.verbs.control.arm import ArmJob
 from groundstation.verbs.session.core import VerbCore
+from groundstation.verbs.session.operator import PROOFS_FIRST
 from groundstation.verbs.session.station_seat import StationSeat
 from tests.fakes.rover import FakeArduPilot
 from tests.fakes.vehicle import FakeVehicle
@@ -106,11 +108,20 @@ def test_the_heartbeat_of_a_screen_is_enough() -> None:
 
 def test_proofs_are_those_of_the_stations_session() -> None:
     ashore = Ashore()
-    proofs = [m.RoverOperatorPresence(1, 1, 5, 6, 99, 1, 0, OperatorFlag.AXES) for _ in range(2)]
-    ashore.send(*proofs)
-    first, second = ashore.cockpit.vehicle.all(m.RoverOperatorPresence)[-2:]
-    assert (first[1].session_id, second[1].session_id) == (7, 7)
-    assert second[1].time_boot_ms > first[1].time_boot_ms > 1000
+    station, began = ashore.cockpit.station, ashore.cockpit.now
+    core = VerbCore(station, 1)
+    StationSeat(station, core, "mavhelm arm", lambda: None, needs_session=True).join(began)
+    core.contacts[1].begin(began)
+    ashore.cockpit.run(1.0)
+    ashore.run(0.5, FULL)
+    ashore.verbs.leave(ashore.verb, ashore.cockpit.now)
+    ashore.cockpit.run(1.0)
+    proofs = [each for _, each in ashore.cockpit.vehicle.all(m.RoverOperatorPresence)]
+    clocks = [each.time_boot_ms for each in proofs]
+    assert len(ashore.of(m.RoverOperatorPresence)) >= PROOFS_FIRST + FINAL_NEUTRALS
+    assert {each.session_id for each in proofs} == {7}
+    assert clocks == sorted(set(clocks)), "those of the screen, the verb and the end of its demand have one clock"
+    assert clocks[0] > 1000
 
 
 def test_a_demand_ends_with_neutral_when_the_verb_ends() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
+from groundstation.station.driving.proofs import SessionProofs
 from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.session.operator import PROOFS_FIRST, PROVEN_FOR, VerbOperator
 from link.core import Peer, Received
@@ -19,7 +20,7 @@ class Proving:
     def __init__(self) -> None:
         self.now = 10.0
         self.state = VehicleState(1, 1)
-        self.operator = VerbOperator(self.state, (255, 190), 7)
+        self.operator = VerbOperator(self.state, SessionProofs(7))
         self.operator.begin(self.now)
 
     def wait(self, seconds: float) -> int:
