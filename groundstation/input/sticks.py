@@ -251,8 +251,9 @@ class Sticks:
     def _expire(self, now: float) -> None:
         # A window that was just learned to be shorter applies to every key, as stop_bound guarantees.
         everything = not self.reports_releases and now >= self._last_event + self._windows.press_window
-        for key in [key for key, held in self._held.items() if everything or now >= held.until]:
-            del self._held[key]
+        for key, held in tuple(self._held.items()):
+            if everything or now >= held.until:
+                del self._held[key]
 
     def _directions(self, now: float) -> tuple[int, int, int, int]:
         """Return the directions of the held keys; of keys that disagree the newest wins."""

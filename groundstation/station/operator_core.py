@@ -13,8 +13,7 @@ from groundstation.station.core_listener import CoreListener
 from groundstation.station.core_parts import CoreParts
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.readings import READINGS
-from groundstation.vehicles.demand.drive_gate import drive_refusal
-from groundstation.vehicles.demand.flight_gate import flight_refusal, is_checked
+from groundstation.vehicles.demand import drive_gate, flight_gate
 from groundstation.vehicles.demand.stop_commands import StopKind
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.readings.motor_outputs import is_turn
@@ -31,6 +30,9 @@ DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 
 DECISIVE = (m.Heartbeat, m.ControlStatus, m.RoverControl, m.RoverDriveStatus)
 """Messages that report what decides on demands: armed, mode, who is in control, emergency stop."""
+
+CHECKED = drive_gate.CHECKED | flight_gate.CHECKED
+"""Kinds of messages that may be refused at the last look."""
 
 REST_AFTER = 1.0
 """s without anything under way after which the station rests: requests to many vehicles follow one another."""
@@ -283,24 +285,25 @@ class OperatorCore:
 
     def may_send(self, message: m.Message, now: float) -> bool:
         """Return False for what would move a vehicle: its kind is not driven, or our process stood still."""
-        why = drive_refusal(message, (contact.state for contact in self.fleet)) or self._flight_refusal(message)
+        why = self._find_refusal(message) if type(message) in CHECKED else None
         if why is not None:
             self._refusals.handle(message, why, now)
             return False
         moves = isinstance(message, DEMANDS) or is_turn(message)
         return not moves or not self.operator.stall.is_stalled(now)
 
-    def _flight_refusal(self, message: m.Message) -> str | None:
-        """Return why a message may not be sent to what flies."""
-        if not is_checked(message):
-            return None
-        system = m.target_system(message)
-        meant = (contact for contact in self.fleet if system in (0, contact.state.system))
-        refusals = (
-            flight_refusal(message, contact.state, contact.take_off_refusal, contact.altitude_fence)
-            for contact in meant
-        )
-        return next(filter(None, refusals), None)
+    def _find_refusal(self, message: m.Message) -> str | None:
+        """Return why a message may not be sent to one of the vehicles that it is for."""
+        fleet = self.fleet
+        meant = fleet.addressed(message)
+        if why := drive_gate.drive_refusal(message, meant):
+            return why
+        for state in meant:
+            if state.model.flies:
+                unsafe, fence = fleet.take_off_refusal(state.system), fleet.altitude_fence(state.system)
+                if why := flight_gate.flight_refusal(message, state, unsafe, fence):
+                    return why
+        return None
 
     def report_to_watchdog(self, now: float) -> tuple[WatchdogTarget, ...]:
         """Return the vehicles that the watchdog stops if no further call follows in time (stall.py)."""

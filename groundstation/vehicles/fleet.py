@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import msgspec
 
+from dialects import messages as m
 from dialects.axes import Axes, AxisMap, axis_map
 from dialects.enums import Severity
 from dialects.modes import Mode
@@ -178,6 +179,13 @@ class Fleet:
     def get(self, system: int) -> Contact | None:
         """Return the contact with this system id, or None."""
         return self._contacts.get(system)
+
+    def addressed(self, message: m.Message) -> list[VehicleState]:
+        """Return the vehicles that a message is for; without a target (0) it goes to all of them."""
+        if system := m.target_system(message):
+            contact = self._contacts.get(system)
+            return [] if contact is None else [contact.state]
+        return [contact.state for contact in self._contacts.values()]
 
     def name_of(self, system: int) -> str:
         """Return the name of the vehicle with this id; "" where there is none."""

@@ -169,7 +169,7 @@ class ProposalBook:
     def interrupt(self, intent: Intent, now: float) -> None:
         """End what runs: the operator has let the key go, or has done something else."""
         self._stopping = None
-        ticket = self._running
+        ticket = self._running if self._tickets else None
         if isinstance(intent, PermitProposal | DeclineProposal) or ticket is None:
             return
         self._end(ticket, "the key was released" if isinstance(intent, EndPermission) else _describe(intent), now)

@@ -6,7 +6,7 @@ questions and set-up pass; so do the modes that the vehicle lists itself, and th
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 from dialects import messages as m
 from dialects import rover
@@ -60,23 +60,22 @@ _DEMANDS = frozenset(
 )  # fmt: skip
 _COMMANDS = (m.CommandLong, m.CommandInt)
 _ITEMS = (m.MissionItem, m.MissionItemInt)
-_CHECKED = frozenset((*_DEMANDS, *_COMMANDS, *_ITEMS, m.SetMode))
+CHECKED = frozenset((*_DEMANDS, *_COMMANDS, *_ITEMS, m.SetMode))
+"""Kinds of messages that `drive_refusal` may refuse."""
 
 NOT_HEARD = "no vehicle with this id was heard"
 
 
-def drive_refusal(message: m.Message, vehicles: Iterable[VehicleState]) -> str | None:
-    """Return why a message may not be sent, or None. `vehicles`: those that are heard.
-
-    Without a target (0) a message goes to all of them.
-    """
-    if type(message) not in _CHECKED:
+def drive_refusal(message: m.Message, meant: Sequence[VehicleState]) -> str | None:
+    """Return why a message may not be sent, or None. `meant`: the vehicles that are heard and that it is for."""
+    if type(message) not in CHECKED:
         return None
-    system = m.target_system(message)
-    meant = [state for state in vehicles if system in (0, state.system)]
     if not meant:
         return NOT_HEARD if moves(message, None) else None
-    return next((state.model.refusal for state in meant if state.model.refusal and moves(message, state)), None)
+    for state in meant:
+        if state.model.refusal and moves(message, state):
+            return state.model.refusal
+    return None
 
 
 def moves(message: m.Message, state: VehicleState | None) -> bool:

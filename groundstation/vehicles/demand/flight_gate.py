@@ -21,19 +21,15 @@ from groundstation.vehicles.stops.altitude_fence import AltitudeFence
 _COMMANDS = (m.CommandLong, m.CommandInt)
 _ITEMS = (m.MissionItem, m.MissionItemInt)
 _POSITIONS = (m.SetPositionTargetLocalNed, m.SetPositionTargetGlobalInt)
-_CHECKED = frozenset(
+CHECKED = frozenset(
     (*_COMMANDS, *_ITEMS, *_POSITIONS, m.ManualControl, m.RcChannelsOverride, m.SetAttitudeTarget, m.SetMode)
 )
+"""Kinds of messages that `flight_refusal` may refuse."""
 _TAKE_OFFS = (rover.MAV_CMD_NAV_TAKEOFF, rover.MAV_CMD_NAV_TAKEOFF_LOCAL)
 _NOT_BY_US = MOVING_COMMANDS - {
     rover.MAV_CMD_COMPONENT_ARM_DISARM, rover.MAV_CMD_DO_PAUSE_CONTINUE, rover.MAV_CMD_CONDITION_YAW, *_TAKE_OFFS,
 }  # fmt: skip
 """Commands that move it, made for what stays on the ground: their altitude is 0, and motor tests turn propellers."""
-
-
-def is_checked(message: m.Message) -> bool:
-    """Return whether `flight_refusal` may refuse messages of this kind."""
-    return type(message) in _CHECKED
 
 
 def flight_refusal(
