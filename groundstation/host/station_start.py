@@ -52,8 +52,10 @@ def start(options: argparse.Namespace, pipe: socket.socket | None, watchdog: soc
     except SigningError as error:
         raise StartError(str(error)) from error
     feed = _start_watchdog(options, pipe, watchdog, signing)  # before the links: it inherits none
-    endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
+    endpoints = list(options.endpoints)
     try:
+        if options.sitl and not any(parse_endpoint(text).scheme == "udpin" for text in endpoints):
+            endpoints.append(f"udpin:127.0.0.1:{free_port()}")  # for the simulator
         log_to(options.log_file)
         notes = use_dialect(options.dialect)
         sent = SentFrames()

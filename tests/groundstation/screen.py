@@ -29,9 +29,10 @@ class Screen:
     """Starts a station process on a free port, or attaches to one; renews the lease until `freeze`."""
 
     def __init__(self, *endpoints: str, none: bool = False, **options: Any) -> None:
-        """`none`: without any link."""
-        endpoints = endpoints or (f"udpin:127.0.0.1:{free_port()}",)
-        self._begin(StationClient.start([] if none or options.get("sitl") else endpoints, **options))
+        """`none`: without any link. With a simulator the station has a port of its own if no endpoint is given."""
+        if not (endpoints or none or options.get("sitl")):
+            endpoints = (f"udpin:127.0.0.1:{free_port()}",)
+        self._begin(StationClient.start(endpoints, **options))
 
     @classmethod
     def attach(cls, station: int, name: str = "second screen") -> Screen:

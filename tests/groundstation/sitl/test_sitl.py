@@ -12,6 +12,7 @@ from groundstation.intents.session import RenewLease, StartSimulator
 from groundstation.sitl.sitl import SimulatorControl
 from link.endpoint import parse_endpoint
 from tests.groundstation.screen import Screen, running, simulators
+from tests.ports import free_port
 from tests.waits import wait_until
 
 pytestmark = pytest.mark.e2e
@@ -67,8 +68,10 @@ def test_an_armed_simulator_that_ended_is_not_left_armed() -> None:
 
 
 def test_the_simulator_dies_with_a_station_that_is_killed() -> None:
-    with Screen(sitl=True) as screen:
+    endpoint = f"udpin:127.0.0.1:{free_port()}"
+    with Screen(endpoint, sitl=True) as screen:
         sees_rover(screen)
+        assert screen.client.endpoints == (endpoint,), "the simulator sends to the port that is given"
         (simulator,) = simulators(screen.client.pid)
         os.kill(screen.client.pid, signal.SIGKILL)
         wait_until(lambda: not running(simulator))
