@@ -27,6 +27,7 @@ from link.signing.clock import to_stamp
 from link.signing.keys import SigningKey
 from link.signing.role import SigningRole
 from link.transport.memory import LossyPipe
+from tests.examples import examples
 from tests.fakes.lone_verb import LoneVerb
 from tests.link.signing.signed import DRIVER as OWNER
 from tests.link.signing.signed import NOON, SIGNED_ONLY, STRANGER, WATCHER, keep, signed
@@ -34,7 +35,8 @@ from tests.vehicle.bench import AHEAD, BEAT, CYCLE, DRIVER, NEUTRAL
 from tests.vehicle.test_stops_in_a_crowd import DRIVER_ADDRESS, NEW_STATION, STRANGERS, CrowdedLink
 from vehicle.safety.states import SafetyState
 
-WORLDS = 500
+WORLDS = examples(500)
+"""125 in CI, of all kinds, too."""
 STOPPED_WITHIN = 1.0
 YEAR = 365 * 86_400.0
 VERB = (254, 190)

@@ -9,6 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from tests.docs_blocks.forked_verbs import forked_verbs
 from tests.docs_blocks.machine import ROOT, Machines, why_not, within
 from tests.docs_blocks.page import Page
 
@@ -18,8 +19,10 @@ INSIDE = "MAVHELM_DOCS_BLOCKS"
 def main(path: Path) -> int:
     """Return 0 if all of them did what the page says."""
     if INSIDE in os.environ:
-        page = Page(path, Machines(Path(os.environ[INSIDE])))
-        page.type_all()
+        machines = Machines(Path(os.environ[INSIDE]))
+        page = Page(path, machines)
+        with forked_verbs(path, machines.programs):
+            page.type_all()
         print(*page.faults, sep="\n")
         print(f"{path.name}: {page.ran} blocks run, {page.explained} explained, {len(page.faults)} faults")
         return 1 if page.faults else 0

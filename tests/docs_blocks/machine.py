@@ -73,11 +73,12 @@ class Machines:
         _run("ip", "link", "set", "lo", "up")
         self._folder = folder
         self._name(folder)
-        self._bin = folder / "bin"
-        self._bin.mkdir()
+        self.programs = folder / "bin"
+        """The first folder of PATH."""
+        self.programs.mkdir()
         for name, script in STAND_INS.items():
-            (self._bin / name).write_text(script)
-            (self._bin / name).chmod(0o755)
+            (self.programs / name).write_text(script)
+            (self.programs / name).chmod(0o755)
         self._plug(folder / "dev")
         self._clone()
 
@@ -96,7 +97,7 @@ class Machines:
             "USER": machine,
             "XDG_RUNTIME_DIR": str(home / ".run"),
             "MACHINES": str(home.parent),
-            "PATH": f"{self._bin}:{venv}:/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin",
+            "PATH": f"{self.programs}:{venv}:/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin",
             "LANG": "C.UTF-8",
             "CLONE": str(ROOT),
             "VENV": str(Path(sys.executable).parents[1]),

@@ -86,8 +86,7 @@ def fork(forks: Forks, tmp_path: Path) -> Run:
     def run(words: list[str], folder: Path) -> tuple[int, str, str]:
         with (tmp_path / "out").open("w+") as out, (tmp_path / "err").open("w+") as err, open(os.devnull) as nothing:
             environment = os.environ | {"PYTHONPATH": str(ROOT)}
-            forks.start(words, folder, environment, [each.fileno() for each in (nothing, out, err)])
-            code = forks.ended()
+            code = forks.start(words, folder, environment, [each.fileno() for each in (nothing, out, err)]).wait()
         return code, Path(out.name).read_text(), Path(err.name).read_text()
 
     return run
@@ -100,9 +99,9 @@ def fork_in_terminal(forks: Forks, tmp_path: Path) -> Run:
     def run(words: list[str], folder: Path) -> tuple[int, str, str]:
         ours, theirs = _open_terminal(SIZE)
         with (tmp_path / "err").open("w+") as err:
-            forks.start(words, folder, _environment(), [theirs, theirs, err.fileno()])
+            program = forks.start(words, folder, _environment(), [theirs, theirs, err.fileno()])
             os.close(theirs)
-            code = forks.ended()
+            code = program.wait()
         return code, _drawn(ours), Path(err.name).read_text()
 
     return run
