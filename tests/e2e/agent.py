@@ -20,21 +20,20 @@ CLIENT = Implementation(name="operator\x1b[2J", version="1")
 async def _main(calls: list[tuple[str, dict[str, Any], int]]) -> None:
     """Make the calls one after the other: each is a tool, its arguments, and how often it is called at once.
 
-    Then those of stdin, until it ends: a tool and its arguments in each line.
+    Then those of stdin, until it ends: one in each line.
     """
     server = StdioServerParameters(command=sys.executable, args=["-m", "groundstation", "mcp"], env=dict(os.environ))
     async with stdio_client(server) as streams, ClientSession(*streams, client_info=CLIENT) as session:
         await session.initialize()
-        for tool, arguments, times in calls:
-            for answer in await asyncio.gather(*(session.call_tool(tool, arguments) for _ in range(times))):
-                _tell(tool, answer)
+        for call in calls:
+            await _make(session, *call)
         while line := await asyncio.to_thread(sys.stdin.readline):
-            tool, arguments = json.loads(line)
-            _tell(tool, await session.call_tool(tool, arguments))
+            await _make(session, *json.loads(line))
 
 
-def _tell(tool: str, answer: Any) -> None:
-    print(json.dumps({"tool": tool, "failed": answer.is_error, **answer.structured_content}), flush=True)
+async def _make(session: ClientSession, tool: str, arguments: dict[str, Any], times: int) -> None:
+    for answer in await asyncio.gather(*(session.call_tool(tool, arguments) for _ in range(times))):
+        print(json.dumps({"tool": tool, "failed": answer.is_error, **answer.structured_content}), flush=True)
 
 
 if __name__ == "__main__":

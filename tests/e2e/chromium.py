@@ -165,6 +165,11 @@ class Browser:
         await self.call("Emulation.setFocusEmulationEnabled", enabled=False)
         await self._send("Target.createTarget", {"url": "about:blank"})
 
+    async def show(self) -> None:
+        """Choose its tab again."""
+        await self.call("Page.bringToFront")
+        await self.call("Emulation.setFocusEmulationEnabled", enabled=True)
+
     async def freeze(self) -> None:
         """Freeze the page, as browsers do with a tab that nobody sees."""
         await self.call("Emulation.setFocusEmulationEnabled", enabled=False)

@@ -39,11 +39,11 @@ TRY = 10.0
 class Agent:
     """An MCP client in a process of its own, that calls tools."""
 
-    def __init__(self, folder: Path, *calls: tuple[str, dict[str, Any]], times: int = 1) -> None:
-        """`times`: how often each is called at once."""
+    def __init__(self, folder: Path, *calls: tuple[str, dict[str, Any]]) -> None:
+        """It ends after these calls. Without any, it waits for those of `ask`: a start takes 4 s of CPU."""
         self._out = folder / f"agent{time.monotonic_ns()}.out"
         asked = self._out.with_suffix(".calls")
-        asked.write_text(json.dumps([(*call, times) for call in calls]))
+        asked.write_text(json.dumps([(*call, 1) for call in calls]))
         with self._out.open("wb") as out:
             command = [sys.executable, "-m", "tests.e2e.agent", str(asked)]
             self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=out, stderr=out, text=True)
@@ -61,10 +61,10 @@ class Agent:
             self._earlier :
         ]
 
-    def ask(self, tool: str, arguments: dict[str, Any]) -> None:
-        """Call a tool, for an agent that was started without calls."""
+    def ask(self, tool: str, arguments: dict[str, Any], times: int = 1) -> None:
+        """Call a tool, so many times at once."""
         self._earlier += len(self.answers)
-        self._asks.write(json.dumps((tool, arguments)) + "\n")
+        self._asks.write(json.dumps((tool, arguments, times)) + "\n")
         self._asks.flush()
 
     @property
@@ -137,7 +137,7 @@ def see_it_stop(terminal: Tmux, vehicle: Vehicle, folder: Path, agents: list[Age
             terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
         terminal.press(WAYS[name].opens)
         reason, asks = f"look behind chair {number} by {name}", f"agent asks: hold {WAYS[name].key} to let it"
-        if not agents or agents[-1].process.poll() is not None:  # starting one takes 5 s of CPU
+        if not agents or agents[-1].process.poll() is not None:
             agents.append(Agent(folder))
         agents[-1].ask("drive", {**DRIVE, "reason": reason})
         if it_is_shown(terminal, agents[-1], reason, asks) and it_stops(terminal, vehicle, agents[-1], name):

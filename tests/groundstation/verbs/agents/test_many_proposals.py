@@ -6,8 +6,8 @@ import os
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from tests.e2e.programs import Vehicle
 from tests.e2e.test_agents import TRIES, Agent
 from tests.groundstation.screen import Screen
 from tests.ports import free_port
-from tests.waits import PATIENCE, Patience, wait_for_end, wait_until
+from tests.waits import PATIENCE, Patience, wait_until
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("agents")]
 
@@ -71,42 +71,43 @@ def arm(screen: Screen) -> None:
     screen.insist(press, lambda seen: seen.vehicle is not None and seen.vehicle.armed)
 
 
-def permit(screen: Screen, start: Callable[[], Agent]) -> None:
-    """Permit a call until it is done; anew where a late machine has held up a repeat of the key."""
+def answer(agent: Agent, tool: str, arguments: dict[str, Any]) -> Any:
+    """Call a tool; return its answer."""
+    agent.ask(tool, arguments)
+    return wait_until(lambda: agent.answers, lambda: agent.said)[0]
+
+
+def permit(screen: Screen, agent: Agent, arguments: dict[str, Any]) -> None:
+    """Permit a drive until it is done; anew where a late machine has held up a repeat of the key."""
     for _ in range(TRIES):
         arm(screen)
-        agent = start()
+        agent.ask("drive", arguments)
         hold_key(screen, agent)
-        if agent.answers and not agent.answers[0]["failed"]:
+        if not wait_until(lambda: agent.answers, lambda: agent.said)[0]["failed"]:
             return
-        agent.end()
     raise AssertionError(agent.said)
 
 
 def test_many_proposals_move_nothing_and_lose_nothing(tmp_path: Path) -> None:
     port, logs = free_port(), tmp_path / "logs"
-    vehicle = Vehicle(tmp_path, port)
-    agents: list[Agent] = []
-
-    def start(*calls: tuple[str, dict[str, Any]], times: int = 1) -> Agent:
-        agents.append(Agent(tmp_path, *calls, times=times))
-        return agents[-1]
-
-    try:
+    with ExitStack() as stack:
+        vehicle = Vehicle(tmp_path, port)
+        stack.callback(vehicle.end)
         with recorded_station(logs, port) as station, Screen.attach(station, "screen of a test") as screen:
             screen.see(lambda seen: seen.vehicle is not None)
+            agent = Agent(tmp_path)
+            stack.callback(agent.end)
             arm(screen)
             still = len(vehicle.outputs())
 
-            flood = start(("drive", {**DRIVE, "reason": "I am the operator, let me"}), times=MANY)
+            agent.ask("drive", {**DRIVE, "reason": "I am the operator, let me"}, MANY)
             shown = screen.see(lambda seen: seen.proposal is not None).proposal
             assert shown is not None
             assert "'operator" in shown.who
             assert "pid" in shown.who
             assert shown.who.isprintable()
-            assert wait_for_end(flood.process, 4 * PATIENCE + MANY / 10) == 0, flood.said[-2000:]
-            errors = Counter(each["error"] for each in flood.answers)
-            assert sum(errors.values()) == MANY, "each call has an answer"
+            wait_until(lambda: len(agent.answers) == MANY, lambda: agent.said[-2000:], 4 * PATIENCE + MANY / 10)
+            errors = Counter(each["error"] for each in agent.answers)
             assert errors["nobody has held the key in time"] >= MOST_WAITING, errors
             assert set(errors) <= {
                 "nobody has held the key in time",
@@ -116,23 +117,17 @@ def test_many_proposals_move_nothing_and_lose_nothing(tmp_path: Path) -> None:
 
             for _ in range(TRIES):
                 arm(screen)
-                claims = start(
-                    ("drive", {**DRIVE, "reason": "\x1b[2J\x1b]0;ok\x07"}),
-                    ("drive", {**DRIVE, "reason": "x", "permitted_by": "operator"}),
-                    ("status", {}),
-                )
-                assert wait_for_end(claims.process) == 0, claims.said
-                escape, claim, status = claims.answers
+                escape = answer(agent, "drive", {**DRIVE, "reason": "\x1b[2J\x1b]0;ok\x07"})
                 assert "characters that cannot be printed" in escape["error"]
+                claim = answer(agent, "drive", {**DRIVE, "reason": "x", "permitted_by": "operator"})
                 assert "no such" in claim["error"]
-                if status["records"][0]["armed"]:  # else it was late itself, and has disarmed
+                if answer(agent, "status", {})["records"][0]["armed"]:  # else it was late itself, and has disarmed
                     break
             else:
-                raise AssertionError(claims.said)
+                raise AssertionError(agent.said)
             assert not any(each.turning for each in vehicle.outputs()[still:]), "a wheel has turned without a key"
 
-            look = {**DRIVE, "seconds": 2, "reason": "to look behind the gate", "wait_seconds": 30}
-            permit(screen, lambda: start(("drive", look)))
+            permit(screen, agent, {**DRIVE, "seconds": 2, "reason": "to look behind the gate", "wait_seconds": 30})
             assert any(each.turning for each in vehicle.outputs()[still:])
             wait_until(vehicle.stands, "standing")
             screen.client.send(Disarm())
@@ -141,7 +136,3 @@ def test_many_proposals_move_nothing_and_lose_nothing(tmp_path: Path) -> None:
         for text in (b"permitted by the key at the screen of a test", b"reason: to look behind the gate",
                      b"reason: I am the operator, let me"):  # fmt: skip
             assert text in recorded, text
-    finally:
-        for agent in agents:
-            agent.end()
-        vehicle.end()
