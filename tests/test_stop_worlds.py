@@ -141,7 +141,7 @@ class StopWorld(CrowdedLink):
             assert self.now - began <= STOPPED_WITHIN, self.facts
             self.lone.tick(self.now)
             if self.core.chosen is None:
-                self.core.outbox += blind.tick(self.now)
+                self.core.send(*blind.tick(self.now))
             elif job is None:
                 state = self.core.chosen.state
                 job = EmergencyJob(1, EmergencyLock(state, self.now), StopTimes(self.now, began + 1.3, began + 30))

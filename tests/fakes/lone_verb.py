@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
+from dialects import messages as m
+from dialects.enums import Autopilot, VehicleType
+from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.verbs.session.core import VerbCore
 from groundstation.verbs.session.station_seat import StationSeat
-from link.core import Outgoing, Received
+from link.core import Outgoing, Peer, Received
+
+
+def heard_contact(now: float) -> Contact:
+    """Return a vehicle of which one HEARTBEAT was heard."""
+    beat = m.Heartbeat(VehicleType.GROUND_ROVER, Autopilot.GENERIC, 81, 0, 4, 3)
+    contact = Fleet(MessageLog(), 255, 190).get_or_add(Received(beat, 1, 1, 0, Peer(0, "vehicle"), True), now)
+    assert contact is not None
+    return contact
 
 
 class LoneVerb:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import Autopilot
 from dialects.kinds import MANUAL
-from dialects.modes import Mode
 from groundstation.vehicles.demand.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.demand.repeated_stop import StopTimes
 from groundstation.vehicles.requests.requests import RequestReport, RequestState
@@ -70,7 +69,7 @@ async def _read_settings(session: VerbSession) -> None:
         core.taps.append(receive)
     while contact.take_off_refusal and session.now < until:
         if contact.settings_check is not None and not core.has_heard_all:
-            core.outbox += [each.message for each in contact.settings_check.tick(session.now)]
+            core.outbox.commands += contact.settings_check.tick(session.now)
             session.flush()
         await session.wait_for(lambda: not contact.take_off_refusal, SETTINGS_PERIOD)
     if receive in core.taps:
@@ -78,14 +77,10 @@ async def _read_settings(session: VerbSession) -> None:
 
 
 async def learn_frame(session: VerbSession) -> None:
-    """Find out which axes turn the nose: in reverse they differ by how the vehicle steers."""
-    state, params = session.vehicle, session.services.params
-    if state.drive_info is not None and state.mode != Mode.ACRO.name:
-        session.contact.operator.frame = int(state.drive_info.drive_type)
-    if state.autopilot == Autopilot.PX4:
+    """Find out which axes turn the nose of PX4: in reverse they differ by how the vehicle steers."""
+    check, params = session.contact.contact.settings_check, session.services.params
+    if session.vehicle.autopilot == Autopilot.PX4 and check is not None and check.frame is None:
         await session.request(lambda number, now: params.read(number, FRAME_PARAMETER, now))
-        known = params.client.params.get(FRAME_PARAMETER)
-        session.contact.operator.frame = None if known is None else int(known.value)
 
 
 def need_control(session: VerbSession) -> None:

@@ -97,7 +97,7 @@ def _begin_blind(session: VerbSession, kind: StopKind, vehicle: int | None) -> B
 async def _send_blind(session: VerbSession, blind: BlindStop, vehicle: int | None) -> None:
     """Send the stop to vehicles that are not heard, until this is cancelled or the one that is meant is heard."""
     while vehicle is None or vehicle not in session.core.contacts:
-        session.core.outbox += blind.tick(session.now, heard=bool(session.core.contacts))
+        session.core.send(*blind.tick(session.now, heard=bool(session.core.contacts)))
         session.flush()
         await asyncio.sleep(LOOK_PERIOD)
 

@@ -22,7 +22,7 @@ class LineSession(VerbSession):
     def __init__(self, station: OperatorCore, contact: Contact, flush: Callable[[], None]) -> None:
         core = VerbCore(station, contact.state.system)
         self.seat = StationSeat(station, core, "a line", flush)
-        super().__init__(core, self.seat.flush, lambda report: None, VehicleContact(station, contact, 0.0))
+        super().__init__(core, self.seat.flush, lambda report: None, VehicleContact(station, contact, core.outbox, 0.0))
         self.selects = contact
         self.told: list[str] = []
         """How its requests have ended; the log has these lines already."""

@@ -47,7 +47,7 @@ async def _measure(session: VerbSession, system: int) -> float | None:
 
     session.core.taps.append(tap)
     client.tick(session.now)
-    session.core.outbox += [each.message for each in client.messages_to_send()]
+    session.core.outbox.commands += client.messages_to_send()
     session.flush()
     try:
         await session.wait_for(lambda: client.round_trip is not None, ANSWER_WITHIN)

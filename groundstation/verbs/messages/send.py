@@ -58,7 +58,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
         ending = ", then neutral"
     else:
         message, ending = build(options.kind, options.values), ""
-        count = await _repeat(session, lambda now: session.core.outbox.append(message), options.rate, options.seconds)
+        count = await _repeat(session, lambda now: session.core.send(message), options.rate, options.seconds)
         session.need_sent()
     name = options.kind.msgname
     output.note(f"{name} sent {'once' if count == 1 else f'{count} times'} to {session.vehicle.name}{ending}")

@@ -7,7 +7,6 @@ from typing import Protocol
 from dialects import messages as m
 from groundstation.station.driving.driven import WatchdogTarget
 from groundstation.station.operator_core import OperatorCore
-from groundstation.station.verbs.running_verbs import VerbMessage
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.probes.dialect_probe import FOREIGN_AUTOPILOTS, DialectProbe
 from groundstation.vehicles.requests.requests import RequestBook
@@ -15,6 +14,7 @@ from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state.message_log import MessageLog
 from groundstation.vehicles.state.vehicle_details import VehicleDetails
 from groundstation.verbs.session.operator import VerbOperator
+from groundstation.verbs.session.outbox import VerbOutbox
 from link.core import Received
 from link.services.command.client import CommandClient, CommandOutcome
 
@@ -34,7 +34,7 @@ class Job(Protocol):
 class VehicleContact:
     """A vehicle of `station`. State and services are those of the contact; jobs and proofs are those of the verb."""
 
-    def __init__(self, station: OperatorCore, contact: Contact, now: float) -> None:
+    def __init__(self, station: OperatorCore, contact: Contact, outbox: VerbOutbox, now: float) -> None:
         self._station = station
         self.ids, self.session = station.parts.ids, station.parts.proofs.session
         self.found_at = now
@@ -43,8 +43,8 @@ class VehicleContact:
         self.state = contact.state
         self.services: VehicleServices = station.services.services_of(contact)
         """Its services, which screens of a station use, too."""
-        self.operator = VerbOperator(contact.state, station.parts.proofs)
-        self.client = CommandClient(*self.ids)
+        self.operator = VerbOperator(contact, station.parts.proofs, outbox.demands)
+        self.client = CommandClient(*self.ids, outbox.commands)
         """For jobs."""
         self.texts = MessageLog()
         """What it has said."""
@@ -130,11 +130,6 @@ class VehicleContact:
         if self.operator.takes_part and not self.settled:
             self._station.find_dialect(self.contact, now)
         self.operator.tick(now)
-
-    def messages_to_send(self) -> list[VerbMessage]:
-        """Return the messages to send now, and remove them; those of the services are the core's."""
-        commands = [VerbMessage(each.message) for each in self.client.messages_to_send()]
-        return self.operator.messages_to_send() + commands
 
     def _advance(self, now: float) -> None:
         book = self.services.book

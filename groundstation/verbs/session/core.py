@@ -17,7 +17,8 @@ from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.vehicles.state.vehicle_heartbeat import is_vehicle
 from groundstation.verbs.common.arguments import is_chosen
 from groundstation.verbs.session.contact import VehicleContact
-from link.core import LinkReport, Received
+from groundstation.verbs.session.outbox import VerbOutbox
+from link.core import LinkReport, Outgoing, Received
 from link.protocol.log_tap import LogTap
 
 WATCHER = 25
@@ -56,10 +57,7 @@ class VerbCore:
         """The links were heard for longer than this verb runs, by a station that runs."""
         self.standstill = Standstill()
         """Of this process, while a watchdog stands by."""
-        self.outbox: list[m.Message] = []
-        """Messages of a verb, to all or to their target, which are no demands."""
-        self._said: list[VerbMessage] = []
-        """Heartbeats, and demands in other forms than those of the operator."""
+        self.outbox = VerbOutbox()
         self.ids = station.parts.ids
         """Our system and component id."""
         self._wanted = wanted
@@ -111,7 +109,7 @@ class VerbCore:
         for contact in fleet:
             known = self.contacts.get(contact.state.system)
             if (known is None or known.contact is not contact) and contact.state.monitor.is_alive(now):
-                self.contacts[contact.state.system] = VehicleContact(self.station, contact, now)
+                self.contacts[contact.state.system] = VehicleContact(self.station, contact, self.outbox, now)
         self.contacts = {system: each for system, each in self.contacts.items() if fleet.get(system) is each.contact}
 
     def handle_refused(self, message: m.Message, why: str, now: float) -> None:
@@ -128,7 +126,7 @@ class VerbCore:
         self.add_vehicles(now)
         demanding = self.chosen is not None and self.chosen.operator.demanding
         beats = self._heartbeat.tick(now, driving=demanding)
-        self._said += [VerbMessage(each.message, Purpose.PRESENCE) for each in beats]
+        self.outbox.demands += [VerbMessage(each.message, Purpose.PRESENCE) for each in beats]
         if self.chosen is None:
             self._choose(now)
         for contact in self.contacts.values():
@@ -142,14 +140,11 @@ class VerbCore:
 
     def demand(self, message: m.Message, *, moves: bool) -> None:
         """Send a demand that moves, or the neutral one that ends it."""
-        self._said.append(VerbMessage(message, Purpose.MOTION if moves else Purpose.NEUTRAL))
+        self.outbox.demands.append(VerbMessage(message, Purpose.MOTION if moves else Purpose.NEUTRAL))
 
-    def messages_to_send(self) -> list[VerbMessage]:
-        """Return the messages to send now, and remove them."""
-        said, self._said = self._said, []
-        outbox, self.outbox = self.outbox, []
-        found = said + [VerbMessage(message) for message in outbox]
-        return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
+    def send(self, *messages: m.Message) -> None:
+        """Send messages that are no demands."""
+        self.outbox.commands += map(Outgoing, messages)
 
     def explain_silence(self, system: int) -> str:
         """Return why a vehicle that is heard may answer nothing: it signs with a key that is not here; else ""."""

@@ -10,12 +10,12 @@ import math
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
+from dialects.axes import NEUTRAL, Axes, build_manual_control
 from dialects.enums import OperatorFlag
 from groundstation.station.driving.proofs import IDLE_PROOF_PERIOD, InputRecord, SessionProofs
 from groundstation.station.verbs.running_verbs import Purpose, VerbMessage
 from groundstation.vehicles.demand.demand_stream import DemandStream
-from groundstation.vehicles.state.vehicle_state import VehicleState
+from groundstation.vehicles.fleet import Contact
 
 PROOFS_FIRST, FIRST_PERIOD = 5, 0.008
 """Proofs before the first command, and s between them: four of five may get lost."""
@@ -30,8 +30,8 @@ it is back proves nothing, and where frames get lost the newest may be that old.
 class VerbOperator:
     """This program as the operator of one vehicle. Nothing is sent before `begin`."""
 
-    def __init__(self, state: VehicleState, proofs: SessionProofs) -> None:
-        self._state = state
+    def __init__(self, contact: Contact, proofs: SessionProofs, outbox: list[VerbMessage]) -> None:
+        self._contact, self._state = contact, contact.state
         self._proofs = proofs
         self.inputs = InputRecord()
         """Keys of a script, and the beginnings of demands."""
@@ -43,15 +43,13 @@ class VerbOperator:
         self._settled_at = -math.inf
         self._proven_at = -math.inf
         self._stream = DemandStream()
-        self._outbox: list[VerbMessage] = []
+        self._outbox = outbox
         self.demanding = False
         """Demands are sent, those of `demand`. When it ends, final neutral ones follow."""
         self.demand: Callable[[float], Axes] = lambda _: NEUTRAL
         """Takes the time; returns what to demand while `demanding`."""
         self.may_prove: Callable[[float], bool] = lambda _: True
         """Takes the time; returns whether this program may prove the session, which another verb may use."""
-        self.frame: int | None = None
-        """What decides on the axes of the vehicle, if it is known (dialects/axes.py, FRAMES)."""
 
     def begin(self, now: float) -> None:
         """Begin to take part."""
@@ -89,8 +87,8 @@ class VerbOperator:
             return
         axes = self._stream.next_due(self.demand(now) if self.demanding else NEUTRAL, self.demanding, now)
         if axes is not None:
-            frame = axis_map(self._state.autopilot, self._state.kind, self.frame)
-            self.send_demand(build_manual_control(axes, self._state.system, frame), now, moves=not axes.neutral)
+            demand = build_manual_control(axes, self._state.system, self._contact.choose_axes(axes))
+            self.send_demand(demand, now, moves=not axes.neutral)
         self._prove(now)
 
     def send_demand(self, demand: m.ManualControl, now: float, *, moves: bool) -> None:
@@ -102,11 +100,6 @@ class VerbOperator:
         if self.proves or self._state.has_rover_dialect:
             self._add_proof(demand, now, purpose)
         self._outbox.append(VerbMessage(demand, purpose))
-
-    def messages_to_send(self) -> list[VerbMessage]:
-        """Return the messages to send now, and remove them."""
-        outbox, self._outbox = self._outbox, []
-        return outbox
 
     def _prove(self, now: float) -> None:
         """Prove the session once a time of the vehicle is known: without it a proof proves nothing."""

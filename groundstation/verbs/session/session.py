@@ -85,7 +85,7 @@ class VerbSession:
 
     def speak(self) -> list[VerbMessage]:
         """Return the messages to send now, and remove them."""
-        return self.core.messages_to_send()
+        return self.core.outbox.pop()
 
     def driven(self) -> tuple[WatchdogTarget, ...]:
         """Return what the watchdog must know."""

@@ -51,7 +51,7 @@ class StationSeat:
         """
         self._verbs, self._core = station.verbs, core
         self._flush, self._silence = flush, silence
-        self._speak = core.messages_to_send if isinstance(core, VerbCore) else speak
+        self._speak = core.outbox.pop if isinstance(core, VerbCore) else speak
         self._verb = RunningVerb(
             name, needs_session, self, follows=follows, moves=moves, alone=alone, is_permitted=is_permitted
         )

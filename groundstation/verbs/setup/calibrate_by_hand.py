@@ -132,5 +132,5 @@ def _request(session: VerbSession, message: int, rate: float) -> None:
 def _send(session: VerbSession, command: Command, first: float = 0.0, second: float = 0.0) -> None:
     """Send a command once: nothing waits for its acknowledgement."""
     target = session.services.commands.target
-    session.core.outbox.append(m.CommandLong(*target, command, 0, first, second, 0, 0, 0, 0, 0))
+    session.core.send(m.CommandLong(*target, command, 0, first, second, 0, 0, 0, 0, 0))
     session.flush()

@@ -87,7 +87,7 @@ async def run(session: VerbSession, options: argparse.Namespace, output: Output)
     key, answer = options.key, _Answer(session, options.key, options.signers)
     session.core.taps.append(answer.hear)
     for _ in range(TRIES):
-        session.core.outbox.append(_build(session, key))
+        session.core.send(_build(session, key))
         session.flush()
         await session.wait_for(lambda: answer.known, PERIOD)
         if answer.known:

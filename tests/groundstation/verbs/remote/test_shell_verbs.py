@@ -162,7 +162,7 @@ def test_the_verb_of_a_shell_that_stands_still_sends_nothing() -> None:
         seat.join(asyncio.get_running_loop().time())
         await shells.see(lambda: core.chosen is not None)
         silence[0] = STILL_WITHIN + 0.01
-        core.outbox.append(ping)
+        core.send(ping)
         seat.flush()
         until = core.contacts[1].state.heartbeat_at + 2.5
         await shells.see(lambda: core.contacts[1].state.heartbeat_at > until)

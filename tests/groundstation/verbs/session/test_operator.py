@@ -6,9 +6,10 @@ import pytest
 
 from dialects import messages as m
 from groundstation.station.driving.proofs import SessionProofs
-from groundstation.vehicles.state.vehicle_state import VehicleState
 from groundstation.verbs.session.operator import PROOFS_FIRST, PROVEN_FOR, VerbOperator
+from groundstation.verbs.session.outbox import VerbOutbox
 from link.core import Peer, Received
+from tests.fakes.lone_verb import heard_contact
 from vehicle.drive.operator_session import PROOF_VALID
 
 STEP = 0.01
@@ -19,8 +20,9 @@ class Proving:
 
     def __init__(self) -> None:
         self.now = 10.0
-        self.state = VehicleState(1, 1)
-        self.operator = VerbOperator(self.state, SessionProofs(7))
+        contact, self.outbox = heard_contact(self.now), VerbOutbox()
+        self.state = contact.state
+        self.operator = VerbOperator(contact, SessionProofs(7), self.outbox.demands)
         self.operator.begin(self.now)
 
     def wait(self, seconds: float) -> int:
@@ -31,7 +33,7 @@ class Proving:
             if round(self.now / STEP) % 25 == 0:
                 self._hear(m.RoverDriveStatus(round(self.now * 1000), 0, 0, 0, [0] * 4, 0, 0, 0))
             self.operator.tick(self.now)
-            sent = [each.message for each in self.operator.messages_to_send()]
+            sent = [each.message for each in self.outbox.pop()]
             proofs += sum(isinstance(each, m.RoverOperatorPresence) for each in sent)
         return proofs
 
