@@ -23,6 +23,7 @@ from pathlib import Path
 import pytest
 
 from tests.e2e.programs import LET_GO
+from tests.e2e.tmux_control import TmuxControl
 from tests.e2e.tmux_marks import IN_TMUX
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.wheel import modes, notch
@@ -41,7 +42,7 @@ PRESSED_AGAIN = 10.0
 PAUSE = 0.04
 """s between two repeats of a key."""
 LOOK = 0.1
-"""s between two looks at the screen, each of which starts a program and takes 5 ms of CPU."""
+"""s between two looks at the screen."""
 
 
 PANE = "screen:0.0"
@@ -74,6 +75,7 @@ class Tmux:
         server = self._run("display-message", "-p", "#{pid}").strip()
         self._server = int(server) if server.isdecimal() else os.getpid()
         """Process id of tmux, which has started the program."""
+        self._control = TmuxControl(self._socket)
 
     def _run(self, command: str, *words: str) -> str:
         words = (command, *(("-t", PANE) if command in IN_PANE else ()), *words)
@@ -96,7 +98,7 @@ class Tmux:
 
     def screen(self) -> str:
         """Return the text on the screen."""
-        return self._run("capture-pane", "-p")
+        return self._control.ask("capture-pane", "-t", PANE, "-p")
 
     def cursor(self) -> tuple[int, int, bool]:
         """Return column and line of the cursor, and whether it is shown."""
@@ -195,6 +197,7 @@ class Tmux:
     def end(self) -> None:
         """Close the terminal and everything in it."""
         self._run("kill-server")
+        self._control.end()
         if self._keyboard is not None:
             self._keyboard.communicate(timeout=PATIENCE)
 
