@@ -113,6 +113,10 @@ async def hide(phone: Phone) -> None:
     await phone.browser.hide()
 
 
+async def show(phone: Phone) -> None:
+    await phone.browser.show()
+
+
 async def cut(phone: Phone) -> None:
     phone.network.cut()
 
@@ -132,15 +136,15 @@ async def join(phone: Phone) -> None:
 Act = Callable[[Phone], Awaitable[None]]
 Stop = tuple[Act, float, Act | None]
 STOPS: dict[str, list[Stop]] = {
-    "lifted, frozen, cut or killed": [
+    "lifted, frozen, cut, hidden or killed": [
         (lift, 0.0, None),
         (freeze_the_page, PAD_WINDOW, go_on),
         (cut, PAD_WINDOW, join),
+        (hide, 0.0, show),
         (kill_the_page, 0.0, None),
     ],
     "killed with its browser": [(kill_the_browser, 0.0, None)],
     "put to sleep": [(put_to_sleep, 0.0, None)],
-    "hidden": [(hide, 0.0, None)],
     "dropped": [(drop, 0.0, None)],
 }
 """What happens to one tab, in this order: the act, s until the demand ends, and how it is undone under the finger."""

@@ -14,6 +14,7 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.enums import DriveLimit
 from dialects.modes import Mode
+from tests.examples import examples
 from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL
 from tests.vehicle.drive.test_operator_session import Station
 from tests.vehicle.field import Field
@@ -95,7 +96,7 @@ def started(far: FarStation) -> None:
     kind=st.sampled_from((1, 2, 4)),
     limits=st.sampled_from((0.45, 2.0)),
 )
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_the_distance_after_the_last_command_is_kept(
     seed: int, delay: float, loss: float, speed: float, room: float, push: float, throttle: float, kind: int,
     limits: float,
