@@ -6,15 +6,17 @@ import random
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from statistics import median
+from subprocess import DEVNULL, Popen
 
 from groundstation.pictures.cells import HALF_BLOCK
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, brief, quantile, spread
 from tests.benchmarks.key_to_motor import LET_GO, Contender, Outcome, Rig, running
 from tests.benchmarks.machine import ROOT
 from tests.benchmarks.procfs import cpu_seconds, family
-from tests.benchmarks.programs import scratch
+from tests.benchmarks.programs import free_port, python, scratch
 from tests.benchmarks.timed_camera import COLUMNS, RATE, ROWS, TIME_BITS, read_fields
 from tests.groundstation.pictures.decoders import CellScreen
 from tests.groundstation.ui.drive.picture_terminal import AGE, PING, PictureTerminal
@@ -29,6 +31,10 @@ WINDOW, QUICK_WINDOW = 8.0, 2.0
 SEEN, QUICK_SEEN = 30.0, 5.0
 """s over which pictures are watched."""
 LINES = {"loopback": 0, "a terminal line of 200 kB/s": 200_000}
+"""Lines to the terminal, and the bytes a second that they carry; 0: as many as there are."""
+NETWORK = "a network that loses 5 % and delays by 30 ms"
+LOSS, DELAY = 0.05, 0.03
+"""Of each way, also that of the pictures."""
 XTERM = b"\x1b[?64;1;2c"
 DRAWN = 10.0
 """Pictures a second that Drive draws at most."""
@@ -52,11 +58,11 @@ def run(options: Options) -> Report:
 def _ages(options: Options, goals: list[Goal]) -> Table:
     table = Table("Age of the picture on the terminal when its last cell is read, ms")
     table.note = f"From a camera of {RATE} pictures a second; lost: of the {DRAWN:g} a second that are drawn at most."
-    for name, rate in LINES.items():
+    for name in (*LINES, NETWORK):
         options.say(f"drive_picture: {name}")
         seconds = QUICK_SEEN if options.quick else SEEN
-        with scratch() as folder:
-            ages = sorted(_watch(folder, rate, seconds))
+        with scratch() as folder, _network() if name == NETWORK else nullcontext() as ports:
+            ages = sorted(_watch(folder, LINES.get(name, 0), seconds, ports))
         if not ages:
             raise BenchmarkError(f"no picture was read, {name}")
         lost = max(0.0, 100 * (1 - len(ages) / (DRAWN * seconds)))
@@ -66,10 +72,26 @@ def _ages(options: Options, goals: list[Goal]) -> Table:
     return table
 
 
-def _watch(folder: Path, rate: int, seconds: float) -> Iterator[float]:
+Ports = tuple[int, int, int]
+"""Of the ground station, and where the vehicle and its camera send to."""
+
+
+@contextmanager
+def _network() -> Iterator[Ports]:
+    """Run the bad network within the block."""
+    ground, vehicle, camera, pictures = (free_port() for _ in range(4))
+    words = (*map(str, (vehicle, ground, camera, pictures)), str(LOSS), str(DELAY))
+    with Popen(python("tests.benchmarks.camera_relay", *words), stdout=DEVNULL, cwd=ROOT) as relay:
+        try:
+            yield ground, vehicle, camera
+        finally:
+            relay.terminate()
+
+
+def _watch(folder: Path, rate: int, seconds: float, ports: Ports | None) -> Iterator[float]:
     """Yield the ages of the pictures that come within this time, ms."""
     camera = f"#!/bin/sh\ncd {ROOT} && exec {sys.executable} -m tests.benchmarks.timed_camera\n"
-    terminal = PictureTerminal(folder, XTERM, rate, LARGE, camera)
+    terminal = PictureTerminal(folder, XTERM, rate, LARGE, camera, ports)
     try:
         terminal.wait("DISARMED")
         terminal.type(b"f")

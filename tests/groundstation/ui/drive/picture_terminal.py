@@ -33,22 +33,30 @@ STEP = 0.02
 class PictureTerminal:
     """`attributes`: its answer to DA1 and what stands before it. `rate`: bytes a second; 0: as fast as it can.
 
-    `camera`: script in place of rpicam-vid.
+    `camera`: script in place of rpicam-vid. `ports`: of the ground station, where the vehicle and its camera send to.
     """
 
     def __init__(
-        self, folder: Path, attributes: bytes, rate: int = 0, size: tuple[int, int] = SIZE, camera: str = RPICAM
+        self,
+        folder: Path,
+        attributes: bytes,
+        rate: int = 0,
+        size: tuple[int, int] = SIZE,
+        camera: str = RPICAM,
+        ports: tuple[int, int, int] | None = None,
     ) -> None:
-        port = free_port()
+        if ports is None:
+            ports = (port := free_port()), port, free_port()
+        ground, sends_to, pictures = ports
         self.process, self._master = attach_pty(
-            [*GROUND, f"udpin:127.0.0.1:{port}"], folder, size, COLORTERM="truecolor"
+            [*GROUND, f"udpin:127.0.0.1:{ground}"], folder, size, COLORTERM="truecolor"
         )
-        (folder / "rover.toml").write_text(CAMERA.format(port=free_port()))
+        (folder / "rover.toml").write_text(CAMERA.format(port=pictures))
         program = folder / "rpicam-vid"
         program.write_text(camera)
         program.chmod(0o700)
         self.vehicle = subprocess.Popen(
-            [*VEHICLE, "--config", "rover.toml", "--motors", "simulated", f"udpout:127.0.0.1:{port}"],
+            [*VEHICLE, "--config", "rover.toml", "--motors", "simulated", f"udpout:127.0.0.1:{sends_to}"],
             cwd=folder, env=os.environ | {"PATH": f"{folder}:{os.environ['PATH']}"},
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
