@@ -13,6 +13,7 @@ import select
 import socket
 import sys
 import time
+from collections.abc import Callable
 
 from dialects import codec
 from dialects.messages import VideoStreamInformation
@@ -51,10 +52,18 @@ class CameraRelay:
         self._pipes = [LossyPipe[bytes](loss=loss, delay=delay, seed=seed) for seed in (1, 2, 3)]
         self._up, self._down, self._pictures = self._pipes
         self._address: tuple[str, int] | None = None
+        self.change_picture: Callable[[bytes], bytes] = lambda packet: packet
+        """Changes each packet of the pictures."""
+        self.runs = True
+
+    def close(self) -> None:
+        """Close the sockets, after run()."""
+        for each in self._sockets:
+            each.close()
 
     def run(self) -> None:
-        """Run until killed."""
-        while True:
+        """Run until killed, or until `runs` is False and something comes."""
+        while self.runs:
             now = time.monotonic()
             due = [each.next_arrival for each in self._pipes if each.next_arrival is not None]
             ready, _, _ = select.select(self._sockets, [], [], max(STEP, min(due) - now) if due else None)
@@ -67,7 +76,7 @@ class CameraRelay:
             data, self._address = self._vehicle.recvfrom(65536)
             self._down.send(change_port(data, self._port), now)
         if self._camera in ready:
-            self._pictures.send(self._camera.recv(65536), now)
+            self._pictures.send(self.change_picture(self._camera.recv(65536)), now)
         if self._ground in ready:
             self._up.send(self._ground.recv(65536), now)
 

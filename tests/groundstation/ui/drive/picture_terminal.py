@@ -110,9 +110,11 @@ class PictureTerminal:
 
 
 @contextlib.contextmanager
-def picture_terminal(folder: Path, attributes: bytes, rate: int = 0) -> Iterator[PictureTerminal]:
+def picture_terminal(
+    folder: Path, attributes: bytes, rate: int = 0, ports: tuple[int, int, int] | None = None
+) -> Iterator[PictureTerminal]:
     """A terminal on which the picture fills the screen."""
-    terminal = PictureTerminal(folder, attributes, rate)
+    terminal = PictureTerminal(folder, attributes, rate, ports=ports)
     try:
         terminal.wait("DISARMED")
         terminal.type(b"f")

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import re
+import socket
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
+from tests.benchmarks.camera_relay import CameraRelay
 from tests.groundstation.pictures.decoders import KittyScreen
 from tests.groundstation.ui.drive.picture_terminal import AGE, SIZE, PictureTerminal, picture_terminal
 from tests.groundstation.video.ffmpeg_sources import NEEDS_FFMPEG
+from tests.ports import free_port
 from tests.waits import Waits, wait_until
 
 pytestmark = [pytest.mark.e2e, NEEDS_FFMPEG]
@@ -70,3 +77,53 @@ def test_a_terminal_with_kitty_graphics_gets_pixels(tmp_path: Path) -> None:
         assert not starts(terminal, gone)
         terminal.type(b"\x1b")
         assert wait_until(lambda: starts(terminal, gone), each=terminal.read)
+
+
+FRESH = r"picture 0\.[0-3] s ±"
+RTP_HEADER = 12
+STOPPED = 2.0
+"""s for which a terminal reads nothing: longer than the silence that locks the keys."""
+MOST_WAITING = 400_000
+"""Bytes that a terminal which reads again gets before a fresh picture: a few pictures, and what the kernel keeps."""
+
+
+@contextlib.contextmanager
+def relay() -> Iterator[tuple[CameraRelay, tuple[int, int, int]]]:
+    """A relay of a vehicle and its pictures, and the ports for picture_terminal."""
+    ground, vehicle, camera, pictures = (free_port() for _ in range(4))
+    between = CameraRelay((vehicle, ground, camera, pictures), 0.0, 0.0)
+    thread = Thread(target=between.run, daemon=True)
+    thread.start()
+    try:
+        yield between, (ground, vehicle, camera)
+    finally:
+        between.runs = False
+        with contextlib.closing(between), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as waker:
+            waker.sendto(b"", ("127.0.0.1", camera))
+            thread.join()
+
+
+def test_a_corrupted_stream_is_old_until_it_is_whole(tmp_path: Path) -> None:
+    with relay() as (between, ports), picture_terminal(tmp_path, XTERM, ports=ports) as terminal:
+        terminal.wait(FRESH)
+        between.change_picture = lambda packet: packet[:RTP_HEADER] + os.urandom(len(packet) - RTP_HEADER)
+        garbled = len(terminal.drawn)
+        terminal.wait(r"OLD: picture [1-9]\d*\.\d s", garbled)
+        terminal.type(HOLD)
+        terminal.wait(r"Rover 1 +HOLD", garbled)
+        between.change_picture = lambda packet: packet
+        terminal.wait(FRESH, len(terminal.drawn))
+
+
+def test_a_stopped_terminal_gets_no_old_pictures(tmp_path: Path) -> None:
+    with picture_terminal(tmp_path, XTERM) as terminal:
+        terminal.wait(FRESH)
+        waits = Waits(terminal.process.pid)
+        end, waiting = time.monotonic() + STOPPED, len(terminal.drawn)
+        wait_until(lambda: time.monotonic() > end)
+        terminal.wait(FRESH, waiting)
+        assert len(terminal.drawn) - waiting < MOST_WAITING
+        assert max(terminal.ages(waiting)) < 0.5 + STOPPED + waits.total()
+        terminal.type(HOLD)
+        terminal.wait(r"Rover 1 +HOLD", waiting)
+        terminal.wait(FRESH, len(terminal.drawn))
