@@ -108,7 +108,9 @@ def test_pictures_come_while_somebody_watches_whatever_is_killed() -> None:
     asyncio.run(watch())
 
 
-def test_a_command_of_the_user_is_streamed_and_its_fault_said() -> None:
+def test_a_command_is_streamed_and_the_fault_of_any_camera_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     text = "ffmpeg -loglevel error -re -f lavfi -i testsrc2=size=320x180:rate=10 -c:v libx264 -preset ultrafast"
     words = (*text.split(), "-tune", "zerolatency", "-g", "10", "-f", "h264", "-")
 
@@ -127,3 +129,10 @@ def test_a_command_of_the_user_is_streamed_and_its_fault_said() -> None:
     assert asyncio.run(watch(CameraSettings(kind="command", command=words))) == ""
     absent = CameraSettings(kind="command", command=("no-such-camera",))
     assert "no-such-camera is not installed" in asyncio.run(watch(absent))
+    refused = CameraSettings(kind="v4l2", device=str(tmp_path / "video0"))
+    assert "video0: No such file" in asyncio.run(watch(refused)), "in ffmpeg's words"
+    program = tmp_path / "rpicam-vid"
+    program.write_text("#!/bin/sh\necho 'ERROR: *** no cameras available ***' >&2\nexit 255\n")
+    program.chmod(0o700)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    assert "no cameras available" in asyncio.run(watch(CameraSettings(kind="rpicam")))
