@@ -44,6 +44,8 @@ HOLD_RATE = 30.0
 TRIES = 5
 """Of a window in which the picture is never old: else keys are locked, which costs something else."""
 MIDDLE = 128
+PLAUSIBLE = 5000
+"""ms: an older picture is a damaged one, whose fields have the right sum by chance."""
 
 
 def run(options: Options) -> Report:
@@ -127,7 +129,8 @@ class PictureReader:
         if made is None or made == self._newest:
             return None
         self._newest = made
-        return float((now - made) % (1 << TIME_BITS))
+        age = (now - made) % (1 << TIME_BITS)
+        return float(age) if age < PLAUSIBLE else None
 
     def _fields(self) -> list[int]:
         top, rows, columns = self._area()
