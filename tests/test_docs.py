@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import ast
+import functools
 import re
 import shlex
 from importlib import import_module
 from pathlib import Path
-
-import pytest
 
 from groundstation.cli import options as station_options
 from groundstation.cli.local import attach, completion, config, keys, learn, replay, serve, video
@@ -45,6 +44,7 @@ def quoted(text: str) -> list[str]:
     return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
 
 
+@functools.cache
 def functions(path: Path) -> set[str]:
     """Return the functions in a file as pytest takes them after the path: `name`, or `Class::name`."""
     body = ast.parse(path.read_text()).body
@@ -57,7 +57,7 @@ def functions(path: Path) -> set[str]:
     }
 
 
-@pytest.mark.parametrize("doc", [*DOCS, *ROOMS], ids=path_of)
+@each_row("doc", [*DOCS, *ROOMS], ids=path_of)
 def test_files_and_tests_that_a_document_names_exist(doc: Path) -> None:
     for words in quoted(doc.read_text()):
         name, _, test = words.partition("::")

@@ -7,7 +7,6 @@ import sys
 from typing import Any, get_args
 
 import msgspec
-import pytest
 
 from groundstation.actions import ACTIONS
 from groundstation.intents import replay
@@ -22,6 +21,7 @@ from groundstation.intents.vehicle_intent import VehicleIntent
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
 from groundstation.station.intent_handler import HANDLERS
 from groundstation.station.station import Station
+from tests.rows import each_row
 
 REPLAY = {kind for kind in Intent.__subclasses__() if kind.__module__ == replay.__name__}
 """Handled by a replay (tests/groundstation/replay) and by no station."""
@@ -42,7 +42,7 @@ def example(kind: type[Intent]) -> Intent:
     return kind(**{name: VALUES[name] for name in required})
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+@each_row("kind", KINDS, ids=lambda kind: kind.__name__)
 def test_every_intent_travels_through_the_pipe(kind: type[Intent]) -> None:
     batch = IntentBatch(1.0, (example(kind),))
     assert decode_from_screen(encode(batch)) == batch

@@ -18,6 +18,7 @@ from groundstation.vehicles.stops.stop_bounds import find_rules, stop_bounds
 from groundstation.vehicles.stops.stop_rules import StopFacts
 from groundstation.views.doctor import DoctorRow, ParamFix, TerminalFacts
 from link.runtime.diagnosis import Health
+from tests.rows import each_row
 
 OK, WARNING, FAULT, UNKNOWN = Health.OK, Health.WARNING, Health.FAULT, Health.UNKNOWN
 FENCE = int(Sensor.GEOFENCE)
@@ -205,7 +206,7 @@ CASES: list[tuple[str, DoctorFacts, Health, str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "known", "health", "words"), CASES, ids=[f"{case[0]}-{case[3]}" for case in CASES])
+@each_row(("name", "known", "health", "words"), CASES, ids=lambda each: "" if isinstance(each, DoctorFacts) else each)
 def test_a_row_judges(name: str, known: DoctorFacts, health: Health, words: str) -> None:
     found = row(name, known)
     assert words in found.evidence

@@ -32,9 +32,13 @@ Picture = list[list[Cell]]
 
 def cells(app: App[Any]) -> Picture:
     """The whole terminal, with the screens below a modal one."""
+    return [[cell for segments in chops for cell in _characters(segments)] for chops in _strips(app)]
+
+
+def _strips(app: App[Any]) -> list[Iterable[Iterable[Segment]]]:
+    """Return the pieces of each line."""
     update = app.screen._compositor.render_update(full=True, screen_stack=app._background_screens)
-    strips = cast(LayoutUpdate, update).strips
-    return [[cell for segments in chops for cell in _characters(segments)] for chops in strips]
+    return cast(list[Iterable[Iterable[Segment]]], cast(LayoutUpdate, update).strips)
 
 
 def _characters(segments: Iterable[Segment]) -> Iterator[Cell]:
@@ -45,7 +49,7 @@ def _characters(segments: Iterable[Segment]) -> Iterator[Cell]:
 
 def text(app: App[Any]) -> str:
     """One line a row, without the spaces at its end."""
-    rows = ["".join(character for character, _ in row).rstrip() for row in cells(app)]
+    rows = ["".join(segment.text for segments in chops for segment in segments).rstrip() for chops in _strips(app)]
     return "\n".join(rows) + "\n"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 
 import pytest
@@ -14,6 +15,7 @@ from groundstation.ui.app.navigation import load_screen
 from groundstation.ui.app.palette import action_commands
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.test_goldens import SMALL, STANDING
+from tests.rows import each_row
 from tests.waits import until
 
 FUNCTION_KEY = re.compile(r"(?:\w+\+)*f\d+")
@@ -29,8 +31,7 @@ def plain_keys_of(action: str, keymap: Keymap) -> list[str]:
     return plain_keys((*keymap.get_keys(action), *keymap.in_flight().get_keys(action)))
 
 
-@pytest.mark.parametrize("name", KEYMAPS)
-@pytest.mark.parametrize("action", ACTIONS.values(), ids=ACTIONS)
+@each_row(("action", "name"), itertools.product(ACTIONS.values(), KEYMAPS))
 def test_every_action_has_a_plain_key_or_is_in_a_menu(action: OperatorAction, name: str) -> None:
     keymap = Keymap(name, KEYMAPS[name])
     titles = {command.title.partition("   ")[0] for command in action_commands(keymap, print)}

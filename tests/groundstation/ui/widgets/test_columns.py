@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import pytest
-
 from groundstation.ui.params.table import COLUMNS
 from groundstation.ui.widgets.columns import GAP, Column, fit
+from tests.rows import each_row
 
 
 def test_what_is_worth_less_never_stands_where_more_did_not_fit() -> None:
@@ -15,7 +14,7 @@ def test_what_is_worth_less_never_stands_where_more_did_not_fit() -> None:
     assert fit(columns, 22) == (10, 8, 2)
 
 
-@pytest.mark.parametrize("width", range(23, 140))
+@each_row("width", range(23, 140))
 def test_a_parameter_has_its_value_before_its_unit(width: int) -> None:
     widths = dict(zip((column.title for column in COLUMNS[1:]), fit(COLUMNS, width)[1:], strict=True))
     assert widths["value"]

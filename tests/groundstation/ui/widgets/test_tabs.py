@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from groundstation.screens import SCREENS, ScreenRow
@@ -13,6 +15,7 @@ from groundstation.ui.params.model import ParamModel
 from groundstation.ui.widgets.tabs import TabBar, TabBarValue
 from tests.groundstation.ui.examples import param_page, snapshot
 from tests.groundstation.ui.ptys import STANDARD
+from tests.rows import each_row
 
 
 def bar(model: ParamModel, width: int) -> str:
@@ -34,8 +37,7 @@ def test_a_pencil_stands_there_while_changes_are_not_sent(width: int, mark: str)
     assert "✎" not in bar(model, width)
 
 
-@pytest.mark.parametrize("width", [40, 60, 80, 100, 120, 140])
-@pytest.mark.parametrize("row", [row for row in SCREENS if row.in_tabs], ids=lambda row: row.id)
+@each_row(("row", "width"), itertools.product([row for row in SCREENS if row.in_tabs], [40, 60, 80, 100, 120, 140]))
 def test_the_tab_of_the_screen_on_top_is_always_there(row: ScreenRow, width: int) -> None:
     marks = {"setup": TabMark(" 12✗", RED), "files": TabMark(" 41%", BLUE), "params": TabMark("✎3", BLUE)}
     text = TabBar(TabBarValue(STANDARD, row.id, marks)).draw(width, 1)[0].text
