@@ -136,13 +136,16 @@ def test_a_killed_process_leaves_no_demand(verb: Verb, vehicle: Vehicle) -> None
         kill_and_see_it_stop(process, vehicle)
 
 
-def test_it_is_driven_by_a_process_that_is_killed(verb: Verb, vehicle: Vehicle) -> None:
+def test_it_is_driven_by_a_process_that_is_killed(verb: Verb, vehicle: Vehicle, tmp_path: Path) -> None:
+    keys = tmp_path / "long.keys"  # a late machine takes over 9 s, the most of --for, for the verb that is refused
+    turns = "".join(f"{at} press l\n{at}.1 release l\n" for at in range(8, 90, 8))
+    keys.write_text(f"0.1 press i\n{turns}95 release i\n")
 
     def prepare() -> None:
         assert verb("arm", "--wait", "20").code == 0
         assert verb("stop").code == 0  # drive changes to MANUAL
 
-    words = ["drive", "--throttle", "50", "--for", "9", "-e", verb.endpoint, "-v", "1"]
+    words = ["drive", "--script", str(keys), "--speed", "0.5", "-e", verb.endpoint, "-v", "1"]
     with start_demanding(words, lambda: vehicle.at_full(0.3), prepare) as process:
         refused = verb("drive", "--arm", "--throttle", "50", "--for", "1", *OTHER)
         assert refused.code == ExitCode.NOT_IN_CONTROL
