@@ -106,8 +106,9 @@ class Server:
         self._selector = selectors.DefaultSelector()
         for source in (self._listener, self._ended, sys.stdin):
             self._selector.register(source, selectors.EVENT_READ)
-        self._listener.bind(address)
+        self._listener.bind(f"{address}.new")
         self._listener.listen(socket.SOMAXCONN)
+        os.rename(f"{address}.new", address)  # whoever sees it can connect
 
     def serve(self) -> None:
         """Fork until stdin closes; then kill what runs."""
