@@ -31,8 +31,8 @@ LEFT_OUT = (
 """About networks, keys and memory, which are the same everywhere, and long."""
 CACHE = ".pytest_cache/macos"
 """Apart from that of other runs: it has what failed."""
-WORKERS = 4
-"""They wait for programs most of the time."""
+WORKERS = 2
+"""They wait for programs most of the time, as the tests that CI runs beside them do."""
 
 
 def main(words: list[str]) -> int:
