@@ -107,9 +107,12 @@ class MissionStrip(Instrument[MissionValue]):
     def show(self, value: MissionValue) -> None:
         """Show another value, and what it is of in the title."""
         super().show(value)
-        title = "flight" if value.flight is not None and value.mission is None else "mission"
-        if self.border_title != title:  # Textual paints the whole frame again, also for the same title
-            self.border_title = title
+        flies = value.flight is not None and value.mission is None
+        # Textual paints the whole frame again, also for the same title.
+        if flies and self.border_title != "flight":
+            self.border_title = "flight"
+        elif not flies and self.border_title != "mission":
+            self.border_title = "mission"
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw what is known; figures that do not fit are left out from the end."""
