@@ -99,8 +99,11 @@ class ProgramCalls:
 
     async def _publish(self) -> None:
         while True:
-            self._send(CurrentState(build_state(self._session.contact, self._session.now)))
+            self._send_state()
             await asyncio.sleep(STATE_PERIOD)
+
+    def _send_state(self) -> None:
+        self._send(CurrentState(build_state(self._session.contact, self._session.now)))
 
     def _tap(self, received: Received, now: float) -> None:
         message = received.message
@@ -135,6 +138,7 @@ class ProgramCalls:
         except Exception as error:  # of the verb: it must not end the connection
             log.exception("a call failed")
             code, text = int(ExitCode.BROKEN), f"{type(error).__name__}: {error}"
+        self._send_state()  # the program sees what its call has done: the mode of a stop, for example
         self._send(Ended(number, code, text or (output.error_text if code else ""), output.fields))
 
     async def _run(self, number: int, words: list[str], given: Any, output: CallOutput) -> int:
