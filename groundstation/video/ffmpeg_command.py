@@ -56,7 +56,6 @@ def build_ffmpeg_command(program: str, source: VideoSource, shape: Shape, *, old
     filters = f"{chosen},{_split_stamp(shape) if shape.stamped else _scale(shape)}"
     return [
         program, "-nostdin", "-hide_banner", "-loglevel", "error", "-threads", "2",
-        "-filter_threads", "1",  # more only hand small pictures to each other: a third of the work
         "-max_pixels", str(MAX_PIXELS), *_INPUTS[source.kind](source),
         "-map", "0:v:0", "-an", "-sn", "-dn", "-vf", filters, "-vsync" if old else "-fps_mode", "passthrough",
         "-pix_fmt", "rgb24", "-f", "rawvideo", "-flush_packets", "1", "pipe:1",
