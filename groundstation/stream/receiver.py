@@ -1,4 +1,4 @@
-"""The process that receives a camera's stream: it passes packets on to the decoders of screens, and records pictures.
+"""The process that receives a camera's stream: it passes pictures on to screens, and records them.
 
 Run as `python -m groundstation.stream.receiver --fd N --limit MB` by the station. Neither a flood of packets nor a slow
 disk can delay the station, which never waits for it. It ends with the station.
@@ -22,6 +22,7 @@ from groundstation.stream.rtp import AccessUnit, Depacketizer, is_video
 from groundstation.stream.sender_lock import SenderLock
 from groundstation.stream.video_file import encode_unit
 from groundstation.stream.video_folder import VideoFolder
+from groundstation.stream.whole_pictures import WholePictures
 from link.runtime.local_socket import take_over
 from link.runtime.worker import Worker
 
@@ -93,6 +94,7 @@ class StreamReceiver:
         self._orders = StreamOrders()
         self._recording = PictureRecording(limit)
         self._units = Depacketizer()
+        self._whole = WholePictures()
         self._lock = SenderLock()
         self._socket: socket.socket | None = None
         self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -171,13 +173,25 @@ class StreamReceiver:
                 packet, (host, *_) = self._socket.recvfrom(PACKET_MAX)
             except OSError:
                 return
-            if not is_video(packet) or not self._lock.passes(host, now):
-                continue
-            for port in self._orders.screens:
-                with contextlib.suppress(OSError):  # its decoder starts, or has no room
-                    self._sender.sendto(packet, (LOOPBACK, port))
-            for unit in self._units.take(packet, now):
-                self._recording.add(unit, self._orders, now)
+            if is_video(packet) and self._lock.passes(host, now):
+                self._pass_on(packet, now)
+
+    def _pass_on(self, packet: bytes, now: float) -> None:
+        """Send to the screens, and record, what is whole with this packet; of streams of others, what comes.
+
+        A stream of others may have no key pictures (intra refresh), so that nothing would come after a lost packet.
+        """
+        screens, stamped = self._orders.screens, self._orders.stamped
+        for port in () if stamped else screens:
+            self._send(packet, port)
+        for unit in self._units.take(packet, now):
+            for port, numbered in self._whole.choose(unit, screens) if stamped else ():
+                self._send(numbered, port)
+            self._recording.add(unit, self._orders, now)
+
+    def _send(self, packet: bytes, port: int) -> None:
+        with contextlib.suppress(OSError):  # its decoder starts, or has no room
+            self._sender.sendto(packet, (LOOPBACK, port))
 
 
 def _bind(port: int) -> socket.socket:

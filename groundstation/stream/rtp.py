@@ -1,6 +1,6 @@
 """H.264 out of RTP (RFC 6184, packetization mode 1): whole access units in Annex B, as files and decoders have them.
 
-Time is an argument. A unit of which a packet is missing is dropped.
+Time is an argument. A unit of which a packet is missing is dropped; copies of a packet that was taken are, too.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ MAX_WAITING = 64
 JUMP = 1000
 """Numbers by which a packet is so far away that its sender has started again."""
 _STAP_A, _FU_A = 24, 28
-_KEY, _PARAMETERS = 5, 7
-"""NAL units of a picture that needs no other one, and of the parameters before it."""
+_KEY, _PARAMETERS, _DELIMITER = 5, 7, 9
+"""NAL units of a picture that needs no other one, of the parameters before it, and of what may be before those."""
 
 
 class AccessUnit(msgspec.Struct, frozen=True):
@@ -34,6 +34,10 @@ class AccessUnit(msgspec.Struct, frozen=True):
     data: bytes
     key: bool
     """It needs no earlier one: decoders begin with it."""
+    follows: bool
+    """Nothing is missing between the unit before and this one."""
+    packets: tuple[bytes, ...]
+    """Those in which it came, in order."""
 
 
 class Depacketizer:
@@ -67,12 +71,17 @@ class Depacketizer:
             if self._next not in self._waiting:
                 if now - self._waits_since < WAIT and len(self._waiting) < MAX_WAITING:
                     return
-                self._unit.lose()
-                self._next = min(self._waiting, key=lambda number: (number - (self._next or 0)) & 0xFFFF)
+                self._skip(self._next)
             unit = self._unit.take(self._waiting.pop(self._next))
             self._next, self._waits_since = (self._next + 1) & 0xFFFF, now
             if unit is not None:
                 yield unit
+
+    def _skip(self, missing: int) -> None:
+        """Go on with the first packet that waits."""
+        lost = min((number - missing) & 0xFFFF for number in self._waiting)
+        self._unit.lose(lost)
+        self._next = (missing + lost) & 0xFFFF
 
 
 class _Unit:
@@ -80,31 +89,50 @@ class _Unit:
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
+        self._packets: list[bytes] = []
         self._kinds: set[int] = set()
-        self._size = 0
+        self._size = self._lost = 0
         self._time = b""
+        self._open = False
+        """A packet of it has come."""
         self._broken = True
         """Of the first unit the begin may be missing."""
+        self._follows = False
 
-    def lose(self) -> None:
-        """Note that a packet is missing."""
-        self._broken = True
+    def lose(self, count: int) -> None:
+        """Note that packets are missing."""
+        self._lost, self._broken, self._follows = count, True, False
 
     def take(self, packet: bytes) -> AccessUnit | None:
         """Take the next packet. Returns the unit that ends with it, if it is whole."""
-        if packet[4:8] != self._time and self._parts:
+        payload = _payload(packet)
+        if packet[4:8] != self._time and self._open:
             self._clear()  # its last packet, which has the marker, is missing
-        self._time = packet[4:8]
-        self._add(_payload(packet))
-        if not packet[1] & 0x80:
-            return None
-        whole = self._parts and not self._broken
-        found = AccessUnit(b"".join(self._parts), self._kinds >= {_KEY, _PARAMETERS}) if whole else None
+            self._broken, self._follows = self._lost > 1, False
+        if not self._open and _begins(payload):
+            self._broken = False  # what is missing belongs to the unit before
+        self._time, self._open, self._lost = packet[4:8], True, 0
+        self._size += len(packet)
+        if self._size > MAX_UNIT:
+            self._broken = True
+        self._packets.append(packet)
+        self._add(payload)
+        if self._broken:
+            self._parts, self._packets = [], []
+        return self._end() if packet[1] & 0x80 else None
+
+    def _end(self) -> AccessUnit | None:
+        found = None
+        if self._parts:
+            key = self._kinds >= {_KEY, _PARAMETERS}
+            found = AccessUnit(b"".join(self._parts), key, self._follows, tuple(self._packets))
         self._clear()
+        self._follows = found is not None
         return found
 
     def _clear(self) -> None:
-        self._parts, self._kinds, self._size, self._broken = [], set(), 0, False
+        self._parts, self._packets, self._kinds, self._size = [], [], set(), 0
+        self._open = self._broken = False
 
     def _add(self, payload: bytes) -> None:
         kind = payload[0] & 0x1F if payload else 0
@@ -113,7 +141,7 @@ class _Unit:
             if begins:
                 self._append(START + nal + payload[2:], nal[0])
             elif self._parts:
-                self._append(payload[2:])
+                self._parts.append(payload[2:])
             else:
                 self._broken = True
         elif kind == _STAP_A:
@@ -127,19 +155,25 @@ class _Unit:
         else:
             self._broken = True
 
-    def _append(self, data: bytes, first: int | None = None) -> None:
-        self._size += len(data)
-        if self._size > MAX_UNIT:
-            self._parts, self._broken = [], True
-            return
+    def _append(self, data: bytes, first: int) -> None:
         self._parts.append(data)
-        if first is not None:
-            self._kinds.add(first & 0x1F)
+        self._kinds.add(first & 0x1F)
 
 
 def is_video(packet: bytes) -> bool:
     """Return whether it is RTP with our payload; its reports (RTCP) are not."""
-    return len(packet) > HEADER and packet[0] >> 6 == 2 and packet[1] & 0x7F == PAYLOAD_TYPE
+    return is_rtp(packet, PAYLOAD_TYPE)
+
+
+def is_rtp(packet: bytes, payload_type: int) -> bool:
+    """Return whether it is RTP with this payload."""
+    return len(packet) > HEADER and packet[0] >> 6 == 2 and packet[1] & 0x7F == payload_type
+
+
+def _begins(payload: bytes) -> bool:
+    """Return whether a unit begins with it: parameters and delimiters are before all slices."""
+    at = 3 if payload and payload[0] & 0x1F == _STAP_A else 0
+    return len(payload) > at and payload[at] & 0x1F in (_PARAMETERS, _DELIMITER)
 
 
 def _payload(packet: bytes) -> bytes:

@@ -100,7 +100,7 @@ def _rtp(source: VideoSource) -> list[str]:
     url = f"data:application/sdp;base64,{b64encode(session.encode()).decode()}"
     return [
         "-protocol_whitelist", "data,rtp,udp", "-format_whitelist", "sdp,rtp", *_AT_ONCE,
-        "-max_delay", str(RTP_WAIT), "-f", "sdp", "-i", url,
+        "-max_delay", str(RTP_WAIT), "-buffer_size", str(SOCKET_BUFFER), "-f", "sdp", "-i", url,
     ]  # fmt: skip
 
 
