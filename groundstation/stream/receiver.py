@@ -17,6 +17,7 @@ from pathlib import Path
 
 import msgspec
 
+from groundstation.stream.copies import PacketCopies, is_copy
 from groundstation.stream.orders import StreamOrders, StreamReport
 from groundstation.stream.rtp import AccessUnit, Depacketizer, is_video
 from groundstation.stream.sender_lock import SenderLock
@@ -93,6 +94,7 @@ class StreamReceiver:
         self._pipe = pipe
         self._orders = StreamOrders()
         self._recording = PictureRecording(limit)
+        self._copies = PacketCopies()
         self._units = Depacketizer()
         self._whole = WholePictures()
         self._lock = SenderLock()
@@ -173,8 +175,11 @@ class StreamReceiver:
                 packet, (host, *_) = self._socket.recvfrom(PACKET_MAX)
             except OSError:
                 return
-            if is_video(packet) and self._lock.passes(host, now):
-                self._pass_on(packet, now)
+            if not (is_video(packet) or is_copy(packet)) or not self._lock.passes(host, now):
+                continue
+            first = self._copies.take(packet)
+            if first is not None:
+                self._pass_on(first, now)
 
     def _pass_on(self, packet: bytes, now: float) -> None:
         """Send to the screens, and record, what is whole with this packet; of streams of others, what comes.

@@ -6,5 +6,7 @@ RTP_UDP = 1
 """VIDEO_STREAM_TYPE_RTPUDP."""
 PAYLOAD_TYPE = 96
 """Of H.264 in RTP, as rpicam, GStreamer, ffmpeg and QGroundControl have it."""
+COPY_PAYLOAD_TYPE = 97
+"""Of the copy that our vehicle sends of each packet. Others drop it: with 96 ffmpeg does not recover from a loss."""
 STAMPED = "camera, time in the top rows"
 """Name of a stream of our vehicle that carries link/services/video_stamp.py."""

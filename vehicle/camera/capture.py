@@ -10,7 +10,7 @@ from vehicle.camera.settings import CameraSettings
 
 PACKET = 1200
 """Bytes of an RTP packet: it fits into each path of the internet."""
-KEY_PICTURES = 1.0
+KEY_PICTURES = 0.5
 """s between whole pictures: who joins, or has lost a packet, waits so long at most."""
 
 

@@ -21,6 +21,7 @@ from link.runtime.local_socket import take_over
 from link.services.video_stream import PAYLOAD_TYPE
 from vehicle.camera.camera import CameraReport
 from vehicle.camera.capture import build_capture, build_encoder, picture_size, stamp_picture
+from vehicle.camera.copies import DelayedCopies
 from vehicle.camera.orders import Orders, Setup
 from vehicle.camera.scene import Scene
 
@@ -38,20 +39,44 @@ SAID_MAX = 160
 
 
 class Relay(asyncio.DatagramProtocol):
-    """Takes the RTP packets of ffmpeg and sends them to all who watch."""
+    """Takes the RTP packets of ffmpeg and sends them to all who watch, `copies` times."""
 
-    def __init__(self) -> None:
+    def __init__(self, copies: int) -> None:
         self.targets: tuple[tuple[str, int], ...] = ()
         self.bits = self.pictures = 0
         """Since the last report."""
+        self._copies = DelayedCopies(copies - 1)
         self._sockets = {family: _sender(family) for family in (socket.AF_INET, socket.AF_INET6)}
 
     def datagram_received(self, data: bytes, addr: object) -> None:
         """Send a packet on; what is not RTP, such as the reports of RTCP, is dropped."""
         if len(data) < 12 or data[1] & 0x7F != PAYLOAD_TYPE:
             return
-        self.bits += 8 * len(data)
         self.pictures += data[1] >> 7  # the marker: the last packet of a picture
+        self._send(data)
+        idle = self._copies.next_due is None
+        self._copies.add(data, time.monotonic())
+        if idle:
+            self._wait_for_copies()
+
+    def close(self) -> None:
+        """Send nothing any more."""
+        self.targets = ()
+        for each in self._sockets.values():
+            if each is not None:
+                each.close()
+
+    def _wait_for_copies(self) -> None:
+        if (due := self._copies.next_due) is not None:
+            asyncio.get_running_loop().call_later(due - time.monotonic(), self._send_copies)
+
+    def _send_copies(self) -> None:
+        for packet in self._copies.pop_due(time.monotonic()):
+            self._send(packet)
+        self._wait_for_copies()
+
+    def _send(self, data: bytes) -> None:
+        self.bits += 8 * len(data)
         for host, port in self.targets:
             sender = self._sockets[socket.AF_INET6 if ":" in host else socket.AF_INET]
             if sender is not None:
@@ -74,7 +99,7 @@ class CameraProcess:
     def __init__(self, setup: Setup, pipe: socket.socket) -> None:
         self._setup, self._settings, self._pipe = setup, setup.settings, pipe
         self._orders = Orders()
-        self._relay = Relay()
+        self._relay = Relay(setup.settings.copies)
         self._ended = asyncio.Event()
         self._problem = ""
 
@@ -99,6 +124,8 @@ class CameraProcess:
         await _cancel(reporting)
         if streaming is not None:
             await _cancel(streaming)
+        transport.close()
+        self._relay.close()
 
     def _read(self) -> None:
         """Take the newest orders."""

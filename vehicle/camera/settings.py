@@ -25,7 +25,9 @@ class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rate: Annotated[int, msgspec.Meta(ge=1, le=60)] = 15
     """Pictures a second."""
     bitrate: Annotated[int, msgspec.Meta(ge=50, le=20_000)] = 1000
-    """kbit/s."""
+    """kbit/s of one copy of each packet."""
+    copies: Annotated[int, msgspec.Meta(ge=1, le=3)] = 2
+    """How often each packet is sent: 2 or 3 for networks that lose some, such as Wi-Fi; 1 where each byte costs."""
     port: Annotated[int, msgspec.Meta(ge=1024, le=65534)] = 5600
     """UDP port of the ground station. QGroundControl listens on 5600."""
     encoder: Encoder = "libx264"

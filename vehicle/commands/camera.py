@@ -145,7 +145,8 @@ def build_stream(camera: Camera, view: TelemetryView) -> m.Message:
     return m.VideoStreamInformation(
         stream_id=STREAM, count=1, type=RTP_UDP, flags=_flags(camera, view),
         framerate=settings.rate, resolution_h=settings.width, resolution_v=settings.height,
-        bitrate=settings.bitrate * 1000, rotation=0, hfov=FIELD_OF_VIEW if settings.kind == "simulated" else 0,
+        bitrate=settings.bitrate * settings.copies * 1000, rotation=0,
+        hfov=FIELD_OF_VIEW if settings.kind == "simulated" else 0,
         name=(STAMPED if stamped else "camera").encode(), uri=str(settings.port).encode(), encoding=H264,
         camera_device_id=DEVICE,
     )  # fmt: skip

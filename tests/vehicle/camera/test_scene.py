@@ -78,7 +78,9 @@ def test_each_kind_has_its_programs() -> None:
     own = CameraSettings(kind="command", command=("my-camera", "--h264"))
     assert build_capture(own) == ["my-camera", "--h264"]
     assert "copy" in build_encoder(own, 1)
-    assert "320x188" in build_encoder(SIMULATED_CAMERA, 1)
+    words = build_encoder(SIMULATED_CAMERA, 1)
+    assert "320x188" in words
+    assert words[words.index("-g") + 1] == "8", "a key picture each half second"
     assert not find_problems(own)
     assert find_problems(CameraSettings(kind="command"))
     assert find_problems(SIMULATED_CAMERA)

@@ -40,6 +40,7 @@ def test_a_station_asks_what_and_where_the_camera_is() -> None:
         assert bench.command(old, 9, system=OTHER) is Result.DENIED
     stream = bench.newest(m.VideoStreamInformation)
     assert (stream.name, stream.uri, stream.type, stream.resolution_h) == (STAMPED, "5600", 1, 320)
+    assert stream.bitrate == 2 * 600_000, "each packet is sent twice"
     assert not stream.flags & RUNNING
     bench.camera.note_report(CameraReport(10, 500_000), bench.now)
     bench.command(Command.REQUEST_MESSAGE, m.VideoStreamStatus.id, system=OTHER)
