@@ -151,7 +151,7 @@ def test_ci_types_the_lines_of_the_readme_and_runs_the_rest() -> None:
     lines = (ROOT / ".ci/run").read_text().splitlines()
     assert any(line.startswith("python3 -m tests.stranger --no-skips ") for line in lines)
     rest = "--dist loadgroup --suite rest"
-    assert f"MAVHELM_EXAMPLES=$few_examples .venv/bin/pytest -n 6 {rest} --kind waiting || rest=1" in lines
+    assert f"MAVHELM_EXAMPLES=$few_examples .venv/bin/pytest -n 5 {rest} --kind waiting || rest=1" in lines
     assert any(line.startswith(f'    .venv/bin/pytest -n "$(nproc)" {rest} --kind computing ') for line in lines)
     assert any(line.startswith("wait $computing || { rest=1;") for line in lines)
     assert "((rest == 0)) || .venv/bin/python .ci/again || code=1" in lines

@@ -92,6 +92,7 @@ def test_without_a_program_that_speaks_it_says_so(
         station.look(0.2)
         code, said = station.process.returncode, station.screen.decode()
     else:
+        command.append(f"udpin:127.0.0.1:{free_port()}")  # the one used last may still have its station
         done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
         code, said = done.returncode, done.stderr
     assert code == 2, said

@@ -17,7 +17,7 @@ from tests.stress.load import busy_cores
 from tests.stress.results import Round, count_failures, read_round
 
 TREE = Path(__file__).resolve().parents[2]
-WORKERS = 6
+WORKERS = 5
 """As many as CI has: most of these tests wait for programs."""
 
 
