@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections import deque
 
 from groundstation.stream.rtp import HEADER, is_rtp
-from link.services.video_stream import COPY_PAYLOAD_TYPE, PAYLOAD_TYPE
+from link.services.video_stream import COPY_PAYLOAD_TYPE, PAYLOAD_TYPE, with_payload_type
 
 KEPT = 2048
 """Packets that are remembered: those of a second at the highest bit rate."""
-MARKER = 0x80
 
 
 class PacketCopies:
@@ -25,7 +24,7 @@ class PacketCopies:
         if is_copy(packet):
             if name in self._seen:
                 return None
-            packet = packet[:1] + bytes([packet[1] & MARKER | PAYLOAD_TYPE]) + packet[2:]
+            packet = with_payload_type(packet, PAYLOAD_TYPE)
         self._seen.add(name)
         self._order.append(name)
         if len(self._order) > KEPT:

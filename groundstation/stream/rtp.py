@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from link.services.video_stream import PAYLOAD_TYPE
+from link.services.video_stream import MARKER, PAYLOAD_TYPE
 
 HEADER = 12
 """Bytes of a header of RTP."""
@@ -119,7 +119,7 @@ class _Unit:
         self._add(payload)
         if self._broken:
             self._parts, self._packets = [], []
-        return self._end() if packet[1] & 0x80 else None
+        return self._end() if packet[1] & MARKER else None
 
     def _end(self) -> AccessUnit | None:
         found = None

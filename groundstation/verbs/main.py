@@ -188,9 +188,9 @@ async def _run_once(
 ) -> int:
     """Do so once, in a station, or in this process. A station may be silent for `patience` s, or for HANGS_AFTER."""
     station, endpoints = _find_way(action, options, output, through, min(patience, HELLO_WITHIN))
-    if station is None and action.stops:
-        return await _run_here(action, options, output, group, endpoints)  # which tries its other ways at once
     if station is None:
+        if action.stops:  # its other ways are tried at once
+            return await _run_here(action, options, output, group, endpoints)
         from groundstation.verbs.session.running import run_when_port_free
 
         return await run_when_port_free(lambda: _run_here(action, options, output, group, endpoints))

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 
-from link.services.video_stream import COPY_PAYLOAD_TYPE
+from link.services.video_stream import COPY_PAYLOAD_TYPE, with_payload_type
 
 COPY_DELAY = 0.01
 """s from one to the next: they share few disturbances, and all come while a receiver waits for a missing packet."""
-MARKER = 0x80
 
 
 class DelayedCopies:
@@ -28,8 +27,7 @@ class DelayedCopies:
     def add(self, packet: bytes, now: float) -> None:
         """Keep a packet that was sent now."""
         if self._count:
-            kind = packet[1] & MARKER | COPY_PAYLOAD_TYPE
-            self._waiting.append((now + COPY_DELAY, self._count, packet[:1] + bytes([kind]) + packet[2:]))
+            self._waiting.append((now + COPY_DELAY, self._count, with_payload_type(packet, COPY_PAYLOAD_TYPE)))
 
     def pop_due(self, now: float) -> Iterator[bytes]:
         """Yield the copies that are due."""
